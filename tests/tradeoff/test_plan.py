@@ -9,12 +9,13 @@ import gaspart as gp
 from gaspart.analysis.measuring import measure
 from gaspart.cli import main
 from gaspart.engines import EventDriven
+from gaspart.engines.dsmc.defaults import CELL_LOSS
 from gaspart.state import initial
 from gaspart.tradeoff import pilot, plan
 from gaspart.tradeoff import target as target_module
 from gaspart.tradeoff.candidates import Candidate, candidates
 from gaspart.tradeoff.estimates import Component
-from gaspart.tradeoff.models import CELL_LOSS, cell_loss
+from gaspart.tradeoff.models import cell_loss
 from gaspart.tradeoff.pilot import Pilot
 from gaspart.tradeoff.target import Target
 

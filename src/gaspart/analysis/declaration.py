@@ -96,8 +96,8 @@ class Named:
     see `Condition`; nothing: the equations that an engine solves (`Engine.equation`) whose runs say nothing
     of it, each with the reason.
 
-    What it is compared with. theory: a function of `analysis.expected`, which knows the equation of the engine;
-    bulk: a function of `analysis.bulk`, of an infinite plain gas by each equation; "" where there is none.
+    What it is compared with. theory: a function in `analysis.expected`, which knows the equation of the
+    engine; bulk: a function of `analysis.bulk`, of an infinite plain gas by each equation; "" without one.
 
     How it transforms. Units and `along` state it for changes of units, exchanges of axes, mirrors and shifts.
     moving: whether it is the same in a frame that moves uniformly; scatter: what its uncertainty is the

@@ -105,8 +105,8 @@ class Engine:
 
     @property
     def equation(self) -> str:
-        """What its particles obey: "exact" if they meet where they touch, or the kinetic equation, "boltzmann"
-        or "enskog", by which partners are drawn. Theory to compare a run with is that of this equation."""
+        """What its particles obey: "exact" if they meet where they touch, or "boltzmann" or "enskog", the
+        kinetic equation by which partners are drawn. A run is compared with the theory of this equation."""
         return "exact"
 
     @property
@@ -122,6 +122,11 @@ class Engine:
     def predictions(self, scene: Scene) -> dict[str, float]:
         """Errors that are known beforehand, by name."""
         return {}
+
+    def bias(self, scene: Scene, kind: str) -> float:
+        """Bound on the relative error, where it is known, that its settings make in a quantity by what this
+        depends on: "rates" of collisions, "paths" of particles, or "fluxes" of momentum and heat."""
+        return 0.0
 
     def check_features(self, scene: Scene) -> None:
         """Raise SceneError for features of a scene that this engine does not model, with those that do."""

@@ -1,6 +1,6 @@
 """Self-diffusion beyond Enskog: dense corrections, finite systems, and the long-time tail.
 
-Arguments as in `enskog`: packing fraction (number or array), diameter, temperature (k_B = 1), mass.
+Arguments as in `enskog`: packing fraction (number or array), diameter, temperature (k_B = 1), mass, contact.
 """
 
 import math
@@ -107,12 +107,14 @@ def velocity_decay_rate(
     diameter: float = 1.0,
     temperature: float = 1.0,
     mass: float = 1.0,
+    contact: Numbers | None = None,
 ) -> Values:
     """Initial decay rate of the velocity autocorrelation, 2 nu / d (exact in equilibrium; 1 / time).
 
     nu is `enskog.collision_rate`; k_B T / (m rate) is Enskog's D in the first Sonine approximation.
     """
-    return 2.0 / dimension * collision_rate(packing_fraction, dimension, diameter, temperature, mass)
+    rate = collision_rate(packing_fraction, dimension, diameter, temperature, mass, contact)
+    return 2.0 / dimension * rate
 
 
 @checked
@@ -123,6 +125,7 @@ def enskog_mean_squared_displacement(
     diameter: float = 1.0,
     temperature: float = 1.0,
     mass: float = 1.0,
+    contact: Numbers | None = None,
 ) -> Values:
     """Mean-squared displacement 2 d D [t - (1 - exp(-g t)) / g], g = k_B T / (m D), D Enskog's (length^2).
 
@@ -130,7 +133,7 @@ def enskog_mean_squared_displacement(
     at long ones; g is 2 to 3 % below the exact initial rate. Dilute gases; no long-time tail. `time`
     broadcasts with eta.
     """
-    diffusion = enskog_diffusion(packing_fraction, dimension, diameter, temperature, mass)
+    diffusion = enskog_diffusion(packing_fraction, dimension, diameter, temperature, mass, contact)
     rate = temperature / (mass * diffusion)
     return langevin_msd(time, diffusion, rate, dimension)
 

@@ -1,7 +1,9 @@
 """Enskog theory of the dense gas: collision rate, mean free path and transport coefficients.
 
 All take `packing_fraction` (number or array), dimension 2 or 3, and the particles' diameter, temperature (k_B
-= 1) and mass; time is in units of diameter sqrt(mass / temperature). chi is `state.contact_value`.
+= 1) and mass; time is in units of diameter sqrt(mass / temperature). chi is `contact`, the pair distribution
+at contact, by default `state.contact_value`: of another equation of state it is that one's, 1 in a gas of
+points.
 Literature: Chapman and Cowling (1970) for spheres; Gass, J. Chem. Phys. 54, 1898 (1971) for discs. Range:
 that of the reference equation of state; the collision rate is exact, the transport coefficients neglect
 correlated collisions (see `diffusion`).
@@ -24,27 +26,31 @@ _DILUTE_VISCOSITY = {2: 0.28829, 3: 0.17913}
 _DILUTE_CONDUCTIVITY = {2: 1.16192, 3: 0.67783}
 
 
-def _density_and_contact(packing_fraction: Numbers, dimension: int, diameter: float) -> tuple[Values, Values]:
+def _density_and_contact(
+    packing_fraction: Numbers, dimension: int, diameter: float, contact: Numbers | None
+) -> tuple[Values, Values]:
     density = number_density(np.asarray(packing_fraction, dtype=float), dimension, diameter)
-    return density, contact_value(packing_fraction, dimension)
+    return density, contact_value(packing_fraction, dimension) if contact is None else contact
 
 
-def _kinetic(dilute: float, factor: float, packing_fraction: Numbers, dimension: int) -> Values:
+def _kinetic(
+    dilute: float, factor: float, packing_fraction: Numbers, dimension: int, contact: Numbers | None
+) -> Values:
     """(dilute / chi) [1 + factor b chi / (d+2)]^2, b = 2^(d-1) times the packing fraction."""
-    contact = contact_value(packing_fraction, dimension)
+    _, contact = _density_and_contact(packing_fraction, dimension, 1.0, contact)
     excess = 2.0 ** (dimension - 1) * np.asarray(packing_fraction) * contact
     return dilute / contact * (1.0 + factor * excess / (dimension + 2)) ** 2
 
 
-def kinetic_viscosity(packing_fraction: Numbers, dimension: int) -> Values:
+def kinetic_viscosity(packing_fraction: Numbers, dimension: int, contact: Numbers | None = None) -> Values:
     """The part of `enskog_viscosity` that the kinetic stress makes, the first term, which relaxes within some
     collisions. Units: diameter = mass = k_B T = 1."""
-    return _kinetic(_DILUTE_VISCOSITY[dimension], 2.0, packing_fraction, dimension)
+    return _kinetic(_DILUTE_VISCOSITY[dimension], 2.0, packing_fraction, dimension, contact)
 
 
-def kinetic_conductivity(packing_fraction: Numbers, dimension: int) -> Values:
+def kinetic_conductivity(packing_fraction: Numbers, dimension: int, contact: Numbers | None = None) -> Values:
     """Likewise that of `enskog_conductivity`."""
-    return _kinetic(_DILUTE_CONDUCTIVITY[dimension], 3.0, packing_fraction, dimension)
+    return _kinetic(_DILUTE_CONDUCTIVITY[dimension], 3.0, packing_fraction, dimension, contact)
 
 
 @checked
@@ -54,6 +60,7 @@ def collision_rate(
     diameter: float = 1.0,
     temperature: float = 1.0,
     mass: float = 1.0,
+    contact: Numbers | None = None,
 ) -> Values:
     """Collisions of one particle per time, nu = S rho sigma^(d-1) chi sqrt(k_B T / (pi m)).
 
@@ -61,7 +68,7 @@ def collision_rate(
     Exact in equilibrium (velocities independent of positions), with the accuracy of chi. In a run: 2 N_coll /
     (N t). Unit 1 / time.
     """
-    density, contact = _density_and_contact(packing_fraction, dimension, diameter)
+    density, contact = _density_and_contact(packing_fraction, dimension, diameter, contact)
     speed = math.sqrt(temperature / (math.pi * mass))
     return unit_sphere_surface(dimension) * density * diameter ** (dimension - 1) * contact * speed
 
@@ -98,6 +105,7 @@ def enskog_diffusion(
     diameter: float = 1.0,
     temperature: float = 1.0,
     mass: float = 1.0,
+    contact: Numbers | None = None,
 ) -> Values:
     """Self-diffusion coefficient of Enskog theory, D = c sqrt(k_B T / (pi m)) / (rho sigma^(d-1) chi).
 
@@ -105,7 +113,7 @@ def enskog_diffusion(
     `diffusion` has the correction at higher density. 2D: D of the Enskog equation only; the true one does not
     exist (it grows like ln t). Unit length^2 / time.
     """
-    density, contact = _density_and_contact(packing_fraction, dimension, diameter)
+    density, contact = _density_and_contact(packing_fraction, dimension, diameter, contact)
     first = {2: 0.5, 3: 0.375}[dimension]
     speed = math.sqrt(temperature / (math.pi * mass))
     with np.errstate(divide="ignore"):  # infinite at zero density
@@ -120,6 +128,7 @@ def enskog_bulk_viscosity(
     diameter: float = 1.0,
     temperature: float = 1.0,
     mass: float = 1.0,
+    contact: Numbers | None = None,
 ) -> Values:
     """Bulk viscosity of Enskog theory, (S / d^2) rho^2 sigma^(d+1) chi sqrt(m k_B T / pi).
 
@@ -127,7 +136,7 @@ def enskog_bulk_viscosity(
     under uniform expansion, in which a pair at contact has the mean normal velocity sigma div(u) / d.
     Unit mass length^(2-d) / time.
     """
-    density, contact = _density_and_contact(packing_fraction, dimension, diameter)
+    density, contact = _density_and_contact(packing_fraction, dimension, diameter, contact)
     thermal = math.sqrt(mass * temperature / math.pi)
     surface = unit_sphere_surface(dimension)
     return surface / dimension**2 * density**2 * diameter ** (dimension + 1) * contact * thermal
@@ -140,6 +149,7 @@ def enskog_viscosity(
     diameter: float = 1.0,
     temperature: float = 1.0,
     mass: float = 1.0,
+    contact: Numbers | None = None,
 ) -> Values:
     """Shear viscosity of Enskog theory, (eta_0 / chi) [1 + 2 b chi / (d+2)]^2 + bulk viscosity d / (d+2).
 
@@ -148,8 +158,8 @@ def enskog_viscosity(
     b^2 chi] (Gass). Good to a few per cent to eta = 0.3 (3D), too low beyond. Unit mass length^(2-d) / time.
     """
     unit = math.sqrt(mass * temperature) / diameter ** (checked_dimension(dimension) - 1)
-    kinetic = unit * kinetic_viscosity(packing_fraction, dimension)
-    bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
+    kinetic = unit * kinetic_viscosity(packing_fraction, dimension, contact)
+    bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass, contact)
     return kinetic + dimension / (dimension + 2) * bulk
 
 
@@ -178,6 +188,7 @@ def enskog_conductivity(
     diameter: float = 1.0,
     temperature: float = 1.0,
     mass: float = 1.0,
+    contact: Numbers | None = None,
 ) -> Values:
     """Conductivity of heat, (lambda_0 / chi) [1 + 3 b chi / (d+2)]^2 + d / (2m) bulk viscosity (Enskog).
 
@@ -186,8 +197,8 @@ def enskog_conductivity(
     0.8716 b^2 chi]. Unit 1 / (length^(d-2) time), with k_B = 1.
     """
     unit = math.sqrt(temperature / mass) / diameter ** (checked_dimension(dimension) - 1)
-    kinetic = unit * kinetic_conductivity(packing_fraction, dimension)
-    bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
+    kinetic = unit * kinetic_conductivity(packing_fraction, dimension, contact)
+    bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass, contact)
     return kinetic + 0.5 * dimension / mass * bulk
 
 

@@ -138,15 +138,17 @@ def mixture_collision_rates(
     theory: str = "santos",
     temperature: float = 1.0,
     masses: Numbers | Sizes = 1.0,
+    contact: np.ndarray | None = None,
 ) -> np.ndarray:
     """(S, S) collisions of one particle of species i with those of species j per time, of a mixture in
     equilibrium: S rho_j sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)).
 
     S = 2 pi (2D), 4 pi (3D); mu_ij the reduced mass. Exact with exact contact values (Chapman and Cowling
-    1970): the sum over j is the collision rate of a particle. masses: one for all, or (S,). Other arguments
-    as in `mixture_compressibility_factor`. Unit 1 / time.
+    1970): the sum over j is the collision rate of a particle. masses: one for all, or (S,); contact: g_ij (S,
+    S) in place of the theory's. Other arguments as in `mixture_compressibility_factor`. Unit 1 / time.
     """
-    contact = mixture_contact_values(packing_fraction, dimension, diameters, fractions, theory)
+    if contact is None:
+        contact = mixture_contact_values(packing_fraction, dimension, diameters, fractions, theory)
     _, sizes, parts = _checked(theory, packing_fraction, dimension, diameters, fractions)
     each = _numbers("masses", np.atleast_1d(masses))
     if not (each > 0.0).all():
@@ -169,6 +171,7 @@ def enskog_mutual_diffusion(
     theory: str = "santos",
     temperature: float = 1.0,
     masses: Numbers | Sizes = 1.0,
+    contact: np.ndarray | None = None,
 ) -> float:
     """Coefficient of mutual diffusion of two species by Maxwell and Stefan, in length^2 / time: Enskog's in
     the first approximation of Sonine polynomials,
@@ -181,7 +184,7 @@ def enskog_mutual_diffusion(
     light particles among heavy ones. Raises SceneError as that, and for other numbers of species than two.
     """
     rates = mixture_collision_rates(
-        packing_fraction, dimension, diameters, fractions, theory, temperature, masses
+        packing_fraction, dimension, diameters, fractions, theory, temperature, masses, contact
     )
     if len(rates) != 2:
         raise SceneError("diameters", len(rates), "mutual diffusion is that of two species")

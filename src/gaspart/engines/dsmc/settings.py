@@ -89,6 +89,18 @@ class DSMC(Engine):
         cells, step = cells_for(self, scene, found), step_for(self, scene, found)
         return {"viscosity_error": predicted_error(cells, step, scene, found)}
 
+    def bias(self, scene: Scene, kind: str) -> float:
+        """Of its cells and steps, by the literature, and of the collisions that the Enskog model loses."""
+        from gaspart.engines.dsmc import defaults
+        from gaspart.engines.dsmc.rates import rates
+
+        found = rates(scene, self.model == "enskog")
+        cells, step = defaults.cells_for(self, scene, found), defaults.step_for(self, scene, found)
+        lost = defaults.lost_collisions(self, cells, scene)
+        if kind == "fluxes":
+            return lost + defaults.predicted_error(cells, step, scene, found)
+        return lost + (defaults.diffusion_error(step, scene, found) if kind == "paths" else 0.0)
+
     def variant(self, scene: Scene) -> str:
         """The model, and whether threads share the work."""
         return self.model + ("-threads" if self.threads > 1 else "")

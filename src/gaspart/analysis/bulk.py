@@ -1,0 +1,92 @@
+"""Theory of a plain gas without an end, by the equation that an engine solves (`Engine.equation`).
+
+"exact": particles that meet where they touch; "boltzmann": points; "enskog": pairs that meet a diameter
+apart as often as the contact value states that the engine is given, without correlated collisions. Each
+function takes a `Gas` and an equation; NaN where nothing is known.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.engines.dsmc import rates
+from gaspart.scene.gas import Gas
+
+EXACT, BOLTZMANN, ENSKOG = "exact", "boltzmann", "enskog"
+
+
+def contact_value(gas: Gas, equation: str) -> float:
+    """The pair distribution at contact by which pairs collide."""
+    if equation == BOLTZMANN:
+        return 1.0
+    if equation == ENSKOG:
+        density = theory.number_density(gas.packing_fraction, gas.dimension, gas.diameter)
+        radius = np.array([0.5 * gas.diameter])
+        return float(rates.contact_values(np.atleast_1d(density), radius, gas.dimension)[0, 0])
+    return float(theory.contact_value(gas.packing_fraction, gas.dimension))
+
+
+def excess(gas: Gas, equation: str) -> float:
+    """Z - 1."""
+    if equation == BOLTZMANN:
+        return 0.0
+    return 2.0 ** (gas.dimension - 1) * gas.packing_fraction * contact_value(gas, equation)
+
+
+def compressibility_factor(gas: Gas, equation: str) -> float:
+    """Z."""
+    return 1.0 + excess(gas, equation)
+
+
+def collision_rate(gas: Gas, equation: str) -> float:
+    """Collisions of a particle per time."""
+    return float(theory.collision_rate(**gas.parameters, contact=contact_value(gas, equation)))
+
+
+def diffusion(gas: Gas, equation: str) -> float:
+    """D of spheres: Erpenbeck and Wood's, or that of the kinetic equation. Discs have none."""
+    if gas.dimension == 2 or (equation == EXACT and not _fluid(gas)):
+        return math.nan
+    value = float(theory.enskog_diffusion(**gas.parameters, contact=contact_value(gas, equation)))
+    return value * (float(theory.erpenbeck_wood_ratio(gas.packing_fraction)) if equation == EXACT else 1.0)
+
+
+def shear_viscosity(gas: Gas, equation: str) -> float:
+    """Chapman and Enskog's, Enskog's, or that with the ratio that was measured in a dense gas of spheres."""
+    value = float(theory.enskog_viscosity(**_transported(gas, equation)))
+    if equation == EXACT and gas.dimension == 3:
+        return value * float(theory.viscosity_ratio(gas.packing_fraction)) if _fluid(gas) else math.nan
+    return value
+
+
+def bulk_viscosity(gas: Gas, equation: str) -> float:
+    """Enskog's; 0 of points."""
+    return float(theory.enskog_bulk_viscosity(**_transported(gas, equation)))
+
+
+def thermal_conductivity(gas: Gas, equation: str) -> float:
+    """Chapman and Enskog's, or Enskog's."""
+    return float(theory.enskog_conductivity(**_transported(gas, equation)))
+
+
+def chemical_potential(gas: Gas, equation: str) -> float:
+    """Beyond an ideal gas's, over k_B T."""
+    if equation != EXACT:
+        return 0.0 if equation == BOLTZMANN else math.nan
+    return float(theory.excess_chemical_potential(gas.packing_fraction, gas.dimension))
+
+
+def _fluid(gas: Gas) -> bool:
+    """Whether spheres are as dilute as those of which transport was measured."""
+    return gas.packing_fraction <= theory.ERPENBECK_WOOD_HIGHEST
+
+
+def _transported(gas: Gas, equation: str) -> dict[str, Any]:
+    """The arguments of Enskog's transport coefficients: those of points do not depend on the density."""
+    if equation == BOLTZMANN:
+        return {**gas.parameters, "packing_fraction": 0.0, "contact": 1.0}
+    return {**gas.parameters, "contact": contact_value(gas, equation)}

@@ -1,0 +1,1 @@
+"""What theory expects of a run, by the equation that its engine solves, for its number of particles."""

@@ -1,0 +1,172 @@
+"""Numbers and rates of a gas in equilibrium: pressures, collisions, contact values, speeds."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.analysis import bulk
+from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
+from gaspart.analysis.expected.run import (
+    OF_NUMBER,
+    SOURCES,
+    Expected,
+    bias_of,
+    equation_of,
+    partners,
+    shift_of,
+)
+from gaspart.analysis.run import Run
+from gaspart.engines.dsmc import rates
+from gaspart.scene.gas import Mixture
+from gaspart.theory.geometry import unit_sphere_surface
+from gaspart.theory.speeds import mean_speed_factor
+from gaspart.trajectory.pairs import pairs_of
+
+_SANTOS = "Santos, Yuste and Lopez de Haro 2002, an approximation"
+
+
+def compressibility_factor(run: Run) -> Expected | None:
+    """Z at fixed energy: of the Boltzmann equation 1, of the Enskog equation that of its N (N - 1) / 2
+    pairs, exactly."""
+    equation = equation_of(run)
+    if equation == BOLTZMANN:
+        return 1.0, 0.0, "Boltzmann equation: particles without extent"
+    gas, mixture = run.moving_fluid, run.mixture
+    if equation == ENSKOG:
+        if mixture is None:
+            return None
+        beyond = _pairs_of_enskog(mixture)
+        return 1.0 + beyond, beyond * bias_of(run, "rates"), f"Enskog equation, {OF_NUMBER}"
+    if gas is not None:
+        eta, d = gas.packing_fraction, gas.dimension
+        value = float(theory.compressibility_factor(eta, d)) + shift_of(eta, d, run.count)
+        source = "reference equation of state of the fluid, corrected for the number of particles"
+        return value, float(theory.compressibility_uncertainty(eta, d)), source
+    if mixture is None or run.scene.gas is not None:
+        return None
+    value = theory.mixture_compressibility_factor(*mixture.sizes)
+    value += shift_of(mixture.packing_fraction, mixture.dimension, run.count)
+    return value, math.nan, f"{_SANTOS}, corrected for the number of particles"
+
+
+def _enskog_contacts(mixture: Mixture) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Numbers (S,), distances at contact (S, S) and contact values (S, S) of the Enskog model."""
+    numbers, diameters = (np.array(each, dtype=float) for each in (mixture.counts, mixture.diameters))
+    filled = float((numbers * theory.particle_volume(mixture.dimension) * diameters**mixture.dimension).sum())
+    densities = numbers * mixture.packing_fraction / filled
+    distances = 0.5 * np.add.outer(diameters, diameters)
+    return numbers, distances, rates.contact_values(densities, 0.5 * diameters, mixture.dimension)
+
+
+def _pairs_of_enskog(mixture: Mixture) -> float:
+    """Z - 1 = (S / 2 d N V) sum over pairs N_i (N_j - delta_ij) sigma_ij^d g_ij, S the surface of a unit
+    sphere."""
+    d, (numbers, distances, contacts) = mixture.dimension, _enskog_contacts(mixture)
+    diameters = np.diag(distances)
+    volume = float((numbers * theory.particle_volume(d) * diameters**d).sum()) / mixture.packing_fraction
+    pairs = numbers[:, None] * (numbers - np.eye(len(numbers)))
+    surface = unit_sphere_surface(d)
+    return surface / (2.0 * d * numbers.sum() * volume) * float((pairs * distances**d * contacts).sum())
+
+
+def collision_rate(run: Run) -> Expected | None:
+    """At fixed energy; exact but for the contact value."""
+    gas, equation = run.moving_fluid, equation_of(run)
+    if gas is None:
+        return None
+    eta, d = gas.packing_fraction, gas.dimension
+    value = bulk.collision_rate(gas, equation) * mean_speed_factor(d * (run.count - 1))
+    if equation != EXACT:
+        value *= partners(run)
+        return value, value * bias_of(run, "rates"), f"{SOURCES[equation]}, {OF_NUMBER}"
+    beyond = bulk.excess(gas, equation)
+    value *= 1.0 + shift_of(eta, d, run.count) / beyond
+    unsure = float(theory.compressibility_uncertainty(eta, d)) / beyond
+    return value, value * unsure, "Enskog's rate, exact in equilibrium"
+
+
+def contact_values(run: Run) -> Expected | None:
+    """g_ij of N particles, of N_i (N_j - delta_ij) pairs."""
+    mixture = _mixture_of_species(run)
+    if mixture is None:
+        return None
+    found = theory.mixture_contact_values(*mixture.sizes) * _finite_contact(run, mixture)
+    return [found[pair] for pair in pairs_of(run.scene)], np.nan, f"contact values of {_SANTOS}"
+
+
+def pair_rates(run: Run) -> Expected | None:
+    """Collisions of a particle of the first species of a pair, which has N_j - delta_ij partners."""
+    mixture = _mixture_of_species(run)
+    if mixture is None:
+        return None
+    found = theory.mixture_collision_rates(*mixture.sizes, temperature=run.temperature, masses=mixture.masses)
+    found = found * (1.0 - np.diag(1.0 / np.array(mixture.counts)))
+    found *= _finite_contact(run, mixture) * mean_speed_factor(run.freedom)
+    return [found[pair] for pair in pairs_of(run.scene)], np.nan, f"contact values of {_SANTOS}"
+
+
+def _mixture_of_species(run: Run) -> Mixture | None:
+    """The mixture, if each species is of one size and differs from the others."""
+    mixture = run.mixture
+    if mixture is None or len(mixture.counts) != len(run.scene.species) or equation_of(run) != EXACT:
+        return None
+    return mixture
+
+
+def _finite_contact(run: Run, mixture: Mixture) -> float:
+    """The contact value of N particles over that of infinitely many, to first order, as of equal ones."""
+    eta, d = mixture.packing_fraction, mixture.dimension
+    beyond = float(theory.compressibility_factor(eta, d)) - 1.0
+    return (1.0 + shift_of(eta, d, run.count) / beyond) / partners(run)
+
+
+def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
+    """On walls of one distance: of the fluid between hard walls; of points N k_B T over the volume that
+    centres can reach. touched (d,): its sides."""
+    walled, lengths = ~run.periodic, np.array(run.scene.container.lengths)
+    gas, equation = run.scene.gas, equation_of(run)
+    if gas is None or equation == ENSKOG:
+        return None
+    if equation == BOLTZMANN:
+        return run.count * run.temperature / float(touched.prod()), 0.0, "Boltzmann equation: an ideal gas"
+    sides = lengths[walled]
+    if run.scene.centres_to_walls or np.ptp(sides) > 1e-9 * sides.max():
+        return None
+    density = gas.count / float((touched / gas.diameter).prod())
+    try:
+        value, error = theory.wall_pressure(
+            sides[0] / gas.diameter, density, gas.count, gas.dimension, int(walled.sum())
+        )
+    except ValueError:  # denser than theory goes
+        return None
+    unit = run.temperature / gas.diameter**gas.dimension
+    return value * unit, error * unit, "fluid between hard walls"
+
+
+def pressure_tensor(run: Run, temperature: float) -> Expected | None:
+    """n k_B T [(1 - 1/N) + Z_N - 1] on the diagonal: N - 1 particles' worth of flight about the centre of
+    mass."""
+    gas, equation = run.fluid, equation_of(run)
+    if gas is None:
+        return None
+    eta, d = gas.packing_fraction, gas.dimension
+    if equation == EXACT:
+        beyond = bulk.excess(gas, equation) + shift_of(eta, d, gas.count)
+    else:
+        beyond = partners(run) * bulk.excess(gas, equation)
+    pressure = gas.count / run.scene.container.volume * temperature * (partners(run) + beyond)
+    source = "equation of state" if equation == EXACT else SOURCES[equation]
+    return pressure * np.eye(d).ravel(), math.nan, f"{source}, {OF_NUMBER}"
+
+
+def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expected | None:
+    """(bins,) Maxwell's density between edges, of particles of one mass; None for others. fixed: whether the
+    kinetic energy does not change, so that the law of this number of particles is exact."""
+    if mass is None:
+        return None
+    law = theory.maxwell_cdf(edges, run.dimension, run.temperature, mass, run.freedom if fixed else None)
+    source = f"Maxwell's distribution{', of this number at fixed energy' if fixed else ''}"
+    return np.diff(law) / np.diff(edges), 0.0, source

@@ -1,0 +1,116 @@
+"""Places of particles: pair distributions, structure factor, insertion, and profiles along an axis."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.analysis import bulk
+from gaspart.analysis.bulk import BOLTZMANN, ENSKOG
+from gaspart.analysis.expected.run import Expected, equation_of, partners, shift_of
+from gaspart.analysis.run import Run
+
+
+def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expected | None:
+    """(distance,) of spheres that touch the value at contact, at the first places beyond the diameter, in
+    bins of a width; of points 1."""
+    equation, gas = equation_of(run), run.fluid
+    if equation == BOLTZMANN:
+        return _of_points(run, np.ones(len(distance)))
+    if equation == ENSKOG or gas is None:
+        return None
+    near = (distance > gas.diameter) & (distance < gas.diameter + 1.5 * width)
+    eta, d = gas.packing_fraction, gas.dimension
+    beyond = bulk.excess(gas, equation) + shift_of(eta, d, gas.count)
+    contact = beyond / (2.0 ** (d - 1) * eta) / partners(run)
+    return np.where(near, contact, np.nan), np.nan, "g at contact, from Z of this number"
+
+
+def _of_points(run: Run, values: Any) -> Expected | None:
+    """What independent places give, of smooth and elastic particles without a field."""
+    if run.mixture is None and run.scene.gas is None:
+        return None
+    return values, 0.0, "Boltzmann equation: independent places"
+
+
+def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
+    """(wave_number,) of equal spheres Verlet and Weis's, an approximation; of points 1."""
+    equation, gas = equation_of(run), run.fluid
+    if equation == BOLTZMANN:
+        return _of_points(run, np.ones(len(wave_number)))
+    if equation == ENSKOG or gas is None or gas.dimension == 2:
+        return None
+    law = theory.verlet_weis_structure_factor(wave_number * gas.diameter, gas.packing_fraction)
+    return law, np.nan, "Verlet and Weis"
+
+
+def chemical_potential(run: Run) -> Expected | None:
+    """By insertion into N particles: by the equation of state, or, exactly, into N points, none of which may
+    be nearer than a diameter to the place."""
+    equation, gas = equation_of(run), run.fluid
+    if equation == ENSKOG or gas is None:
+        return None
+    eta, d, count = gas.packing_fraction, gas.dimension, gas.count
+    if equation == BOLTZMANN:
+        chance = 1.0 - 2.0**d * eta / count
+        if not chance > 0.0 or 2.0 * gas.diameter > min(run.scene.container.lengths):
+            return None
+        return -count * math.log(chance), 0.0, "insertion among independent places"
+    value = theory.excess_chemical_potential(eta, d)
+    value += theory.insertion_finite_size_correction(eta, d, count)
+    return (
+        float(value),
+        float(theory.chemical_potential_uncertainty(eta, d)),
+        "Gibbs and Duhem, of this number",
+    )
+
+
+def temperature(run: Run) -> Expected | None:
+    """The same everywhere in equilibrium."""
+    if run.scene.faces or run.dissipates or run.scene.thermostat:
+        return None
+    return run.temperature, 0.0, "equilibrium"
+
+
+def density(run: Run, axis: int, edges: np.ndarray) -> Expected | None:
+    """(bins,) of equal particles, the same everywhere, or under gravity along the axis: by hydrostatics, of
+    points by the barometric law."""
+    scene, kinds = run.scene, run.scene.kinds
+    field = 0.0 if scene.gravity is None else scene.gravity[axis]
+    across = scene.gravity is not None and any(g for n, g in enumerate(scene.gravity) if n != axis)
+    equal = scene.alike and not any(kind.fixed for kind in kinds)
+    if not equal or scene.walls or scene.faces or across or not (field or run.periodic[axis]):
+        return None
+    if field and (run.dissipates or run.followed or not run.temperature > 0.0):
+        return None  # in no equilibrium, or of unknown temperature
+    if not field:
+        return scene.number_density, 0.0, "uniform"
+    return _stratified(run, axis, edges, field)
+
+
+def _stratified(run: Run, axis: int, edges: np.ndarray, field: float) -> Expected | None:
+    """(bins,) the density of equal particles under gravity along an axis."""
+    scene, kind = run.scene, run.scene.kinds[0]
+    lower, upper = scene.reach(kind.radius)
+    z = np.linspace(lower[axis], upper[axis], 2001)
+    area = scene.container.volume / scene.container.lengths[axis]
+    weight = kind.mass * abs(field) / run.temperature
+    if equation_of(run) == BOLTZMANN:
+        found = run.count / area * theory.ideal_profile(z - z[0], z[-1] - z[0], weight)
+        source = "Boltzmann equation, barometric law"
+    else:
+        try:
+            found = theory.hydrostatic_profiles(
+                z, [run.count / area], [weight], run.dimension, 2.0 * kind.radius
+            )[0]
+        except ValueError:  # denser than theory goes
+            return None
+        source = "hydrostatics, local equation of state"
+    total = np.concatenate([[0.0], np.cumsum(0.5 * (found[1:] + found[:-1]) * np.diff(z))])
+    if field > 0.0:
+        total = total[-1] - total[::-1]
+    share = np.diff(np.interp(edges, z, total))
+    return share / np.diff(edges), np.nan, source

@@ -1,0 +1,126 @@
+"""Motion and transport: displacements, diffusion, viscosities and conductivity."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.analysis import bulk
+from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
+from gaspart.analysis.expected.run import OF_NUMBER, SOURCES, Expected, bias_of, equation_of
+from gaspart.analysis.run import Run
+from gaspart.engines.dsmc import rates
+from gaspart.scene.gas import Gas
+
+
+def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) -> Expected | None:
+    """(lag,) by an exponential velocity correlation; axes: along each of them."""
+    gas = None if run.followed else run.moving_fluid
+    if gas is None:
+        return None
+    equation = equation_of(run)
+    contact = bulk.contact_value(gas, equation)
+    curve = theory.enskog_mean_squared_displacement(time, **gas.parameters, contact=contact)
+    source = SOURCES[equation]
+    return curve / (run.dimension if axes else 1), math.nan, f"{source}, exponential velocity correlation"
+
+
+def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
+    """(lag,) with the exact decay at the start."""
+    gas = None if run.followed else run.moving_fluid
+    if gas is None:
+        return None
+    equation = equation_of(run)
+    rate = float(theory.velocity_decay_rate(**gas.parameters, contact=bulk.contact_value(gas, equation)))
+    source = SOURCES[equation]
+    return gas.temperature / gas.mass * np.exp(-rate * time), math.nan, f"{source}, exact initial decay"
+
+
+def diffusion(run: Run) -> Expected | None:
+    """D of spheres in a periodic cube; see `diffusion_in_cube`."""
+    gas, sides = run.moving_fluid, run.scene.container.lengths
+    if gas is None or np.ptp(sides) > 1e-6 * sides[0]:
+        return None
+    return diffusion_in_cube(gas, sides[0], equation_of(run), bias_of(run, "paths"))
+
+
+def diffusion_in_cube(gas: Gas, side: float, equation: str, bias: float = 0.0) -> Expected | None:
+    """D of spheres in a periodic cube: of those that touch Erpenbeck and Wood's, less the shift of Yeh and
+    Hummer, half of which is its uncertainty.
+
+    That of a kinetic equation does not depend on their number; half of such a shift, by modes of the flow in
+    the container that the equation does not have, and the bias of the engine are its uncertainty. None for
+    discs, and spheres denser than the fluid.
+    """
+    if gas.dimension == 2 or gas.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
+        return None
+    if equation == EXACT:
+        value, error = theory.diffusion_in_cube(gas.packing_fraction, side, **gas.particle)
+        return value, error, "Erpenbeck and Wood, Yeh and Hummer"
+    value = bulk.diffusion(gas, equation)
+    density = float(theory.number_density(gas.packing_fraction, 3, gas.diameter))
+    carried = bulk.shear_viscosity(gas, equation) + gas.mass * density * value
+    shift = float(theory.yeh_hummer(side, carried, gas.temperature))
+    return value, math.hypot(0.5 * shift, bias * value), SOURCES[equation]
+
+
+def mutual_diffusion(run: Run) -> Expected | None:
+    """Enskog's in the first approximation, with the contact values of the equation."""
+    kinds, eta, d = run.scene.species, run.scene.packing_fraction, run.dimension
+    if not all(kind.alike for kind in kinds) or eta > theory.HIGHEST_PACKING_FRACTION[d]:
+        return None
+    equation, contact = equation_of(run), None
+    diameters, counts = [2.0 * kind.radius for kind in kinds], [kind.count for kind in kinds]
+    if equation == BOLTZMANN:
+        contact = np.ones((2, 2))
+    elif equation == ENSKOG:
+        densities = np.array(counts) / run.scene.container.volume
+        contact = rates.contact_values(densities, 0.5 * np.array(diameters), d)
+    masses = [kind.mass for kind in kinds]
+    value = theory.enskog_mutual_diffusion(
+        eta, d, diameters, counts, temperature=run.temperature, masses=masses, contact=contact
+    )
+    source = SOURCES[equation]
+    return value, math.nan, f"{source}, first approximation"
+
+
+def _transport(name: str, run: Run, temperature: float) -> Expected | None:
+    """A transport coefficient by fluctuations of N particles at fixed energy.
+
+    Those of a dilute gas are lower than of an infinite one by `theory.transport_finite_size_factor`.
+    """
+    gas, equation = run.fluid, equation_of(run)
+    if gas is None or not temperature > 0.0:
+        return None
+    value = getattr(bulk, name)(replace(gas, temperature=temperature), equation)
+    if not math.isfinite(value):
+        return None
+    kind = {"shear_viscosity": "viscosity", "thermal_conductivity": "conductivity"}.get(name)
+    if equation == EXACT:
+        measured = name == "shear_viscosity" and gas.dimension == 3
+        error = theory.VISCOSITY_RATIO_UNCERTAINTY * value if measured else math.nan
+        return value, error, f"Enskog{', and the ratio measured in a dense gas' if measured else ''}"
+    if kind:
+        value *= theory.transport_finite_size_factor(gas.count, gas.dimension, kind)
+    return value, value * bias_of(run, "fluxes"), f"{SOURCES[equation]}, {OF_NUMBER}"
+
+
+shear_viscosity_at_rest = partial(_transport, "shear_viscosity")
+bulk_viscosity = partial(_transport, "bulk_viscosity")
+thermal_conductivity = partial(_transport, "thermal_conductivity")
+
+
+def shear_viscosity(run: Run, temperature: float) -> Expected | None:
+    """By fluctuations; of a sheared gas by its response to a small rate."""
+    if run.scene.shear_rate is None:
+        return shear_viscosity_at_rest(run, temperature)
+    gas, equation = replace(run.scene, faces={}).gas, equation_of(run)
+    if gas is None or gas.packing_fraction > theory.HIGHEST_PACKING_FRACTION[gas.dimension]:
+        return None
+    value = float(bulk.shear_viscosity(replace(gas, temperature=temperature), equation))
+    source = SOURCES[equation]
+    return value, math.nan, f"{source}, of a small shear rate"
