@@ -20,6 +20,7 @@ Selection = Mapping[str, Any]
 GROUPS = 16
 """Groups of particles whose scatter is an uncertainty."""
 SLIDING = "this observable is not defined where images of the particles slide"
+DISCS = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
 _NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and those around it in a crystal
 
 
@@ -46,7 +47,7 @@ def _periodic(scene: Scene, rule: str) -> None:
 def walled(scene: Scene, selection: Selection) -> None:
     """A wall of the container."""
     if not scene.container.walls:
-        rule = "has no walls: measure Z (compressibility_factor)"
+        rule = "has no walls: measure compressibility_factor (Z)"
         raise SceneError("container.boundary", scene.container.boundary, rule)
 
 
@@ -148,8 +149,7 @@ def free_axis(scene: Scene, selection: Selection) -> None:
 def no_lasting_discs(scene: Scene, selection: Selection) -> None:
     """Spheres, or discs whose momentum does not last."""
     if scene.dimension == 2 and any(scene.conserved_axes):
-        rule = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
-        raise SceneError("container.lengths", scene.container.lengths, rule)
+        raise SceneError("container.lengths", scene.container.lengths, DISCS)
 
 
 def two_species(scene: Scene, selection: Selection) -> None:

@@ -6,14 +6,15 @@ Its uncertainty is the scatter of groups of particles, which are taken as indepe
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
-from gaspart import theory
-from gaspart.analysis.motion import GROUPS, Groups, axes_of, chosen_of, groups_of, stride_of
+from gaspart.analysis.conditions import DISCS
+from gaspart.analysis.expected.described import described
+from gaspart.analysis.motion import Groups, axes_of, groups_of, stride_of
 from gaspart.analysis.observable import Observable, observable
-from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.observables import require_defined
+from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 
@@ -39,13 +40,8 @@ def diffusion_coefficient(
     so that there is no D; and for runs that are too short, or have too few frames.
     """
     with measured(source, start) as run:
-        if not run.periodic.any():
-            rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
-            raise SceneError("container.boundary", run.scene.container.boundary, rule)
-        require_spheres(run, run.conserved)
-        chosen = chosen_of(run, species, None)
-        if len(chosen) < GROUPS:
-            raise SceneError("species", species, f"an error needs {GROUPS} moving particles or more")
+        require_defined("D", run.scene, species=species)
+        chosen = selected(run, species, None)
         stride = stride_of(run)
         lags = lags_of_slopes(run, stride)
         lasting = _lasting_momentum(run, lags[1] * stride)
@@ -56,19 +52,13 @@ def diffusion_coefficient(
             slopes, along = slopes.mean(axis=2), {}
         _require_constant(slopes)
         values, errors = means_of(slopes[:, 1])
-        about: dict[str, Any] = {
-            "units": "length^2 / time",
-            "long_name": "diffusion coefficient D",
-            **_theory_of_d(run),
-        }
-        return observable("diffusion_coefficient", along, values, errors, **about)
+        return observable("diffusion_coefficient", along, values, errors, **described("D", run))
 
 
 def require_spheres(run: Run, lasting: np.ndarray) -> None:
     """Raise SceneError for discs whose total momentum lasts along an axis."""
     if run.dimension == 2 and lasting.any():
-        rule = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
-        raise SceneError("container.lengths", run.scene.container.lengths, rule)
+        raise SceneError("container.lengths", run.scene.container.lengths, DISCS)
 
 
 def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
@@ -127,13 +117,3 @@ def _require_constant(slopes: np.ndarray) -> None:
             f"before {LINEAR_FROM:g} collisions to {late[n]:.3g} after them; measure msd"
         )
         raise SceneError("D", "not constant", rule)
-
-
-def _theory_of_d(run: Run) -> dict[str, Any]:
-    gas, sides = run.moving_fluid, run.scene.container.lengths
-    if gas is None or gas.dimension == 2 or np.ptp(sides) > 1e-6 * sides[0]:
-        return {}
-    if gas.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
-        return {}
-    expected = theory.diffusion_in_cube(gas.packing_fraction, sides[0], **gas.particle)
-    return {"theory": expected, "source": "Erpenbeck and Wood, Yeh and Hummer"}

@@ -18,10 +18,11 @@ from itertools import product
 
 import numpy as np
 
-from gaspart import theory
+from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, scalar
+from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES
-from gaspart.analysis.run import Run, Source, measured, require_periodic
+from gaspart.analysis.run import Source, measured
 from gaspart.errors import SceneError
 from gaspart.scene.gas import plain_gas
 from gaspart.scene.validation import count_of
@@ -129,7 +130,7 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
     """
     places = count_of("places", places, least=1)
     with measured(source, start) as run:
-        require_periodic(run)
+        require_defined("chemical_potential", run.scene)
         gas = plain_gas(run.scene)
         if run.followed:
             raise SceneError("follow", run.data.sizes["atom"], f"needs all {run.count} particles in the file")
@@ -143,9 +144,8 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
             raise SceneError("packing_fraction", gas.packing_fraction, rule)
         time = run.time[::stride]
         edges = np.append(time, 2.0 * time[-1] - time[-2])
-        about = {"units": "1", "long_name": "excess chemical potential over k_B T", **_theory(run)}
         series = -np.log(chance) - (found.probability / chance - 1.0)  # to first order
-        result = scalar("chemical_potential", series, edges, **about)
+        result = scalar("chemical_potential", series, edges, **described("chemical_potential", run))
         return result.assign(_counts(found, chance, float(result.error)))
 
 
@@ -159,14 +159,3 @@ def _counts(found: Insertions, chance: float, relative: float) -> dict[str, tupl
         "resolution": (found.resolution, "probability that one success would have been"),
     }
     return {name: ((), value, {"units": "1", "long_name": text}) for name, (value, text) in numbers.items()}
-
-
-def _theory(run: Run) -> dict:
-    gas = run.fluid
-    if gas is None:
-        return {}
-    eta, dimension = gas.packing_fraction, gas.dimension
-    value = theory.excess_chemical_potential(eta, dimension)
-    value += theory.insertion_finite_size_correction(eta, dimension, gas.count)
-    known = float(value), float(theory.chemical_potential_uncertainty(eta, dimension))
-    return {"theory": known, "source": "Gibbs and Duhem, of this number"}

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
-from gaspart import theory
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
-from gaspart.analysis.run import Run, Source, measured, require_collisions, require_elastic, require_periodic
+from gaspart.analysis.observables import require_defined
+from gaspart.analysis.run import Run, Source, measured, require_collisions
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
-from gaspart.scene.gas import Mixture
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
 from gaspart.trajectory.pairs import pair_names, pairs_of
-
-_SOURCE = "contact values of Santos, Yuste and Lopez de Haro 2002, an approximation"
 
 
 def pair_collision_rates(source: Source, start: float | None = None) -> Observable:
@@ -29,9 +26,8 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
     contact values. Raises SceneError for single particles, too few frames, and a run without `pairs`.
     """
     with measured(source, start, pairs=True) as run:
-        found = estimates_of(run, rate_scales(run))
-        about: dict[str, Any] = {"units": "1 / time", "long_name": "collisions of a particle per time"}
-        return _of_pairs("pair_collision_rate", run, found, about, theory.mixture_collision_rates)
+        require_defined("pair_rates", run.scene)
+        return _of_pairs("pair_rates", "pair_collision_rate", run, estimates_of(run, rate_scales(run)))
 
 
 def contact_values(source: Source, start: float | None = None) -> Observable:
@@ -49,8 +45,7 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
     """
     with measured(source, start, pairs=True) as run:
         found = estimates_of(run, contact_scales(run))
-        about: dict[str, Any] = {"units": "1", "long_name": "pair distribution at contact"}
-        return _of_pairs("contact_value", run, found, about, theory.mixture_contact_values)
+        return _of_pairs("contact_values", "contact_value", run, found)
 
 
 def rate_scales(run: Run) -> np.ndarray:
@@ -62,17 +57,8 @@ def rate_scales(run: Run) -> np.ndarray:
 
 def contact_scales(run: Run) -> np.ndarray:
     """(pairs,) collisions per time over the contact value. Raises SceneError; see `contact_values`."""
-    require_periodic(run)
-    require_elastic(run)
+    require_defined("contact_values", run.scene)
     scene, d = run.scene, run.dimension
-    for n, kind in enumerate(scene.species):
-        if not kind.alike:
-            rule = "a contact value is that of two sizes; measure pair_collision_rates"
-            raise SceneError(f"species[{n}].polydispersity", kind.polydispersity, rule)
-        if kind.fixed:
-            raise SceneError(
-                f"species[{n}].fixed", True, "contact values follow from the rates of free flight"
-            )
     scales = []
     for i, j in pairs_of(scene):
         one, other = scene.species[i], scene.species[j]
@@ -100,25 +86,8 @@ def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
     ]
 
 
-def _of_pairs(
-    name: str, run: Run, found: list[Estimate], about: dict[str, Any], predicted: Any
-) -> Observable:
+def _of_pairs(observed: str, name: str, run: Run, found: list[Estimate]) -> Observable:
+    """The result of an observable of pairs, `observed`, whose variable has a name."""
     along = {"pair": (np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"})}
     values, errors = np.array([[one.value, one.error] for one in found]).T
-    mixture = run.mixture
-    if mixture is not None and len(mixture.counts) == len(run.scene.species):
-        properties = {}
-        if name == "pair_collision_rate":
-            properties = {"temperature": run.temperature, "masses": mixture.masses}
-        expected = predicted(*mixture.sizes, **properties)
-        about |= {"theory": ([expected[pair] for pair in pairs_of(run.scene)], np.nan), "source": _SOURCE}
-    return observable(name, along, values, errors, **about)
-
-
-def theory_of_z(mixture: Mixture) -> dict[str, Any]:
-    """What `compressibility_factor` compares a mixture with."""
-    value = theory.mixture_compressibility_factor(*mixture.sizes)
-    eta, d, count = mixture.packing_fraction, mixture.dimension, sum(mixture.counts)
-    value += float(theory.finite_size_correction(eta, d, count, "canonical"))
-    source = "Santos, Yuste and Lopez de Haro 2002, an approximation, corrected for the number of particles"
-    return {"theory": (value, np.nan), "source": source}
+    return observable(name, along, values, errors, **described(observed, run))

@@ -7,24 +7,22 @@ particles, which are taken as independent.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from gaspart import theory
+from gaspart.analysis.conditions import GROUPS
 from gaspart.analysis.correlations import accumulated_mean, autocorrelation, correlate
+from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable
+from gaspart.analysis.observables import require_defined
 from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
-from gaspart.scene.gas import Gas
 from gaspart.scene.validation import count_of
 
-GROUPS = 16
-"""Number of groups of particles, whose scatter gives the uncertainty."""
 MOST_FRAMES = 1000
 """That are correlated; of a longer run, every second or third ..."""
 _SQUARES, _PRODUCTS = "squared_displacement_sum", "velocity_product_sum"
@@ -64,10 +62,11 @@ def mean_squared_displacement(
     periodic faces.
     """
     with measured(source, start) as run:
+        require_defined("msd", run.scene, species=species, particles=particles)
         if _accumulates(run, _SQUARES, lags, species, particles) and not per_axis:
             time, values, errors = accumulated_mean(run, _SQUARES)
             return _displacement(run, time, values, errors)
-        groups = groups_of(run, chosen=chosen_of(run, species, particles))
+        groups = groups_of(run, chosen=selected(run, species, particles))
         number = _lags(groups, lags)
         axes = [slice(k, k + 1) for k in range(run.dimension)] if per_axis else [slice(None)]
         found = np.array(
@@ -95,10 +94,11 @@ def velocity_autocorrelation(
     SceneError for fewer than 16 moving particles, and frames at uneven times.
     """
     with measured(source, start) as run:
+        require_defined("vacf", run.scene, species=species, particles=particles)
         if _accumulates(run, _PRODUCTS, lags, species, particles):
             time, values, errors = accumulated_mean(run, _PRODUCTS)
             return _autocorrelation(run, time, values / run.dimension, errors / run.dimension)
-        groups = groups_of(run, paths=False, chosen=chosen_of(run, species, particles))
+        groups = groups_of(run, paths=False, chosen=selected(run, species, particles))
         number = _lags(groups, lags)
         found = np.array([autocorrelation(velocity, number) for velocity in groups.velocities])
         return _autocorrelation(run, groups.interval * np.arange(number), *means_of(found))
@@ -113,48 +113,15 @@ def _accumulates(
 
 def _displacement(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:
     """The mean-squared displacement (lag,) or (axis, lag), with theory."""
-    expected: dict[str, Any] = {}
-    if gas := _fluid(run):
-        curve = theory.enskog_mean_squared_displacement(time, **gas.parameters)
-        curve = curve / run.dimension if values.ndim > 1 else curve
-        expected = {"theory": (curve, math.nan), "source": "Enskog, exponential velocity correlation"}
-    about: dict[str, Any] = {"units": "length^2", "long_name": "mean-squared displacement", **expected}
+    about = described("msd", run, time, axes=values.ndim > 1)
     along = {**(axes_of(run) if values.ndim > 1 else {}), **_lag(time)}
     return observable("mean_squared_displacement", along, values, errors, **about)
 
 
 def _autocorrelation(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:
     """The velocity autocorrelation (lag,), with theory."""
-    expected: dict[str, Any] = {}
-    if gas := _fluid(run):
-        rate = float(theory.velocity_decay_rate(**gas.parameters))
-        curve = gas.temperature / gas.mass * np.exp(-rate * time)
-        expected = {"theory": (curve, math.nan), "source": "Enskog, exact initial decay"}
-    about: dict[str, Any] = {
-        "units": "length^2 / time^2",
-        "long_name": "velocity autocorrelation",
-        **expected,
-    }
+    about = described("vacf", run, time)
     return observable("velocity_autocorrelation", _lag(time), values, errors, **about)
-
-
-def _fluid(run: Run) -> Gas | None:
-    """The fluid at the temperature of the run, None where the file lacks some of its particles."""
-    return None if run.followed else run.moving_fluid
-
-
-def chosen_of(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:
-    """`selected`; of all particles 16 or more must move."""
-    if species is None and particles is None:
-        _requiregroups_of(run)
-    return selected(run, species, particles)
-
-
-def _requiregroups_of(run: Run) -> None:
-    """Raise SceneError for too few moving particles."""
-    count = int(run.moving.sum())
-    if count < GROUPS:
-        raise SceneError("count", count, f"an error needs {GROUPS} moving particles or more")
 
 
 def axes_of(run: Run, chosen: np.ndarray | slice = slice(None)) -> dict[str, Any]:

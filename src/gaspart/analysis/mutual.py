@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any
-
 import numpy as np
 
-from gaspart import theory
-from gaspart.analysis.diffusion import lags_of_slopes, require_spheres
+from gaspart.analysis.diffusion import lags_of_slopes
+from gaspart.analysis.expected.described import described
 from gaspart.analysis.motion import unwrapped
 from gaspart.analysis.observable import Observable, scalar
-from gaspart.analysis.run import Run, Source, measured, require_elastic, require_periodic
-from gaspart.errors import SceneError
+from gaspart.analysis.observables import require_defined
+from gaspart.analysis.run import Run, Source, measured
 
 
 def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
@@ -35,23 +32,15 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
     which have no such coefficient, frames too far apart, and runs that are too short.
     """
     with measured(source, start) as run:
-        kinds = run.scene.species
-        if len(kinds) != 2 or run.scene.particles:
-            raise SceneError("species", len(run.scene.kinds), "mutual diffusion is that of two species")
-        if not run.moving.all():
-            raise SceneError("species", "fixed", "mutual diffusion is that of two species that move")
-        require_periodic(run)
-        require_elastic(run)
-        require_spheres(run, run.conserved)
+        require_defined("mutual_diffusion", run.scene)
         _, early, late = lags_of_slopes(run)
         apart = _separation(run)
         rise = _squares(apart, late) - _squares(apart, early)[: len(apart) - late]
         lag = run.interval * (late - early)
-        first, second = (kind.count / run.count for kind in kinds)
+        first, second = (kind.count / run.count for kind in run.scene.species)
         series = first * second * run.count / (2.0 * run.dimension * lag) * rise
         edges = run.time[: len(series) + 1]
-        about: dict[str, Any] = {"units": "length^2 / time", "long_name": "mutual diffusion coefficient"}
-        return scalar("mutual_diffusion", series, edges, **about, **_theory(run))
+        return scalar("mutual_diffusion", series, edges, **described("mutual_diffusion", run))
 
 
 def _separation(run: Run) -> np.ndarray:
@@ -63,19 +52,3 @@ def _separation(run: Run) -> np.ndarray:
 def _squares(path: np.ndarray, lag: int) -> np.ndarray:
     """(T - lag,) the squared change over a lag, from each time on."""
     return ((path[lag:] - path[:-lag]) ** 2).sum(axis=1)
-
-
-def _theory(run: Run) -> dict[str, Any]:
-    """Enskog's value, where the equation of state of mixtures is known."""
-    kinds, eta, d = run.scene.species, run.scene.packing_fraction, run.dimension
-    if not all(kind.alike for kind in kinds) or eta > theory.HIGHEST_PACKING_FRACTION[d]:
-        return {}
-    value = theory.enskog_mutual_diffusion(
-        eta,
-        d,
-        [2.0 * kind.radius for kind in kinds],
-        [kind.count for kind in kinds],
-        temperature=run.temperature,
-        masses=[kind.mass for kind in kinds],
-    )
-    return {"theory": (value, math.nan), "source": "Enskog, first approximation"}

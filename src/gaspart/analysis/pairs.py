@@ -5,17 +5,15 @@ Uncertainties are the scatter of consecutive stretches of the run.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from gaspart import theory
+from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable
-from gaspart.analysis.run import Run, Source, measured, require_periodic
+from gaspart.analysis.observables import require_defined
+from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import means_of
 from gaspart.analysis.waves import factors, in_shells, shells_of
 from gaspart.errors import SceneError
-from gaspart.scene.gas import Gas
 from gaspart.scene.validation import count_of, number
 
 STRETCHES = 16
@@ -46,7 +44,7 @@ def rdf(
 
     bins = count_of("bins", bins, least=2)
     with measured(source, start) as run:
-        require_periodic(run)
+        require_defined("rdf", run.scene)
         stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
         if stored < 2:
             raise SceneError("count", stored, "a pair needs two particles")
@@ -58,13 +56,8 @@ def rdf(
         found = [radial_distribution(part, lengths, bins, end) for part in np.array_split(frames, STRETCHES)]
         values, errors = means_of(stored / (stored - 1.0) * np.array([g for _, g in found], dtype=float))
         distance = np.asarray(found[0][0], dtype=float)
-        expected: dict[str, Any] = {}
-        if gas := run.fluid:
-            near = (distance > diameter) & (distance < diameter + 1.5 * end / bins)
-            at_contact = np.where(near, _contact_value(gas), np.nan)
-            expected = {"theory": (at_contact, np.nan), "source": "g at contact, from Z of this number"}
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
-        about: dict[str, Any] = {"units": "1", "long_name": "radial distribution g(r)", **expected}
+        about = described("rdf", run, distance, end / bins)
         return observable("rdf", along, values, errors, **about)
 
 
@@ -83,7 +76,7 @@ def structure_factor(
     """
     bins = count_of("bins", bins, least=2)
     with measured(source, start) as run:
-        require_periodic(run)
+        require_defined("structure_factor", run.scene)
         stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
         if run.followed:
             raise SceneError("follow", stored, f"needs all {run.count} particles in the file")
@@ -100,23 +93,9 @@ def structure_factor(
             for part in np.array_split(frames, STRETCHES)
         ])  # fmt: skip
         values, errors = means_of(found)
-        expected: dict[str, Any] = {}
-        gas = run.fluid
-        if gas and gas.dimension == 3:
-            law = theory.verlet_weis_structure_factor(k * gas.diameter, gas.packing_fraction)
-            expected = {"theory": (law, np.nan), "source": "Verlet and Weis"}
         along = {"wave_number": (k, {"units": "1 / length", "long_name": "wave number"})}
-        about: dict[str, Any] = {"units": "1", "long_name": "structure factor S(k)", **expected}
+        about = described("structure_factor", run, k)
         return observable("structure_factor", along, values, errors, **about)
-
-
-def _contact_value(gas: Gas) -> float:
-    """g at contact of N particles of a fluid, of N (N - 1) / 2 pairs: from Z = 1 + 2^(d-1) eta g (N - 1) / N,
-    corrected to first order in 1/N."""
-    eta, d, count = gas.packing_fraction, gas.dimension, gas.count
-    excess = theory.compressibility_factor(eta, d) - 1.0
-    excess += theory.finite_size_correction(eta, d, count, "canonical")
-    return float(excess / (2.0 ** (d - 1) * eta) * count / (count - 1.0))
 
 
 def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:

@@ -2,21 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any
-
 import numpy as np
 
-from gaspart import theory
-from gaspart.analysis.mixtures import theory_of_z
+from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable, scalar
-from gaspart.analysis.run import (
-    Run,
-    Source,
-    measured,
-    require_collisions,
-    require_elastic,
-)
+from gaspart.analysis.observables import require_defined
+from gaspart.analysis.run import Run, Source, measured, require_collisions
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.trajectory.amber import face_names
@@ -36,29 +27,11 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
     Raises SceneError for walls, fixed particles, contacts that lose energy, too few frames, and no collision.
     """
     with measured(source, start) as run:
-        if not run.periodic.all():
-            rule = "Z needs a periodic container; between walls measure pressure (wall_pressure)"
-            raise SceneError("container.boundary", run.scene.container.boundary, rule)
-        require_elastic(run)
-        if not run.moving.all():
-            raise SceneError("species.fixed", True, "the virial of fixed particles is not a pressure")
+        require_defined("Z", run.scene)
         require_collisions(run)
         scale = run.dimension * run.count * run.temperature
         z = 1.0 + run.increments("virial_sum") / (scale * np.diff(run.time))
-        about: dict[str, Any] = {"units": "1", "long_name": "compressibility factor Z"}
-        return scalar("compressibility_factor", z, run.time, **about, **_theory_of_z(run))
-
-
-def _theory_of_z(run: Run) -> dict[str, Any]:
-    gas = run.moving_fluid
-    if gas is None:
-        mixture = run.mixture if run.scene.gas is None else None
-        return theory_of_z(mixture) if mixture else {}
-    eta, d = gas.packing_fraction, gas.dimension
-    value = float(theory.compressibility_factor(eta, d))
-    value += float(theory.finite_size_correction(eta, d, run.count, "canonical"))
-    source = "reference equation of state of the fluid, corrected for the number of particles"
-    return {"theory": (value, float(theory.compressibility_uncertainty(eta, d))), "source": source}
+        return scalar("compressibility_factor", z, run.time, **described("Z", run))
 
 
 def wall_pressure(source: Source, start: float | None = None) -> Observable:
@@ -73,7 +46,7 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     particles rest in a scene with obstacles, which may carry them.
     """
     with measured(source, start) as run:
-        _require_walls(run)
+        require_defined("pressure", run.scene)
         blocks = min(_BLOCKS, len(run.time) - 1)
         if blocks < 4:
             raise SceneError("frames", len(run.time), "an error needs 5 or more")
@@ -85,22 +58,14 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
             {"face": (faces, {"long_name": "face of the container"})},
             values + series[0],
             errors,
-            units="energy / length^d",
-            long_name="pressure",
-            **_theory_at_walls(run),
+            **described("pressure", run, _touched(run)),
         )
-
-
-def _require_walls(run: Run) -> None:
-    """Raise SceneError for a periodic container."""
-    if run.periodic.all():
-        raise SceneError("container.boundary", "periodic", "has no walls: measure compressibility_factor")
 
 
 def pressures_on_walls(run: Run, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Names (W,) of the faces that are walls, and the pressures on them (K, W) between the frames `ends`
     (K + 1,). Raises SceneError as `wall_pressure`."""
-    _require_walls(run)
+    require_defined("pressure", run.scene)
     d, touched = run.dimension, _touched(run)
     areas = np.repeat(touched.prod() / touched, 2)
     impulse = np.diff(run.data["wall_impulse"].values[ends, : 2 * d], axis=0)
@@ -152,23 +117,6 @@ def _touched(run: Run) -> np.ndarray:
     return np.subtract(upper, lower)
 
 
-def _theory_at_walls(run: Run) -> dict[str, Any]:
-    walled, lengths, touched = ~run.periodic, np.array(run.scene.container.lengths), _touched(run)
-    sides = lengths[walled]
-    gas = run.scene.gas
-    if gas is None or run.scene.centres_to_walls or np.ptp(sides) > 1e-9 * sides.max():
-        return {}
-    density = gas.count / float((touched / gas.diameter).prod())
-    try:
-        value, error = theory.wall_pressure(
-            sides[0] / gas.diameter, density, gas.count, gas.dimension, int(walled.sum())
-        )
-    except ValueError:  # denser than theory goes
-        return {}
-    unit = run.temperature / gas.diameter**gas.dimension
-    return {"theory": (value * unit, error * unit), "source": "fluid between hard walls"}
-
-
 def collision_rate(source: Source, start: float | None = None) -> Observable:
     """Collisions of one particle per time, 2 M / (N t) for M collisions of pairs; fixed particles do not
     count in N.
@@ -178,24 +126,8 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
     frames, without a collision, and if particles come to rest.
     """
     with measured(source, start, sheared=True) as run:
-        if not run.moving.any():
-            raise SceneError("species.fixed", True, "fixed particles do not collide")
+        require_defined("collision_rate", run.scene)
         refuse_rest(run, "touch others without a collision, so that there is no rate")
         require_collisions(run)
         rate = 2.0 * run.increments("collisions") / (run.moving.sum() * np.diff(run.time))
-        about: dict[str, Any] = {"units": "1 / time", "long_name": "collisions of a particle per time"}
-        return scalar("collision_rate", rate, run.time, **about, **_theory_of_rate(run))
-
-
-def _theory_of_rate(run: Run) -> dict[str, Any]:
-    gas = run.moving_fluid
-    if gas is None:
-        return {}
-    eta, d = gas.packing_fraction, gas.dimension
-    rate = float(theory.collision_rate(**gas.parameters))
-    # the run's temperature is that of d (N - 1) degrees of freedom, theory's factor is relative to d N
-    rate *= math.sqrt((run.count - 1) / run.count)
-    rate *= float(theory.collision_rate_finite_size_factor(eta, d, run.count))
-    z = float(theory.compressibility_factor(eta, d))
-    unsure = float(theory.compressibility_uncertainty(eta, d)) / (z - 1.0)
-    return {"theory": (rate, rate * unsure), "source": "Enskog's rate, exact in equilibrium"}
+        return scalar("collision_rate", rate, run.time, **described("collision_rate", run))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, fields, replace
@@ -13,6 +14,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.analysis.conditions import SLIDING
+from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, Mixture
 from gaspart.scene.scene import Scene
@@ -221,20 +224,6 @@ def selected(run: Run, species: int | None, particles: Sequence[int] | None) -> 
     return chosen
 
 
-def require_elastic(run: Run) -> None:
-    """Raise SceneError for a scene that loses energy, which is in no equilibrium."""
-    law = run.scene.restitution
-    if law is not None and law.normal < 1.0:
-        raise SceneError("restitution.normal", law.normal, "a gas that loses energy is in no equilibrium")
-
-
-def require_periodic(run: Run) -> None:
-    """Raise SceneError for a container with walls."""
-    if not run.periodic.all():
-        boundary = run.scene.container.boundary
-        raise SceneError("container.boundary", boundary, "this observable needs a periodic container")
-
-
 def require_collisions(run: Run) -> None:
     """Raise SceneError for a run whose measured part has none, so that nothing is known of their scatter."""
     if not run.increments("collisions").any():
@@ -272,7 +261,7 @@ def measured(
         part = data.isel(frame=slice(int(np.argmax(chosen)), None))
         scene = Scene.from_dict(parse_yaml(data.attrs["scene"]))
         if not sheared:
-            refuse_sheared(scene, "this observable is not defined where images of the particles slide")
+            refuse_sheared(scene, SLIDING)
         yield Run(scene, time[chosen], part)
 
 
@@ -307,5 +296,5 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
     along["pair_collisions"] = ("pair",)
     return xr.Dataset(
         {name: (("frame", *along.get(name, ())), values) for name, values in columns.items()},
-        attrs={"scene": dump_yaml(scene.to_dict())},
+        attrs={"scene": dump_yaml(scene.to_dict()), "engine": json.dumps(engine_to_dict(engine))},
     )

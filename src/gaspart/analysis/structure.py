@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from gaspart import theory
+from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable, scalar
+from gaspart.analysis.observables import having, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
-from gaspart.analysis.run import Run, Source, measured, require_periodic
+from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.scene.validation import choice, count_of
@@ -22,7 +22,6 @@ from gaspart.scene.validation import choice, count_of
 _POINTS = 2**14
 _RATIOS = {2: 1.32471795724474602596, 3: 1.22074408460575947536}
 """Whose powers give evenly spread points: x^(d + 1) = x + 1 (Roberts 2018)."""
-_NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and those around it in a crystal
 _CONSTANT = 1e-5  # relative change of an energy that is attributed to rounding
 FASTEST = 4.0
 """The histogram of speeds ends at this many thermal speeds sqrt(k_B T / m)."""
@@ -39,8 +38,7 @@ def speed_distribution(source: Source, bins: int = 40, start: float | None = Non
     """
     bins = count_of("bins", bins, least=2)
     with measured(source, start) as run:
-        if run.moving.sum() < STRETCHES:
-            raise SceneError("count", int(run.moving.sum()), f"an error needs {STRETCHES} moving particles")
+        require_defined("speeds", run.scene)
         masses, temperature = run.masses[run.moving], run.temperature
         if not temperature > 0.0:
             raise SceneError("temperature", temperature, "particles at rest have no distribution")
@@ -52,17 +50,11 @@ def speed_distribution(source: Source, bins: int = 40, start: float | None = Non
         groups = [speeds[:, first::STRETCHES] for first in range(STRETCHES)]
         found = np.array([np.histogram(part, edges)[0] / part.size / np.diff(edges) for part in groups])
         values, errors = means_of(found)
-        expected: dict[str, Any] = {}
-        if np.ptp(masses) == 0.0:
-            energy = squares.sum(axis=(1, 2))
-            fixed = np.ptp(energy) <= _CONSTANT * energy.mean()
-            freedoms = run.freedom if fixed else None
-            law = theory.maxwell_cdf(edges, run.dimension, temperature, masses[0], freedoms)
-            name = f"Maxwell's distribution{', of this number at fixed energy' if fixed else ''}"
-            expected = {"theory": (np.diff(law) / np.diff(edges), 0.0), "source": name}
+        energy = squares.sum(axis=(1, 2))
+        fixed = np.ptp(energy) <= _CONSTANT * energy.mean()
+        about = described("speeds", run, edges, masses[0] if np.ptp(masses) == 0.0 else None, fixed)
         middle = 0.5 * (edges[1:] + edges[:-1])
         along = {"speed": (middle, {"units": "length / time", "long_name": "speed"})}
-        about: dict[str, Any] = {"units": "time / length", "long_name": "density of speeds", **expected}
         return observable("speed_distribution", along, values, errors, **about)
 
 
@@ -81,11 +73,12 @@ def profile(
     particles under gravity along this axis, by hydrostatics with the fluid's equation of state; a uniform
     temperature in equilibrium. Raises SceneError for an unknown property or axis, and for too few frames.
     """
-    choice("of", of, ("density", "temperature"))
+    choice("of", of, having(function="profile"))
     bins = count_of("bins", bins, least=2)
     with measured(source, start) as run:
+        require_defined(of, run.scene, axis=axis)
         names = "xyz"[: run.dimension]
-        k = names.index(choice("axis", names[-1] if axis is None else axis, tuple(names)))
+        k = names.index(names[-1] if axis is None else axis)
         edges = np.linspace(0.0, run.scene.container.lengths[k], bins + 1)
         parts = np.array_split(np.arange(len(run.time)), min(STRETCHES, len(run.time)))
         if len(parts) < STRETCHES:
@@ -95,11 +88,9 @@ def profile(
         values, errors = means_of(samples - samples[0])  # no error of rounding where nothing moves
         values += samples[0]
         middle = 0.5 * (edges[1:] + edges[:-1])
-        expected = _theory_of_density(run, k, edges) if of == "density" else _theory_of_temperature(run)
+        about = described(of, run, *((k, edges) if of == "density" else ()))
         along = {"position": (middle, {"units": "length", "long_name": names[k]})}
-        units = f"1 / length^{run.dimension}" if of == "density" else "energy"
-        long_name = "number density" if of == "density" else "temperature"
-        return observable(of, along, values, errors, units=units, long_name=long_name, **expected)
+        return observable(of, along, values, errors, **about)
 
 
 def order_parameter(source: Source, start: float | None = None) -> Observable:
@@ -111,12 +102,10 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
     from gaspart.analysis.order import global_steinhardt, hexatic
 
     with measured(source, start) as run:
-        require_periodic(run)
+        require_defined("order", run.scene)
         if run.data.sizes["atom"] < run.count:
             rule = f"neighbours are among all {run.count} particles, which the file has not"
             raise SceneError("follow", run.data.sizes["atom"], rule)
-        if run.count < _NEIGHBOURHOOD[run.dimension]:
-            raise SceneError("count", run.count, f"needs {_NEIGHBOURHOOD[run.dimension]} particles or more")
         lengths = run.scene.container.lengths
         frames, time = chosen_frames(run, run.positions), chosen_frames(run, run.time)
         if run.dimension == 2:
@@ -124,7 +113,8 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
         else:
             series, name = [global_steinhardt(frame, lengths) for frame in frames], "Q_6"
         edges = np.append(time, 2.0 * time[-1] - time[-2])
-        about: dict[str, Any] = {"units": "1", "long_name": f"bond order {name}"}
+        about = described("order", run)
+        about["long_name"] += f" {name}"
         return scalar("order_parameter", np.array(series, dtype=float), edges, **about)
 
 
@@ -187,38 +177,3 @@ def _temperature(run: Run, axis: int, edges: np.ndarray, part: np.ndarray) -> np
     total = np.histogram(places, edges, weights=energy.ravel())[0]
     with np.errstate(invalid="ignore", divide="ignore"):
         return 2.0 * share * total / (run.dimension * count)
-
-
-def _theory_of_temperature(run: Run) -> dict[str, Any]:
-    if run.scene.faces or run.dissipates or run.scene.thermostat:
-        return {}
-    return {"theory": (run.temperature, 0.0), "source": "equilibrium"}
-
-
-def _theory_of_density(run: Run, axis: int, edges: np.ndarray) -> dict[str, Any]:
-    scene, kinds = run.scene, run.scene.kinds
-    field = 0.0 if scene.gravity is None else scene.gravity[axis]
-    across = scene.gravity is not None and any(g for n, g in enumerate(scene.gravity) if n != axis)
-    equal = scene.alike and not any(kind.fixed for kind in kinds)
-    if not equal or scene.walls or scene.faces or across or not (field or run.periodic[axis]):
-        return {}
-    if field and (run.dissipates or run.followed or not run.temperature > 0.0):
-        return {}  # in no equilibrium, or of unknown temperature
-    if not field:
-        return {"theory": (scene.number_density, 0.0), "source": "uniform"}
-    lower, upper = scene.reach(kinds[0].radius)
-    z = np.linspace(lower[axis], upper[axis], 2001)
-    down = z if field < 0.0 else z[::-1]
-    area = scene.container.volume / scene.container.lengths[axis]
-    weight = kinds[0].mass * abs(field) / run.temperature
-    try:
-        found = theory.hydrostatic_profiles(
-            z, [run.count / area], [weight], run.dimension, 2.0 * kinds[0].radius
-        )[0]
-    except ValueError:  # denser than theory goes
-        return {}
-    total = np.concatenate([[0.0], np.cumsum(0.5 * (found[1:] + found[:-1]) * np.diff(z))])
-    if down is not z:
-        total = total[-1] - total[::-1]
-    share = np.diff(np.interp(edges, z, total))
-    return {"theory": (share / np.diff(edges), np.nan), "source": "hydrostatics, local equation of state"}

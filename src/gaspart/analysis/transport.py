@@ -14,15 +14,13 @@ values the second holds exactly, with the impulses at collisions, at the times b
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from gaspart import theory
+from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable, scalar
+from gaspart.analysis.observables import require_defined
 from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
@@ -42,7 +40,7 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
     """
     with measured(source, start, sheared=True) as run:
         if run.scene.shear_rate is None:
-            return _coefficient(run, "shear", lag, theory.enskog_viscosity)
+            return _coefficient(run, "shear_viscosity", "shear", lag)
         return _response(run, lag)
 
 
@@ -53,7 +51,7 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
     makes the value too low by about 2 lag / T of it.
     """
     with measured(source, start) as run:
-        return _coefficient(run, "bulk", lag, theory.enskog_bulk_viscosity)
+        return _coefficient(run, "bulk_viscosity", "bulk", lag)
 
 
 def thermal_conductivity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
@@ -63,7 +61,7 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     contains that of diffusion.
     """
     with measured(source, start) as run:
-        return _coefficient(run, "heat", lag, theory.enskog_conductivity)
+        return _coefficient(run, "thermal_conductivity", "heat", lag)
 
 
 def pressure_tensor(source: Source, start: float | None = None) -> Observable:
@@ -74,25 +72,19 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     than 17 frames.
     """
     with measured(source, start, sheared=True) as run:
+        require_defined("pressure_tensor", run.scene)
         _stored(run)
         d, volume = run.dimension, math.prod(run.scene.container.lengths)
         rates = run.increments("stress_sum") / (volume * np.diff(run.time))[:, None, None]
         series = rates.reshape(len(rates), d * d).T
         means = [correlated_mean(one).estimate for one in series]
         names = np.array([a + b for a in "xyz"[:d] for b in "xyz"[:d]])
-        expected: dict[str, Any] = {}
-        if gas := run.fluid:
-            factor = theory.compressibility_factor(gas.packing_fraction, d)
-            pressure = gas.count / volume * _temperature(run) * factor * np.eye(d).ravel()
-            expected = {"theory": (pressure, math.nan), "source": "equation of state"}
         return observable(
             "pressure_tensor",
             {"component": (names, {"long_name": "component"})},
             np.array([mean.value for mean in means]),
             np.array([mean.error for mean in means]),
-            units=f"mass / (length^{d - 2} time^2)",
-            long_name="pressure tensor",
-            **expected,
+            **described("pressure_tensor", run, _temperature(run)),
         )
 
 
@@ -121,41 +113,26 @@ def _response(run: Run, lag: float | None) -> Observable:
     scene, rate = run.scene, run.scene.shear_rate
     if lag is not None:
         raise SceneError("lag", lag, "is that of fluctuations at rest; a sheared gas responds without")
-    if not rate:
-        raise SceneError("shear_rate", rate, "gives no response")
+    require_defined("shear_viscosity", scene)
+    assert rate, "see `conditions.shears`"
     carried = run.increments("stress_sum")[:, 1, 0]
     viscosity = -carried / (rate * scene.container.volume * np.diff(run.time))
-    expected: dict[str, Any] = {}
-    if gas := replace(scene, faces={}).gas:
-        value = theory.enskog_viscosity(**replace(gas, temperature=run.temperature).parameters)
-        expected = {"theory": (float(value), math.nan), "source": "Enskog, of a small shear rate"}
-    public, symbol = _PUBLIC["shear"]
-    about: dict[str, Any] = {"units": f"mass length^{2 - run.dimension} / time", **expected}
-    return scalar(public, viscosity, run.time, long_name=f"shear viscosity {symbol}, response", **about)
+    about = described("shear_viscosity", run, run.temperature)
+    about["long_name"] += ", response"
+    return scalar("shear_viscosity", viscosity, run.time, **about)
 
 
-def _coefficient(run: Run, name: str, lag: float | None, enskog: Callable[..., Any]) -> Observable:
-    """A transport coefficient from the correlations of `trajectory.correlator.STRESS`."""
-    public, symbol = _PUBLIC[name]
+def _coefficient(run: Run, public: str, name: str, lag: float | None) -> Observable:
+    """A transport coefficient from the correlations of a flux, `name` in `trajectory.correlator.STRESS`."""
+    require_defined(public, run.scene)
     settings = _stored(run)
-    if name == "heat" and not run.scene.alike:
-        raise SceneError("species", len(run.scene.kinds), "the heat flux of a mixture contains diffusion")
     lags = _lags_until(settings, lag)
     running, slopes = (
         np.sum([form(run, part) for part in _PARTS.get(name, (name,))], axis=0)
         for form in (green_kubo, helfand)
     )
-    expected: dict[str, Any] = {}
-    if gas := run.fluid:
-        value = enskog(**replace(gas, temperature=_temperature(run)).parameters)
-        expected = {"theory": (float(value), math.nan), "source": "Enskog"}
-    d = run.dimension
-    units = f"1 / (length^{d - 2} time)" if name == "heat" else f"mass length^{2 - d} / time"
-    about: dict[str, Any] = {
-        "units": units,
-        "long_name": f"{public.replace('_', ' ')} {symbol}",
-        **expected,
-    }
+    about = described(public, run, _temperature(run))
+    units = about["units"]
     result = scalar(public, running[:, lags], run.time[-len(running) - 1 :], **about)
     time = settings.interval * np.arange(running.shape[1])
     result["lag"] = ("lag", time, {"units": "time", "long_name": "lag"})
@@ -168,11 +145,6 @@ def _coefficient(run: Run, name: str, lag: float | None, enskog: Callable[..., A
 
 
 _PARTS = {"shear": ("shear", "rotational")}
-_PUBLIC = {
-    "shear": ("shear_viscosity", "η"),
-    "bulk": ("bulk_viscosity", "ζ"),
-    "heat": ("thermal_conductivity", "κ"),
-}
 
 
 def _lags_until(settings: Correlations, lag: float | None) -> int:
