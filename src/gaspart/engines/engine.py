@@ -128,6 +128,10 @@ class Engine:
         depends on: "rates" of collisions, "paths" of particles, or "fluxes" of momentum and heat."""
         return 0.0
 
+    def cells_along(self, scene: Scene) -> int:
+        """The number of cells along an axis, the most, in which partners are drawn; 0 if none are drawn."""
+        return 0
+
     def check_features(self, scene: Scene) -> None:
         """Raise SceneError for features of a scene that this engine does not model, with those that do."""
         present = features(scene)

@@ -144,7 +144,7 @@ def _unmoved(way: np.ndarray, distance: float) -> str:
 
 
 def _diffusion(frames: Frames) -> Check:
-    """D of spheres by their mean-squared displacement against Enskog's theory and its corrections."""
+    """D of spheres by their mean-squared displacement against theory."""
     name = "diffusion coefficient D"
     if reason := why_not_speeds(frames) or why_not(frames):
         return Check(name, None, reason)
@@ -164,5 +164,6 @@ def _diffusion(frames: Frames) -> Check:
         return Check(name, None, "density or temperature is not uniform: not relaxed")
     if reason := why_not(used):
         return Check(name, None, reason)
-    basis = f"Erpenbeck and Wood, Yeh and Hummer; {groups_of(used)} groups of particles"
-    return compared(name, diffusion(used), Estimate(*expected_diffusion(used)), basis)
+    value, error, source = expected_diffusion(used)
+    basis = f"{source}; {groups_of(used)} groups of particles"
+    return compared(name, diffusion(used), Estimate(value, error), basis)

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.inspection.frames import Frames
 from gaspart.scene.container import Container
+from gaspart.scene.scene import Scene
 
 _SAME = 1e-6
 """Relative change of a container's side that is attributed to rounding."""
@@ -23,8 +25,9 @@ class Contents:
     identify them; lengths and origin (T, 3), a length of 0 for walls at an unknown distance; boundary (3,),
     a word for each axis; centred: the origin is the middle of the container; flat: two dimensions; plain:
     nothing but elastic contacts moves the particles, as far as the file states; isolated: the file states
-    that so it is; part: there are more particles; sampled: particles may overlap; resolution and
-    time_resolution: by how much a coordinate and a time may be off because of their type.
+    that so it is; part: there are more particles; sampled: particles may overlap; engine and scene: of a file
+    of gaspart; resolution and time_resolution: by how much a coordinate and a time may be off because of
+    their type.
     """
 
     positions: np.ndarray
@@ -44,6 +47,8 @@ class Contents:
     isolated: bool = False
     part: bool = False
     sampled: bool = False
+    engine: Engine | None = None
+    scene: Scene | None = None
     resolution: float = 0.0
     time_resolution: float = 0.0
 
@@ -97,6 +102,8 @@ def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
         isolated=contents.isolated and steady and alike,
         part=contents.part,
         sampled=contents.sampled,
+        engine=contents.engine,
+        scene=contents.scene,
         resolution=contents.resolution,
         masses=None if masses is None else masses[0],
         lengths_by_frame=sides if len(sides) > 1 else None,

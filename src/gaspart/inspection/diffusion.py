@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis.bulk import EXACT, collision_rate
 from gaspart.analysis.diffusion import linear_lags
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.expected.transport import diffusion_in_cube
 from gaspart.analysis.statistics import mean_of
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.samples import path, steps
@@ -56,10 +58,11 @@ def diffusion(frames: Frames) -> Estimate:
     return mean_of(np.array([part.mean() for part in np.array_split(rise, groups_of(frames))]))
 
 
-def expected_diffusion(frames: Frames) -> tuple[float, float]:
-    """D in this cube and its uncertainty: Enskog's, Erpenbeck and Wood's ratio, Yeh and Hummer's shift."""
-    gas = _gas(frames)
-    return theory.diffusion_in_cube(gas.packing_fraction, float(frames.lengths[0]), **gas.particle)
+def expected_diffusion(frames: Frames) -> tuple[float, float, str]:
+    """D in this cube, its uncertainty and source, by the equation of the engine, if the file states one."""
+    found = diffusion_in_cube(_gas(frames), float(frames.lengths[0]), frames.engine, frames.scene)
+    assert found is not None, "see `why_not`"
+    return found
 
 
 def _interval(frames: Frames) -> float:
@@ -75,5 +78,5 @@ def _gas(frames: Frames) -> Gas:
 
 def _lags(frames: Frames) -> tuple[int, int]:
     """Frames between which the rise is taken."""
-    rate = float(theory.collision_rate(**_gas(frames).parameters))
+    rate = collision_rate(_gas(frames), frames.engine.equation if frames.engine else EXACT)
     return linear_lags(rate, _interval(frames))[1:]

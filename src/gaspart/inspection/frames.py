@@ -8,8 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
+from gaspart.engines import Engine
 from gaspart.scene.gas import Gas
 from gaspart.scene.geometry import ball_volume
+from gaspart.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,8 @@ class Frames:
     is; plain: whether nothing but elastic contacts moves particles of one mass in a constant container, as
     far as the file knows; resolution: by how much a position may be off, as a length; isolated: whether the
     file states that it is plain; part: whether there are more particles than the file has; sampled: whether
-    contacts were sampled, so that particles may overlap.
+    contacts were sampled, so that particles may overlap; engine and scene: by which a file of gaspart was
+    made.
     """
 
     positions: np.ndarray
@@ -39,6 +42,8 @@ class Frames:
     masses: np.ndarray | None = None
     lengths_by_frame: np.ndarray | None = None
     radii_by_frame: np.ndarray | None = None
+    engine: Engine | None = None
+    scene: Scene | None = None
 
     @property
     def count(self) -> int:

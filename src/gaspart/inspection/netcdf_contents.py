@@ -242,3 +242,4 @@ def _add_scene(contents: Contents, path: Path) -> None:
     contents.plain = contents.isolated = bool(elastic and quiet and free and alike)
     contents.part = recipe.stored_count < scene.count
     contents.sampled = not recipe.engine.keeps_apart
+    contents.engine, contents.scene = recipe.engine, recipe.scene

@@ -12,6 +12,7 @@ import math
 import numpy as np
 
 from gaspart.theory._arguments import Numbers, Values
+from gaspart.theory.modes import wave_vectors
 
 CELL_COEFFICIENTS = {
     "viscosity": 16.0 / (45.0 * math.pi),
@@ -43,3 +44,19 @@ def step_factor(quantity: str, step: Numbers) -> Values:
     """
     half = np.sqrt(3.0 * STEP_COEFFICIENTS[quantity]) * np.maximum(step, 1e-6)  # its limit, where it is 0 / 0
     return half / np.tanh(half)
+
+
+def diffusion_by_modes(
+    side: float, count: int, dimension: int, cells: int, path: float, spreading: float
+) -> float:
+    """What the fluctuating flow in a periodic cube or square adds to D of a kinetic equation.
+
+    (1 / d N) sum over k of (d - 1) / [(nu + D) k^2]: the time integral of the shear modes in `modes`, which
+    carry particles along (Donev, Bell, de la Fuente and Garcia, Phys. Rev. Lett. 106, 204501 (2011)). Wave
+    vectors k are those that `cells` along each side resolve, up to half of their number, and that are longer
+    waves than 2 pi mean free paths, `path`. With one cell there is none: partners are drawn wherever they
+    are. spreading: nu + D (length^2 / time). Hydrodynamics: an estimate, of which a half is uncertain.
+    """
+    squares, numbers = wave_vectors(dimension, int(min(0.5 * cells, 0.5 * side / (math.pi * path))))
+    waves = (2.0 * math.pi / side) ** 2 * squares
+    return float((dimension - 1.0) / (dimension * count * spreading) * (numbers / waves).sum())

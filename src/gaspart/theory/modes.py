@@ -84,6 +84,13 @@ def _sum(time: Numbers, eta: float, dimension: int, count: int, integrated: bool
     return sum_of_modes(time, modes, d, (density / count) ** (1.0 / d), integrated) / (d * count)
 
 
+def wave_vectors(dimension: int, most: int) -> tuple[np.ndarray, np.ndarray]:
+    """The squares of the vectors of whole numbers from -`most` to `most` but 0, and how many have each."""
+    axis = np.arange(-most, most + 1) ** 2
+    squares, numbers = np.unique(sum(np.meshgrid(*[axis] * dimension)), return_counts=True)
+    return squares[1:], numbers[1:]
+
+
 def sum_of_modes(
     time: Numbers,
     modes: Sequence[tuple[float, float, float]],
@@ -100,9 +107,8 @@ def sum_of_modes(
     weights, widths, speeds = np.array(modes).T
     unit = 2.0 * math.pi * inverse
     most = math.ceil(math.sqrt(_SMALLEST / (widths.min() * times.min())) / unit)
-    axis = np.arange(-most, most + 1) ** 2
-    squares, numbers = np.unique(sum(np.meshgrid(*[axis] * dimension)), return_counts=True)
-    inside = (squares > 0) & (squares <= most**2)
+    squares, numbers = wave_vectors(dimension, most)
+    inside = squares <= most**2
     squares, numbers = unit**2 * squares[inside], numbers[inside]
     rates = -np.multiply.outer(widths, squares) + 1j * np.multiply.outer(speeds, np.sqrt(squares))
     terms = np.exp(np.multiply.outer(times, rates))

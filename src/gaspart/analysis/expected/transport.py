@@ -11,10 +11,13 @@ import numpy as np
 from gaspart import theory
 from gaspart.analysis import bulk
 from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
-from gaspart.analysis.expected.run import OF_NUMBER, SOURCES, Expected, bias_of, equation_of
+from gaspart.analysis.expected.run import OF_NUMBER, SOURCES, Expected, bias_of, engine_of, equation_of
 from gaspart.analysis.run import Run
+from gaspart.engines import Engine
 from gaspart.engines.dsmc import rates
 from gaspart.scene.gas import Gas
+from gaspart.scene.scene import Scene
+from gaspart.theory.dsmc import diffusion_by_modes
 
 
 def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) -> Expected | None:
@@ -45,27 +48,29 @@ def diffusion(run: Run) -> Expected | None:
     gas, sides = run.moving_fluid, run.scene.container.lengths
     if gas is None or np.ptp(sides) > 1e-6 * sides[0]:
         return None
-    return diffusion_in_cube(gas, sides[0], equation_of(run), bias_of(run, "paths"))
+    return diffusion_in_cube(gas, sides[0], engine_of(run), run.scene)
 
 
-def diffusion_in_cube(gas: Gas, side: float, equation: str, bias: float = 0.0) -> Expected | None:
-    """D of spheres in a periodic cube: of those that touch Erpenbeck and Wood's, less the shift of Yeh and
-    Hummer, half of which is its uncertainty.
+def diffusion_in_cube(gas: Gas, side: float, engine: Engine | None, scene: Scene | None) -> Expected | None:
+    """D of spheres in a periodic cube, by the engine that moves them in a scene, by default an exact one.
 
-    That of a kinetic equation does not depend on their number; half of such a shift, by modes of the flow in
-    the container that the equation does not have, and the bias of the engine are its uncertainty. None for
-    discs, and spheres denser than the fluid.
+    Of spheres that touch it is Erpenbeck and Wood's, less the shift of Yeh and Hummer. Of a kinetic equation
+    it is that of this equation, and what the flow in the container adds, which its cells resolve. Half of
+    shift and addition, and the bias of the engine, are its uncertainty. None for discs, and spheres denser
+    than the fluid.
     """
     if gas.dimension == 2 or gas.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
         return None
-    if equation == EXACT:
+    if engine is None or scene is None or engine.equation == EXACT:
         value, error = theory.diffusion_in_cube(gas.packing_fraction, side, **gas.particle)
         return value, error, "Erpenbeck and Wood, Yeh and Hummer"
-    value = bulk.diffusion(gas, equation)
+    value = bulk.diffusion(gas, engine.equation)
     density = float(theory.number_density(gas.packing_fraction, 3, gas.diameter))
-    carried = bulk.shear_viscosity(gas, equation) + gas.mass * density * value
-    shift = float(theory.yeh_hummer(side, carried, gas.temperature))
-    return value, math.hypot(0.5 * shift, bias * value), SOURCES[equation]
+    spreading = bulk.shear_viscosity(gas, engine.equation) / (gas.mass * density) + value
+    path = float(theory.mean_speed(3, gas.temperature, gas.mass)) / bulk.collision_rate(gas, engine.equation)
+    added = diffusion_by_modes(side, gas.count, 3, engine.cells_along(scene), path, spreading)
+    error = math.hypot(0.5 * added, engine.bias(scene, "paths") * value)
+    return value + added, error, f"{SOURCES[engine.equation]}, with the flow that its cells resolve"
 
 
 def mutual_diffusion(run: Run) -> Expected | None:

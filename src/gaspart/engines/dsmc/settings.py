@@ -89,6 +89,13 @@ class DSMC(Engine):
         cells, step = cells_for(self, scene, found), step_for(self, scene, found)
         return {"viscosity_error": predicted_error(cells, step, scene, found)}
 
+    def cells_along(self, scene: Scene) -> int:
+        """Those of the axis with the most."""
+        from gaspart.engines.dsmc.defaults import cells_for
+        from gaspart.engines.dsmc.rates import rates
+
+        return max(cells_for(self, scene, rates(scene, self.model == "enskog")))
+
     def bias(self, scene: Scene, kind: str) -> float:
         """Of its cells and steps, by the literature, and of the collisions that the Enskog model loses."""
         from gaspart.engines.dsmc import defaults
