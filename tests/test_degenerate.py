@@ -9,7 +9,7 @@ import pytest
 from degenerate import SCENES, degenerate
 
 import gaspart as gp
-from gaspart.analysis.names import OBSERVABLES
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.cli import main
 
 DURATIONS = {"two frames": (0.2, 0.2), "few collisions": (4.0, 0.1)}

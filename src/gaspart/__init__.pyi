@@ -31,6 +31,7 @@ from gaspart.simulation import Simulation as Simulation
 from gaspart.state.compression import compress as compress
 from gaspart.state.state import State as State
 from gaspart.state.tally import Tally as Tally
+from gaspart.tradeoff.accuracy import Accuracy as Accuracy
 from gaspart.tradeoff.reached import reached_accuracy as reached_accuracy
 from gaspart.tradeoff.until import resume as resume
 from gaspart.tradeoff.until import run as run
@@ -38,6 +39,5 @@ from gaspart.trajectory.correlator import Correlations as Correlations
 from gaspart.trajectory.export import export as export
 from gaspart.trajectory.last_state import last_state as last_state
 from gaspart.trajectory.reading import open_trajectory as open_trajectory
-from gaspart.trajectory.until import Accuracy as Accuracy
 
 __version__: str

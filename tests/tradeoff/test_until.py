@@ -1,6 +1,7 @@
 """Runs that end when they are accurate."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -259,17 +260,34 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
         ({"until": None, "duration": 8.0, "sample_interval": None}, "sample_interval = None: must be given"),
         ({"path": None}, "path = None: must be given"),
         ({"follow": 8}, "until = 'Z': needs all particles in the file"),
-        ({"scene": WALLS}, "until = 'Z': needs a periodic container; between walls require pressure"),
-        ({"scene": WALLS, "until": gp.Accuracy("D", 0.1)}, "until = 'D': needs a periodic axis"),
-        ({"scene": gas(2, 32, 0.1), "until": gp.Accuracy("D", 0.1)}, "until = 'D': discs have no diffusion"),
-        ({"until": gp.Accuracy("pressure", 0.1)}, "until = 'pressure': there are no walls: require Z"),
+        ({"scene": WALLS}, "until = 'Z': container.boundary: Z needs a periodic container; between walls"),
+        (
+            {"scene": WALLS, "until": gp.Accuracy("D", 0.1)},
+            "until = 'D': container.boundary: has no periodic axis",
+        ),
+        (
+            {"scene": gas(2, 32, 0.1), "until": gp.Accuracy("D", 0.1)},
+            "until = 'D': container.lengths: discs have no diffusion",
+        ),
+        (
+            {"until": gp.Accuracy("pressure", 0.1)},
+            "until = 'pressure': container.boundary: has no walls: measure comp",
+        ),
         (
             {"scene": WALLS, "until": gp.Accuracy("pressure", 0.1, face="x_low")},
             "until = 'pressure:x_low': the walls are x low, x high, y low",
         ),
-        ({"until": gp.Accuracy("shear_viscosity", 0.1)}, "until = 'shear_viscosity': needs correlations"),
         (
-            {"scene": gas(3, 8, 0.1, mass=2.0, fixed=True), "sample_interval": None},
+            {"until": gp.Accuracy("shear_viscosity", 0.1)},
+            "until = 'shear_viscosity': correlations: needs correlations",
+        ),
+        ({"engine": gp.DSMC()}, "until = 'Z': observable: is 1 in the Boltzmann model, whatever happens"),
+        (
+            {"scene": gas(3, 8, 0.1, fixed=True)},
+            "until = 'Z': species.fixed: the virial of fixed particles is not a pressure",
+        ),
+        (
+            {"scene": replace(GAS, gravity=(0.0, 0.0, -1.0)), "sample_interval": None},
             "sample_interval = None: must be given: the time between collisions",
         ),
     ],

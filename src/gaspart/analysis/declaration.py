@@ -151,8 +151,3 @@ class Named:
     def powers(self, dimension: int) -> tuple[int, int, int]:
         """Of length, mass and time in its units."""
         return powers_of(self.units, dimension)
-
-    def refuse(self, scene: Scene, **selection: Any) -> None:
-        """Raise SceneError, with the reason, if a scene does not have it, however long the run."""
-        for condition in self.conditions:
-            condition(scene, selection)

@@ -9,7 +9,7 @@ import numpy as np
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
-from gaspart.analysis.observables import require_defined
+from gaspart.analysis.observables import KEPT, require_defined
 from gaspart.analysis.run import Run, Source, measured, require_collisions
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
@@ -73,7 +73,7 @@ def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
     """The collisions of each pair per time, over its scale. Raises SceneError for too few frames, a run
     without counts, and one without collisions."""
     if "pair_collisions" not in run.data:
-        raise SceneError("pairs", False, "the run must count collisions by pairs: run with --pairs")
+        raise SceneError(*KEPT["pairs"])
     if len(run.time) <= LEAST_INTERVALS:
         raise SceneError("frames", len(run.time), f"an error needs {LEAST_INTERVALS + 1} or more")
     require_collisions(run)

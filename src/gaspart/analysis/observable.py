@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.estimate import concise
-from gaspart.analysis.names import OBSERVABLES
+from gaspart.analysis.observables import name_of
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 
@@ -73,7 +73,7 @@ class Observable(xr.Dataset):
         """A number as `Z = 1.242(20), theory 1.227`, by its short name if it has one; of several values,
         each; of a curve, how many values along what."""
         quantity, estimate = self.attrs["quantity"], self.estimate
-        name = next((key for key, (one, _, _) in OBSERVABLES.items() if one == quantity), quantity)
+        name = name_of(quantity)
         if estimate.size > _FEW:
             axis = estimate.dims[-1]
             along = label_of(self[axis]) if axis in self.coords else str(axis)

@@ -7,13 +7,26 @@ reference page and the completion of a shell read these declarations, and no oth
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING, Any
 
 from gaspart.analysis import conditions as where
 from gaspart.analysis.declaration import Named, units_in
 from gaspart.errors import SceneError, unknown_word
 from gaspart.scene.scene import Scene
 
+if TYPE_CHECKING:
+    from gaspart.engines import Engine
+
+KEPT: dict[str, tuple[str, Any, str]] = {
+    "fluxes": (
+        "correlations",
+        None,
+        "needs correlations of the stress: gaspart run --correlations T,L --stress",
+    ),
+    "pairs": ("pairs", False, "the run must count collisions by pairs: run with --pairs"),
+}
+"""What a run keeps only if it is asked: key, value and rule of the error without it."""
 _SAMPLED = "is of the positions of pairs, which DSMC does not have"
 _OF_PAIRS: dict[str, Any] = {
     "samples": "structure",
@@ -324,12 +337,39 @@ def name_of(function: str) -> str:
     return next((name for name, one in OBSERVABLES.items() if one.function == function), function)
 
 
+def require_selection(name: str, selection: Mapping[str, Any]) -> None:
+    """Raise SceneError for a selection that an observable does not have."""
+    for key, value in selection.items():
+        if value is not None and key not in OBSERVABLES[name].selections:
+            able = selecting(key)
+            rule = f"cannot be chosen for {name}, only for {', '.join(able)}" if able else "is no selection"
+            raise SceneError(key, value, rule)
+
+
 def require_defined(name: str, scene: Scene, **selection: Any) -> None:
     """Raise SceneError, with the reason, for an observable that a scene does not have, however long its run,
     and for a selection that the observable or the scene does not have."""
     one = OBSERVABLES[known(name)]
-    for key, value in selection.items():
-        if value is not None and key not in one.selections:
-            rule = f"cannot be chosen for {name}, only for {', '.join(selecting(key))}"
-            raise SceneError(key, value, rule)
-    one.refuse(scene, **selection)
+    require_selection(name, selection)
+    for condition in one.conditions:
+        condition(scene, selection)
+
+
+def require_told(name: str, scene: Scene, engine: Engine) -> None:
+    """Raise SceneError, with the reason, if a run by an engine says nothing of an observable: its equation
+    does not have it, or has one value of it whatever happens, or the engine does not keep what it needs."""
+    one = OBSERVABLES[known(name)]
+    if engine.equation in one.nothing:
+        raise SceneError("observable", name, one.nothing[engine.equation])
+    if one.needs == "fluxes":
+        engine.check_stress(scene)
+    if one.needs == "pairs" and not engine.records_events:
+        raise SceneError("observable", name, "needs an engine that records events")
+
+
+def require_kept(name: str, kept: Collection[str]) -> None:
+    """Raise SceneError, with the option that keeps it, if a run does not keep what an observable needs: the
+    "fluxes" or "pairs" among `kept`. Paths are those of frames that are close enough, too."""
+    needs = OBSERVABLES[known(name)].needs
+    if needs in KEPT and needs not in kept:
+        raise SceneError(*KEPT[needs])

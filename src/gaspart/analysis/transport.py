@@ -20,7 +20,7 @@ import xarray as xr
 
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable, scalar
-from gaspart.analysis.observables import require_defined
+from gaspart.analysis.observables import KEPT, require_defined
 from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
@@ -93,8 +93,8 @@ def _stored(run: Run) -> Correlations:
     text = run.data.attrs.get("correlations")
     settings = Correlations.from_json(text) if text else None
     if settings is None or not settings.stress:
-        rule = "needs a run with correlations of the stress: gaspart run --correlations T,L --stress"
-        raise SceneError("correlations", text, rule)
+        key, _, rule = KEPT["fluxes"]
+        raise SceneError(key, text, rule)
     return settings
 
 

@@ -11,7 +11,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.analysis.names import OBSERVABLES
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.cli.arguments import Parser, UsageError, of_configs, print_lines, real, set_command
 from gaspart.cli.engine_options import one_of, stated
 from gaspart.cli.progress import waiting
@@ -104,7 +104,7 @@ def _lines(advice: Advice, file: str) -> list[str]:
         f"predicted cost    {best.seconds:.3g} s of processor time",
         f"95 % half-width   {best.half_width:.2g} of {advice.observable} (bias: at most {best.bias:.1g})",
     ]
-    if advice.observable in ("D", "collision_rate"):
+    if OBSERVABLES[advice.observable].power:
         lines += _drawn(advice.observable, advice.scatter)
     lines.append(_pays(advice.scene, best.engine, advice.observable))
     if not advice.within_budget:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.analysis.measuring import measure
-from gaspart.analysis.names import OBSERVABLES, SELECTIONS
+from gaspart.analysis.observables import OBSERVABLES, selecting, selections
 from gaspart.cli.arguments import (
     Parser,
     UsageError,
@@ -43,7 +43,7 @@ _EXAMPLES = """examples:
 
 def add_measure(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
-    names = "; ".join(f"{name}: {meaning}" for name, (_, _, meaning) in OBSERVABLES.items())
+    names = "; ".join(f"{name}: {one.definition}" for name, one in OBSERVABLES.items())
     text = f"{names}. Uncertainties are one standard deviation; of curves a few rows are printed. "
     text += "Several files are runs of one scene with different seeds: their mean and its scatter are given."
     set_command(parser, _measure, text, _EXAMPLES)
@@ -54,14 +54,14 @@ def add_measure(parser: Parser) -> None:
     text = "time from which frames count; default: a quarter of the run"
     add("--start", type=real(least=0.0), metavar="T", help=text)
     text = "of one species only, by its number in the scene, from 0 (single particles: after the last): "
-    add("--species", type=int, metavar="N", help=text + ", ".join(SELECTIONS["species"]))
+    add("--species", type=int, metavar="N", help=text + ", ".join(selecting("species")))
     text = "of these particles only, by their numbers in the file, from 0: "
-    names = ", ".join(SELECTIONS["particles"])
+    names = ", ".join(selecting("particles"))
     add("--particles", type=several(int), metavar="N[,N...]", help=text + names)
     text = "along each axis instead of their sum or mean: "
-    add("--per-axis", action="store_true", default=None, help=text + ", ".join(SELECTIONS["per_axis"]))
+    add("--per-axis", action="store_true", default=None, help=text + ", ".join(selecting("per_axis")))
     text = "along this axis instead of the last one: "
-    add("--axis", choices=("x", "y", "z"), help=text + ", ".join(SELECTIONS["axis"]))
+    add("--axis", choices=("x", "y", "z"), help=text + ", ".join(selecting("axis")))
     add("-o", "--output", metavar="FILE", help="all rows of one observable as .csv, or a plot as .png")
     add("--force", action="store_true", help="replace a table or a picture")
     usage = parser.format_usage().partition(": ")[2]
@@ -96,7 +96,7 @@ def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:
 def _measure(given: argparse.Namespace) -> None:
     files, names = _sorted(given)
     write = _writer(given, names)
-    asked = {key: getattr(given, key) for key in SELECTIONS}
+    asked = {key: getattr(given, key) for key in selections()}
     selection = {key: value for key, value in asked.items() if value is not None}
     for name, observable in _measured(files, names, given.start, selection):
         if observable.estimate.ndim:

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gaspart.analysis.observables import having
 from gaspart.cli.arguments import Parser, UsageError, alone, print_line, set_command, several
 from gaspart.cli.engine_options import add_setting, as_option, engine_settings, joined, one_of, stated
 from gaspart.cli.progress import clear_line, progress, waiting
@@ -17,7 +18,7 @@ from gaspart.errors import SceneError
 from gaspart.interruption import set_note
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.scene.scene import Scene
-from gaspart.trajectory.until import OBSERVABLES, Accuracy
+from gaspart.tradeoff.accuracy import Accuracy
 
 if TYPE_CHECKING:
     from gaspart.tradeoff.reached import Reached
@@ -68,7 +69,7 @@ def _add_ends(parser: argparse.ArgumentParser) -> None:
     add("--sample-interval", type=float, metavar="T", help=text)
     text = (
         f"relative standard error at which the run ends, instead of --duration; several with commas, or by "
-        f"repeating it; {one_of(OBSERVABLES)}; pressure:'x low' is that on one wall"
+        f"repeating it; {one_of(having(ends_runs=True))}; pressure:'x low' is that on one wall"
     )
     add("--until", action="extend", type=_requests, metavar="NAME=X", help=text)
     add("--at-most", type=float, metavar="T", help="longest duration of a run with --until")

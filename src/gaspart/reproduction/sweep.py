@@ -16,7 +16,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from gaspart.analysis.names import PAIRS, known
+from gaspart.analysis.observables import OBSERVABLES, known, require_defined, require_kept
 from gaspart.engines import Engine, EventDriven, engine_to_dict
 from gaspart.errors import SceneError, SimulationError, unknown_word
 from gaspart.interruption import exit_on_signals
@@ -30,7 +30,7 @@ from gaspart.reproduction.points.variants import task, variant, warm
 from gaspart.reproduction.sweep_table import Measured, measured, table
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
-from gaspart.trajectory.until import Accuracy
+from gaspart.tradeoff.accuracy import Accuracy
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -94,13 +94,29 @@ def sweep(
     engine = EventDriven() if engine is None else engine
     length = _length(duration, until, at_most, samples, equilibration)
     point = {**length, **_settings(scene, axes, engine, Path(folder))}
-    point |= {"replicas": count_of("replicas", replicas, least=1), "pairs": bool({*names} & {*PAIRS})}
+    point |= {
+        "replicas": count_of("replicas", replicas, least=1),
+        "pairs": any(OBSERVABLES[name].needs == "pairs" for name in names),
+    }
     job = "simulate" if until is None else "simulate_until"
     grid = {key if key in point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
     planned = _planned({"job": job, "point": point, "grid": grid}, str(folder), count_of("seed", seed))
+    for one in planned:
+        _require_measurable(one, names)
     _run(planned, count_of("workers", workers, least=1), progress or _print, overwrite)
     rows: list[Measured] = [measured(one, names, equilibration is None) for one in planned]
     return table(rows, names, axes, {"scene": scene, "engine": engine, "seed": seed})
+
+
+def _require_measurable(point: Point, names: list[str]) -> None:
+    """Raise SceneError, before anything runs, for an observable that a point does not have, or that its run
+    does not keep what it needs for."""
+    for name in names:
+        try:
+            require_defined(name, point.scene)
+            require_kept(name, ("pairs",))
+        except SceneError as error:
+            raise error.inside(f"{name} of {EXPERIMENT}[{point.name}]") from None
 
 
 def _length(

@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from gaspart import theory
-from gaspart.analysis.names import PATHS
+from gaspart.analysis import finite
+from gaspart.analysis.observables import OBSERVABLES, having, require_told
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, plain_gas
@@ -88,7 +89,7 @@ class Advice:
             float(f"{interval:.2g}") if quantum is None else max(1, round(interval / quantum)) * quantum
         )
         part = self.duration * (1.0 + EQUILIBRATION / self.collisions_per_particle) / interval
-        paths = self.observable in PATHS
+        paths = OBSERVABLES[self.observable].needs == "paths"
         length = math.ceil(part) * interval
         return Recipe(self.scene, self.setting.engine, 1, length, interval, displacements=paths)
 
@@ -139,7 +140,7 @@ def is_tabulated(scene: Scene, observable: str) -> bool:
         fluid_of(scene)
     except SceneError:
         return False
-    return observable in table.OBSERVABLES
+    return observable in having(tabulated=True)
 
 
 def advise(
@@ -159,8 +160,8 @@ def advise(
 
     Raises SceneError for anything that the table does not cover.
     """
-    if observable not in table.OBSERVABLES:
-        raise SceneError("observable", observable, f"must be one of {', '.join(table.OBSERVABLES)}")
+    if observable not in having(tabulated=True):
+        raise SceneError("observable", observable, f"must be one of {', '.join(having(tabulated=True))}")
     low, high = ACCURACIES
     rule = f"must be from {low:g} to {high:g}"
     accuracy = number("accuracy", accuracy, rule, least=low, most=high)
@@ -184,7 +185,7 @@ def advise(
     )
     per_particle = 2.0 * best.contacts / gas.count
     replicas = max(1, min(os.cpu_count() or 1, int(per_particle / (_PER_EQUILIBRATION * EQUILIBRATION))))
-    finite_size = _finite_size(gas, observable)
+    finite_size, power = _finite_size(gas, observable)
     return Advice(
         scene,
         gas,
@@ -195,7 +196,7 @@ def advise(
         replicas,
         per_particle / replicas,
         finite_size,
-        gas.count * (abs(finite_size) * _BULK / accuracy) ** (gas.dimension if observable == "D" else 1),
+        gas.count * (abs(finite_size) * _BULK / accuracy) ** power,
         0.5 * temperature_scatter(scene),
     )
 
@@ -254,29 +255,22 @@ def _setting(scene: Scene, gas: Gas, wish: _Wish, made: tuple[Engine, str, float
 
 
 def _error_of_model(scene: Scene, gas: Gas, observable: str, engine: DSMC) -> float:
-    """A bound on the error that the DSMC engine makes: by its model, by the cells, and of D by the steps. inf
-    for Z of the Boltzmann model, which is 1 whatever happens: its run would measure nothing."""
-    if engine.model == "boltzmann" and observable == "Z":
+    """A bound on the error that the DSMC engine makes: by its model, by the cells, and of paths by the steps.
+    inf for what its runs say nothing of."""
+    try:
+        require_told(observable, scene, engine)
+    except SceneError:
         return math.inf
     bias = model_error(gas.packing_fraction, gas.dimension, engine.model, observable)
-    if engine.model == "enskog":
-        bias += cell_loss(engine, scene)
+    bias += cell_loss(engine, scene)
     step = (engine.time_step or 0.0) * gas.thermal_speed / gas.diameter
-    return bias + (step_error(gas.packing_fraction, step) if observable == "D" else 0.0)
+    return bias + (step_error(gas.packing_fraction, step) if OBSERVABLES[observable].memory else 0.0)
 
 
-def _finite_size(gas: Gas, observable: str) -> float:
-    """Relative difference from the infinite gas, to first order; periodic containers."""
-    fraction, dimension, count = gas.packing_fraction, gas.dimension, gas.count
-    if count < 2:
-        return math.nan
-    if observable == "Z":
-        shift = theory.finite_size_correction(fraction, dimension, count, ensemble="canonical")
-        return float(shift / theory.compressibility_factor(fraction, dimension))
-    if observable == "collision_rate":
-        return float(theory.collision_rate_finite_size_factor(fraction, dimension, count)) - 1.0
-    side = (count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
-    diffusion = float(theory.enskog_diffusion(fraction, dimension))
-    carried = float(theory.number_density(fraction, dimension)) * diffusion  # modes decay with nu + D
-    lost = theory.yeh_hummer(side, float(theory.enskog_viscosity(fraction, dimension)) + carried)
-    return -float(lost) / diffusion
+def _finite_size(gas: Gas, observable: str) -> tuple[float, float]:
+    """Relative difference from the infinite gas, to first order, in a periodic container, and the power of it
+    that the number of particles grows with for a smaller one."""
+    if gas.count < 2:
+        return math.nan, 1.0
+    found: tuple[float, float] = getattr(finite, OBSERVABLES[observable].bulk)(gas)
+    return found

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.names import FLUXES, MOTION, PAIRS
+from gaspart.analysis.observables import OBSERVABLES, require_told
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.engines.dsmc.rates import contact_values, rates
 from gaspart.engines.step.limits import missed_contacts
@@ -21,10 +21,8 @@ from gaspart.scene.faces import sliding_faces
 from gaspart.scene.scene import Scene
 from gaspart.state.initial import initial_state
 from gaspart.tradeoff.models import cell_loss
-from gaspart.tradeoff.target import SEED, STRUCTURE, Target
+from gaspart.tradeoff.target import SEED, Target
 
-TRANSPORT = ("D", *MOTION, *FLUXES[:3])
-"""Observables that depend on the memory of collisions, of which the Enskog model has none."""
 _STATIC = 3e-3
 """Bound on the error of the Enskog model in Z, the collision rate and pressures (figure
 `dsmc_convergence`)."""
@@ -70,10 +68,7 @@ def candidates(target: Target, accuracy: float) -> tuple[list[Candidate], dict[s
         try:
             one = maker(target, accuracy)
             one.engine.check_features(scene)
-            if observable in FLUXES:
-                one.engine.check_stress(scene)
-            if observable in PAIRS and not one.engine.records_events:
-                raise SceneError("observable", observable, "needs an engine that records events")
+            require_told(observable, scene, one.engine)
             made.append(one)
         except SceneError as error:
             refused[name] = f"{error.key}: {error.rule}"
@@ -98,7 +93,6 @@ def _step(target: Target, accuracy: float) -> Candidate:
 def _boltzmann(target: Target, accuracy: float) -> Candidate:
     """Pairs in a cell collide as if they were points: without the excluded volume."""
     scene, observable = target.scene, target.observable
-    _require_no_structure(observable)
     engine, model = DSMC(), boltzmann_error(scene)
     gives_up = "excluded volume, positions of pairs"
     return Candidate(engine, model, _discretisation(engine, scene, observable), gives_up)
@@ -107,7 +101,6 @@ def _boltzmann(target: Target, accuracy: float) -> Candidate:
 def _enskog(target: Target, accuracy: float) -> Candidate:
     """Pairs collide a diameter apart, with the contact value of their density."""
     scene, observable = target.scene, target.observable
-    _require_no_structure(observable)
     filled = scene.packing_fraction
     if filled > _DENSEST:
         rule = f"the Enskog model is known up to {_DENSEST:g}"
@@ -127,13 +120,8 @@ def boltzmann_error(scene: Scene) -> float:
 
 def enskog_error(scene: Scene, observable: str) -> float:
     """Bound on the relative error of the Enskog equation in an observable."""
-    transported = observable in TRANSPORT or _flows(scene)
+    transported = OBSERVABLES[observable].memory or _flows(scene)
     return _STATIC + (_memory(scene.packing_fraction, scene.dimension) if transported else 0.0)
-
-
-def _require_no_structure(observable: str) -> None:
-    if observable in STRUCTURE:
-        raise SceneError("observable", observable, "is of the positions of pairs, which DSMC does not have")
 
 
 def _flows(scene: Scene) -> bool:
@@ -146,7 +134,7 @@ def _flows(scene: Scene) -> bool:
 def _discretisation(engine: DSMC, scene: Scene, observable: str) -> float:
     """The error of cells and steps: in the viscosity, and in what depends on it. Rates and pressures of an
     even gas have none."""
-    if observable not in TRANSPORT and not _flows(scene):
+    if not OBSERVABLES[observable].memory and not _flows(scene):
         return 0.0
     return engine.predictions(scene)["viscosity_error"]
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     from gaspart.analysis.run import measured
 
     with measured(data, start, sheared=True) as run:
-        if observable == "pressure":
+        if OBSERVABLES[observable].along == ("face",):
             return _pressures(run)
         time = float(run.time[-1] - run.time[0])
     found = measure(observable, data, start)
@@ -78,7 +79,7 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
         known = np.isfinite(value) & np.isfinite(error)
         value, error = (np.array(_norm(of[known])) if of.ndim else of for of in (value, error))
     scales = np.abs(np.ravel(value))
-    if observable == "pressure_tensor":  # its shear components vanish on average
+    if OBSERVABLES[observable].relative_to == "norm":  # some components vanish on average
         scales[:] = _norm(value)
     parts = zip(names, np.ravel(value), scales, np.ravel(error) ** 2 * time, strict=True)
     return {

@@ -15,17 +15,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.analysis.names import FLUXES, MOTION, PAIRS
+from gaspart.analysis.observables import KEPT
 from gaspart.analysis.run import EQUILIBRATION, measured
 from gaspart.engines import Engine, EventDriven, engine_to_dict
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
-from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.tradeoff.estimates import Component, components
 from gaspart.tradeoff.reached import TOO_SHORT, bound
-from gaspart.tradeoff.target import DIFFUSION, SEED, STRUCTURE, Target
+from gaspart.tradeoff.target import SEED, Target
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.run import Manner, record
@@ -148,7 +147,7 @@ def _make(
     recipe = Recipe(
         target.scene, engine, SEED, duration, interval,
         displacements=displacements, correlations=correlations,
-        pairs=target.observable in PAIRS, initial=target.start,
+        pairs=target.declared.needs == "pairs", initial=target.start,
     )  # fmt: skip
     return record(recipe, path, Manner(overwrite=True))
 
@@ -183,10 +182,7 @@ def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, left
     seconds that there is time for, unless a pilot was kept. An observable that it is too short for is not
     measured. Raises SceneError for one that the scene does not have."""
     scheduled = target.schedule(engine, left * seconds / speed)
-    kinds = {"fluxes": FLUXES, "motion": MOTION, "pairs": PAIRS}
-    kinds |= {"diffusion": DIFFUSION, "structure": STRUCTURE}  # whose frames are spaced for them
-    kind = next((kind for kind, names in kinds.items() if target.observable in names), "")
-    folder = cache_directory() / "pilots" / _digest(target.scene, engine, kind, seconds)
+    folder = cache_directory() / "pilots" / _digest(target, engine, seconds)
     folder.mkdir(parents=True, exist_ok=True)
     took, path = 0.0, folder / "run.nc"
     if not path.exists():
@@ -215,6 +211,10 @@ def _settled(trajectory: xr.Dataset) -> float:
         return float(run.time[max(1, int(np.argmax(reached)))])
 
 
-def _digest(scene: Scene, engine: Engine, kind: str, seconds: float) -> str:
-    content = [scene.to_dict(), engine_to_dict(engine), kind, seconds, source_digest()]
+def _digest(target: Target, engine: Engine, seconds: float) -> str:
+    """Of what a pilot is: runs of one kind, which keep the same, serve other observables too."""
+    kind = "motion" if target.correlated else target.declared.samples
+    if target.declared.needs in KEPT:
+        kind = target.declared.needs
+    content = [target.scene.to_dict(), engine_to_dict(engine), kind, seconds, source_digest()]
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:24]

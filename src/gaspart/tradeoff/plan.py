@@ -13,7 +13,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from gaspart.analysis.names import CURVES, PAIRS
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
@@ -21,15 +20,16 @@ from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import PILOT_SECONDS
+from gaspart.tradeoff.accuracy import Accuracy
 from gaspart.tradeoff.advice import ACCURACIES
 from gaspart.tradeoff.candidates import Candidate, candidates
 from gaspart.tradeoff.pilot import Pilot, require_defined, run_pilot, speed_of
 from gaspart.tradeoff.steady import require_steady, temperature_scatter
 from gaspart.tradeoff.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.tradeoff.table import LEAST, QUANTILE
-from gaspart.tradeoff.target import DIFFUSION, STRUCTURE, Target, tidy
+from gaspart.tradeoff.target import Target, tidy
 from gaspart.trajectory.recipe import Recipe
-from gaspart.trajectory.until import OBSERVABLES, Accuracy, Until
+from gaspart.trajectory.until import Until
 
 _WORTH = 3.0
 """How many times as cheap as the first engine one must be to have a pilot of its own."""
@@ -46,12 +46,6 @@ _SETTLED = 2.0
 """The part of a run that is not measured, over the time in which the energy came to its mean in the pilot."""
 _CROSSINGS = 10.0
 """How often a particle crosses a container with walls at least in a run."""
-_POWERS = {
-    **dict.fromkeys(("pressure", "temperature", "pressure_tensor", "vacf"), 1.0),
-    **dict.fromkeys(("collision_rate", "pair_rates", "D", "mutual_diffusion", "msd", "speeds"), 0.5),
-    **dict.fromkeys(("shear_viscosity", "bulk_viscosity", "thermal_conductivity"), 0.5),
-}
-"""The power of the temperature that observables grow with."""
 Announce: TypeAlias = Callable[[str], None]
 
 
@@ -92,16 +86,16 @@ class Plan:
     def scatter(self) -> float:
         """Relative standard deviation of the observable from run to run by that of the energy, beyond the
         interval."""
-        return _POWERS.get(self.target.observable, 0.0) * temperature_scatter(self.target.scene)
+        return self.target.declared.power * temperature_scatter(self.target.scene)
 
     @property
     def longest_interval(self) -> float:
         """Between frames: of diffusion by its lags; of an observable that they sample that of the pilot,
         whose noise is known."""
-        observable = self.target.observable
-        if observable in DIFFUSION:
+        declared = self.target.declared
+        if declared.samples == "paths":
             return self.target.span[0]
-        sampled = observable in CURVES and observable not in STRUCTURE
+        sampled = declared.form == "curve" and declared.samples != "structure"
         return min(one.interval for one in self.pilots) if sampled else math.inf
 
     @property
@@ -117,7 +111,7 @@ class Plan:
             engine = engine.resolved(scene)
             interval = max(1, round(interval / quantum)) * quantum
         until = None
-        if target.observable in OBSERVABLES and self.affordable:
+        if target.declared.ends_runs and self.affordable:
             relative = float(f"{0.99 * (self.accuracy - best.bias) / QUANTILE:.3g}")
             longest = max(_LONGEST * duration, *(one.duration for one in self.pilots))
             longest = min(longest, target.span[1])
@@ -127,7 +121,7 @@ class Plan:
         return Recipe(
             scene, engine, 1, fixed, interval,
             displacements=target.needs_paths, correlations=correlations, until=until,
-            pairs=target.observable in PAIRS,
+            pairs=target.declared.needs == "pairs",
         )  # fmt: skip
 
 
@@ -173,7 +167,7 @@ def plan(
 
     def limits(engine: Engine, speed: float) -> tuple[float, float]:
         affordable = math.inf if budget is None else budget / speed
-        most = min(affordable, _longest(target.observable, longest), target.span[1])
+        most = min(affordable, _longest(target, longest), target.span[1])
         return _least(target, engine, longest), most
 
     options = [
@@ -254,10 +248,10 @@ def _option(
     return Option(candidate, speed, bias, duration, duration * speed, half_width)
 
 
-def _longest(observable: str, pilot: Pilot) -> float:
+def _longest(target: Target, pilot: Pilot) -> float:
     """The longest duration that is of use: what is of positions is of a number of frames, and those of the
     pilot say how much each of them contributes; more time between them is not known to help."""
-    if observable not in STRUCTURE:
+    if target.declared.samples != "structure":
         return math.inf
     frames = pilot.measured / pilot.interval
     return pilot.measured * _FRAMES / (frames / math.ceil(frames / MOST_FRAMES))

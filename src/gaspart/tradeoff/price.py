@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gaspart.analysis.names import FLUXES
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import Engine
 from gaspart.scene.features import FEATURES, features
 from gaspart.scene.scene import Scene
@@ -43,7 +43,7 @@ def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
         "gravity": any(scene.gravity or ()),
         "spin": scene.rough,
         "two_masses": len({kind.mass for kind in scene.kinds}) > 1,
-        "stress": observable in FLUXES,
+        "stress": OBSERVABLES[observable].needs == "fluxes",
     }
     known, present = table.prices(engine.name), features(scene)
     ratios = {_NAMES[name]: known[name] for name in _NAMES if has[name] and name in known}

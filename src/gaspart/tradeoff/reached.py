@@ -28,7 +28,7 @@ from gaspart.errors import SceneError
 from gaspart.tradeoff.estimates import LEAST_FREEDOM, components
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
-from gaspart.trajectory.until import Accuracy, examined_before
+from gaspart.trajectory.until import Requirement, examined_before
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -52,7 +52,7 @@ class Reached:
     two examinations.
     """
 
-    asked: Accuracy
+    asked: Requirement
     component: str = ""
     value: float = math.nan
     error: float = math.inf
@@ -135,9 +135,9 @@ class Examiner:
 
     def __init__(self, report: Callable[[list[Reached]], None] | None = None) -> None:
         self._report = report
-        self._known: dict[tuple[Accuracy, int], dict[str, Estimate] | str] = {}
+        self._known: dict[tuple[Requirement, int], dict[str, Estimate] | str] = {}
 
-    def __call__(self, path: Path, accuracies: tuple[Accuracy, ...], frames: int) -> float:
+    def __call__(self, path: Path, accuracies: tuple[Requirement, ...], frames: int) -> float:
         """The largest error over the required one, by the first frames of a file."""
         with open_trajectory(path) as data:
             reached = self.examine(data, accuracies, frames)
@@ -145,7 +145,7 @@ class Examiner:
             self._report(reached)
         return max(one.excess for one in reached)
 
-    def examine(self, data: xr.Dataset, accuracies: tuple[Accuracy, ...], frames: int) -> list[Reached]:
+    def examine(self, data: xr.Dataset, accuracies: tuple[Requirement, ...], frames: int) -> list[Reached]:
         """What the first frames of an open trajectory give."""
         from gaspart.analysis.run import EQUILIBRATION
 
@@ -172,7 +172,7 @@ class Examiner:
             results.append(max(parts, key=lambda one: (one.excess, one.accuracy)))
         return results
 
-    def _estimates(self, data: xr.Dataset, asked: Accuracy, frames: int) -> dict[str, Estimate] | str:
+    def _estimates(self, data: xr.Dataset, asked: Requirement, frames: int) -> dict[str, Estimate] | str:
         """The components of an observable, or the rule that the frames break."""
         key = asked, frames
         if key not in self._known:
@@ -186,7 +186,7 @@ class Examiner:
         return self._known[key]
 
 
-def _measure(data: xr.Dataset, asked: Accuracy) -> dict[str, Estimate]:
+def _measure(data: xr.Dataset, asked: Requirement) -> dict[str, Estimate]:
     """An observable by component, "" for a scalar; of pressures those that are asked for."""
     found = components(data, asked.observable, asked.start)
     return {name: one.estimate for name, one in found.items() if asked.face in (None, name)}

@@ -20,7 +20,6 @@ import numpy as np
 from gaspart import theory
 
 COLUMNS = ("dimension", "packing_fraction", "engine", "precision", "time_step", "quantity", "value", "error")
-OBSERVABLES = ("Z", "collision_rate", "D")
 PATH = Path(__file__).parent / "data" / "tradeoff.csv"
 PRECISIONS = {"4 passes": "float64", "4 passes, float32": "float32"}
 """The settings of the time-stepped engine that are worth advising, by their names in figures."""

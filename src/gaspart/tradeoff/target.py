@@ -10,7 +10,7 @@ import numpy as np
 
 from gaspart.analysis.diffusion import LINEAR_FROM
 from gaspart.analysis.motion import MOST_FRAMES
-from gaspart.analysis.names import FLUXES, MOTION, PATHS, known
+from gaspart.analysis.observables import OBSERVABLES, Named, known, require_defined
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, EventDriven
 from gaspart.engines.dsmc.rates import rates
@@ -21,20 +21,14 @@ from gaspart.state.initial import initial_state
 from gaspart.state.state import State
 from gaspart.trajectory.correlator import Correlations
 
-DIFFUSION = "D", "mutual_diffusion"
-STRUCTURE = "rdf", "order", "structure_factor", "chemical_potential"
-"""Those of the positions of particles relative to each other, which DSMC does not have."""
-CORRELATED = *FLUXES, *MOTION
-"""Those of a run with correlations."""
 SEED = 0
 _FRAMES = 48, 512
 _HELD = 20_000_000
 """Numbers that the frames of a pilot hold, at most, unless there are only few frames."""
 _PLACED = 100_000
 """Particles in all frames of which pairs are measured, likewise: that takes longer than their run."""
-_LAGS = {**dict.fromkeys(FLUXES, 100), **dict.fromkeys(MOTION, 40)}
-"""Of correlations, in samples: up to ten collisions of a particle."""
 _LONGEST_LAG = 10.0
+"""Of correlations, in collisions of a particle."""
 _LEAST_FRAMES = 24
 """Of a run with correlations: three quarters of them give an error."""
 _FALL = 8.0
@@ -55,10 +49,14 @@ class Target:
     @classmethod
     def named(cls, scene: Scene, name: str) -> Target:
         """From a name as on the command line: `Z`, or `pressure:x low`. Raises SceneError for an unknown one,
-        and a wall that is not there."""
+        one that the scene does not have, and a wall that is not there."""
         observable, colon, face = str(name).partition(":")
         known(observable)
         walls = scene.container.walls
+        try:
+            require_defined(observable, scene)
+        except SceneError as error:
+            raise SceneError("observable", name, f"{error.key}: {error.rule}") from None
         if colon and (observable != "pressure" or face not in walls):
             rule = f"{observable} is not of a wall" if observable != "pressure" else "there is no such wall"
             raise SceneError("observable", name, f"{rule}; the walls are {', '.join(walls) or 'none'}")
@@ -105,6 +103,11 @@ class Target:
         return min(scene.container.lengths) / fastest
 
     @property
+    def declared(self) -> Named:
+        """What is declared of the observable."""
+        return OBSERVABLES[self.observable]
+
+    @property
     def name(self) -> str:
         """The observable, with its wall."""
         return f"{self.observable}:{self.face}" if self.face else self.observable
@@ -112,18 +115,18 @@ class Target:
     @property
     def needs_paths(self) -> bool:
         """Whether frames need displacements."""
-        return self.observable in PATHS
+        return self.declared.needs == "paths"
 
     @property
     def correlated(self) -> bool:
         """Whether the run accumulates correlations."""
-        return self.observable in CORRELATED
+        return self.declared.lags > 0
 
     @property
     def span(self) -> tuple[float, float]:
         """The longest time between frames and the longest run from which the observable is measured without
         loss: of diffusion by the lags of its slope, and by the number of frames that are correlated."""
-        if self.observable not in DIFFUSION or not self.frequency > 0.0:
+        if self.declared.samples != "paths" or not self.frequency > 0.0:
             return math.inf, math.inf
         interval = 0.5 * LINEAR_FROM / self.frequency
         return interval, interval * MOST_FRAMES / (1.0 - EQUILIBRATION)
@@ -136,7 +139,7 @@ class Target:
         longest_interval, longest = self.span
         length = min(length, longest)
         numbers = max(1, 3 * self.scene.count * self.scene.dimension)
-        if self.observable in STRUCTURE:
+        if self.declared.samples == "structure":
             most = max(least, min(most, _PLACED // max(1, self.scene.count)))
         frames = int(np.clip(_HELD // numbers, least, most))
         interval = min(length / frames, longest_interval)
@@ -147,13 +150,13 @@ class Target:
 
     def correlations(self, engine: Engine) -> Correlations:
         """Those that the observable needs. Raises SceneError for a scene whose particles do not collide."""
-        lags = _LAGS[self.observable]
+        lags = self.declared.lags
         if not self.frequency > 0.0:
             raise SceneError("observable", self.observable, "needs particles that collide")
         sample = float(f"{_LONGEST_LAG / lags / self.frequency:.1g}")
         if quantum := engine.resolved(self.scene, sample).quantum:
             sample = tidy(max(1, round(sample / quantum)) * quantum)
-        return Correlations(sample, lags, stress=self.observable in FLUXES)
+        return Correlations(sample, lags, stress=self.declared.needs == "fluxes")
 
     def _correlated(self, engine: Engine, length: float) -> tuple[float, float, Correlations]:
         """`schedule` with correlations, whose longest lag frames are apart or more."""

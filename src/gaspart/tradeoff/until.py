@@ -8,12 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from gaspart.analysis.names import PATHS
+from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept, require_told
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.files import is_same_file, output_path
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
+from gaspart.tradeoff.accuracy import Accuracy
 from gaspart.tradeoff.reached import Examiner, Reached
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
@@ -22,7 +23,7 @@ from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.recording import Progress
-from gaspart.trajectory.until import Accuracy, Until
+from gaspart.trajectory.until import Requirement, Until
 
 
 def run(
@@ -76,8 +77,8 @@ def run(
     """
     wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
-        require_measurable(asked, scene, follow, correlations)
-        displacements = displacements or asked.observable in PATHS
+        require_measurable(asked, scene, engine, follow, correlations)
+        displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     start = _start(initial, _required(path))
@@ -155,30 +156,27 @@ def resume(
 
 
 def require_measurable(
-    asked: Accuracy,
+    asked: Requirement,
     scene: Scene,
+    engine: Engine,
     follow: int | None = None,
     correlations: Correlations | None = None,
 ) -> None:
-    """Raise SceneError for an observable that a scene does not have, however long the run."""
-    periodic, rule = scene.container.periodic, ""
-    if asked.observable == "shear_viscosity":
-        if correlations is None or not correlations.stress:
-            rule = "needs correlations of the stress: --correlations T,L --stress"
-    elif asked.observable == "pressure":
-        walls = scene.container.walls
-        if not walls or asked.face not in (None, *walls):
-            rule = f"the walls are {', '.join(walls)}" if walls else "there are no walls: require Z"
-    elif follow is not None and follow < scene.count:
-        rule = "needs all particles in the file, without follow"
-    elif asked.observable == "Z" and not all(periodic):
-        rule = "needs a periodic container; between walls require pressure"
-    elif asked.observable == "D" and not any(periodic):
-        rule = "needs a periodic axis: displacements between walls are bounded"
-    elif asked.observable == "D" and scene.dimension == 2 and any(scene.conserved_axes):
-        rule = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
-    if rule:
-        raise SceneError("until", asked.name, rule)
+    """Raise SceneError for an observable that a scene does not have, however long the run, of which a run by
+    an engine says nothing, or for which this run does not keep what it needs."""
+    walls, declared = scene.container.walls, OBSERVABLES[asked.observable]
+    kept = ("fluxes",) if correlations is not None and correlations.stress else ()
+    try:
+        require_defined(asked.observable, scene)
+        require_kept(asked.observable, kept)
+        require_told(asked.observable, scene, engine)
+    except SceneError as error:
+        raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
+    if asked.face not in (None, *walls):
+        raise SceneError("until", asked.name, f"the walls are {', '.join(walls)}")
+    counted = declared.along == ("face",) or declared.needs == "fluxes"
+    if follow is not None and follow < scene.count and not counted:
+        raise SceneError("until", asked.name, "needs all particles in the file, without follow")
 
 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:

@@ -32,9 +32,9 @@ from gaspart.trajectory.opening import check_frames, checked
 from gaspart.trajectory.partial import TRAJECTORY, UNFINISHED, is_blank, locked, partial_path, writing
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
 from gaspart.trajectory.recording import Examine, Progress, Recording
-from gaspart.trajectory.until import Accuracy, is_examined
+from gaspart.trajectory.until import Requirement, is_examined
 
-Examiner: TypeAlias = Callable[[Path, tuple[Accuracy, ...], int], float]
+Examiner: TypeAlias = Callable[[Path, tuple[Requirement, ...], int], float]
 """What examines the first frames of a file: the largest error over the required one, inf if unknown."""
 
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, astuple, dataclass
 from itertools import takewhile
 
-from gaspart.errors import SceneError, unknown_word
+from gaspart.errors import SceneError
 from gaspart.scene.validation import number
 
-OBSERVABLES = ("Z", "D", "collision_rate", "pressure", "shear_viscosity")
-"""Of which a run can be required to know one with a given accuracy."""
 _ACCURACIES = 1e-8, 1.0
 _FIRST = 64, 96
 """Frames at the first two examinations; each further one has twice as many as the one before its
@@ -20,15 +18,9 @@ predecessor, so that the ratios are 3/2 and 4/3."""
 _ROUNDING = 1e-9
 
 
-@dataclass(frozen=True)
-class Accuracy:
-    """The accuracy that a run is to reach: standard error / |value| of an observable.
-
-    observable: Z, D, collision_rate, pressure or shear_viscosity, as `gaspart measure` names them; accuracy:
-    relative, of one standard error that includes correlations; start: the time from which frames count, by
-    default a quarter of the run; face: of the pressure, the wall (`x low`), by default each of them. Raises
-    SceneError for other values.
-    """
+@dataclass(frozen=True, eq=False)
+class Requirement:
+    """An accuracy as a file states it; see `gaspart.Accuracy`, which knows the observables."""
 
     observable: str
     accuracy: float
@@ -36,9 +28,6 @@ class Accuracy:
     face: str | None = None
 
     def __post_init__(self) -> None:
-        if self.observable not in OBSERVABLES:
-            rule = unknown_word(self.observable, OBSERVABLES, "observable")
-            raise SceneError("until.observable", self.observable, rule)
         low, high = _ACCURACIES
         rule = f"must be from {low:g} to {high:g}, the relative standard error"
         value = number("until.accuracy", self.accuracy, rule, least=low, most=high)
@@ -46,14 +35,12 @@ class Accuracy:
         if self.start is not None:
             start = number("until.start", self.start, "must not be negative", least=0.0)
             object.__setattr__(self, "start", start)
-        if self.face is not None and self.observable != "pressure":
-            raise SceneError("until.face", self.face, f"has no meaning for {self.observable}")
 
-    @classmethod
-    def named(cls, name: str, accuracy: float, start: float | None = None) -> Accuracy:
-        """From its `name`, as on the command line and in a config: `Z`, or `pressure:x low`."""
-        observable, colon, face = name.partition(":")
-        return cls(observable.strip(), accuracy, start, face.strip() if colon else None)
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Requirement) and astuple(self) == astuple(other)
+
+    def __hash__(self) -> int:
+        return hash(astuple(self))
 
     @property
     def name(self) -> str:
@@ -65,11 +52,11 @@ class Accuracy:
 class Until:
     """Accuracies that a run is to reach, all of them, and its longest duration, None for none."""
 
-    accuracies: tuple[Accuracy, ...]
+    accuracies: tuple[Requirement, ...]
     at_most: float | None = None
 
     def __post_init__(self) -> None:
-        if not self.accuracies or not all(isinstance(one, Accuracy) for one in self.accuracies):
+        if not self.accuracies or not all(isinstance(one, Requirement) for one in self.accuracies):
             raise SceneError("until", self.accuracies, "must be a gaspart.Accuracy, or several")
         names = [one.name for one in self.accuracies]
         for name in names:
@@ -100,7 +87,7 @@ class Until:
     @classmethod
     def from_json(cls, text: str, at_most: float | None) -> Until:
         """The inverse of `to_json`. Raises SceneError, and TypeError or ValueError for another text."""
-        return cls(tuple(Accuracy(**one) for one in json.loads(text)), at_most)
+        return cls(tuple(Requirement(**one) for one in json.loads(text)), at_most)
 
 
 def examined_frames() -> Iterator[int]:

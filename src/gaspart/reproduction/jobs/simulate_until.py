@@ -47,15 +47,15 @@ def engines(point: Point) -> list[Engine]:
 
 def parameters(point: Point) -> dict:
     """The arguments of `gaspart.run`, in plain values. Raises SceneError."""
+    from gaspart.tradeoff.accuracy import Accuracy
     from gaspart.tradeoff.until import default_sample_interval, require_measurable
-    from gaspart.trajectory.until import Accuracy
 
     settings, times = point.settings, point.schedule
     if not settings.get("until"):
         raise point.refused("until", "must be given with job: simulate_until")
     start = times.equilibration if "equilibration" in settings else None
     for name, accuracy in settings["until"].items():
-        require_measurable(Accuracy.named(name, accuracy, start), point.scene)
+        require_measurable(Accuracy.named(name, accuracy, start), point.scene, point.engine)
     interval = (
         times.sample_interval
         if "samples" in settings
@@ -79,8 +79,8 @@ def run(parameters: dict, folder: Path) -> None:
 def record(parameters: dict, seed: tuple[int, ...], path: Path, overwrite: bool) -> None:
     """Make one trajectory, or continue it, or find it complete."""
     from gaspart.scene.scene import Scene
+    from gaspart.tradeoff.accuracy import Accuracy
     from gaspart.tradeoff.until import run as run_until
-    from gaspart.trajectory.until import Accuracy
 
     until, start = parameters["until"], parameters["start"]
     run_until(

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from gaspart import engines
+from gaspart.analysis.observables import having
 from gaspart.kinds import POSITIVE, TEXT, Kind, choice, count, described, flag, positive
 from gaspart.scene.keys import schema_of
 from gaspart.scene.sizes import DISTRIBUTIONS
@@ -114,7 +115,7 @@ ENGINES: dict[str, dict[str, Kind]] = {
         "accuracy": positive(
             "relative accuracy, half of a 95 % interval; required", exclusiveMaximum=1, default=None
         ),
-        "observable": choice("observable whose accuracy it is", "Z", "collision_rate", "D", default="Z"),
+        "observable": choice("observable whose accuracy it is", *having(tabulated=True), default="Z"),
     },
 }
 """The keys that each engine has a meaning for."""

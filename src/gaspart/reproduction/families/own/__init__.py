@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from gaspart.analysis.names import OBSERVABLES
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.kinds import TEXT, Kind, choice, described, flag, listed, names, positive, record
 
 if TYPE_CHECKING:
@@ -82,6 +82,6 @@ def caption(settings: Mapping[str, Any]) -> str:
     text = str(settings.get("caption", "")).strip()
     if text.startswith("**"):
         return text
-    meaning = OBSERVABLES[settings["observable"]][2].partition(",")[0]
+    meaning = OBSERVABLES[settings["observable"]].definition.partition(",")[0]
     against = settings["against"].removeprefix("scene.").replace("_", " ")
     return f"**{meaning[0].upper()}{meaning[1:]}, against {against}.** {text}".rstrip()

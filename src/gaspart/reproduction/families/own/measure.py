@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.names import OBSERVABLES
 from gaspart.analysis.observable import Observable
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.reproduction.families.shared.rows import from_rows
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.sweep_table import mean_of, measured
@@ -45,7 +45,7 @@ def observable(points: list[Point], settings: dict) -> xr.Dataset:
     dataset = from_rows("point", rows, inner=("along",))
     for key in ("value", "value_error", "theory", "theory_error"):
         dataset[key].attrs["units"] = first.attrs.get("units", "1")
-    dataset["value"].attrs["long_name"] = first.attrs.get("long_name", OBSERVABLES[name][2])
+    dataset["value"].attrs["long_name"] = first.attrs.get("long_name", OBSERVABLES[name].definition)
     if "along_places" in dataset:
         dataset["along_places"].attrs.update(replicas[0][first.dims[0]].attrs)
     return dataset.assign_attrs(against=settings["against"], observable=name, source=source)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from gaspart.analysis.names import CURVES
+from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept
 from gaspart.errors import SceneError
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 
@@ -39,12 +39,25 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
         if not isinstance(value, int | float) or isinstance(value, bool):
             rule = f"must be a key whose value is a number at every point, but at {point.path} it is {value}"
             raise SceneError(f"{where}.against", against, rule)
-    curve = settings["observable"] in CURVES
+        _require_measurable(where, settings["observable"], point)
+    curve = OBSERVABLES[settings["observable"]].form == "curve"
     place = settings.get("place")
     if place is not None and not curve:
         raise SceneError(f"{where}.place", place, "has a meaning for a curve only")
     for number, claim in enumerate(settings.get("claims", ())):
         _claim(f"{where}.claims.{number}", claim, curve and place is None)
+
+
+def _require_measurable(where: str, name: str, point: Point) -> None:
+    """Raise SceneError for an observable that the scene of a point does not have, or that its trajectories do
+    not keep what it needs for."""
+    stated = {"pairs": "pairs", "stress": "fluxes"}
+    try:
+        require_defined(name, point.scene)
+        require_kept(name, [kept for key, kept in stated.items() if point.settings.get(key)])
+    except SceneError as error:
+        rule = f"at {point.path}: {error.key}: {error.rule}"
+        raise SceneError(f"{where}.observable", name, rule) from None
 
 
 def _claim(where: str, claim: Mapping[str, Any], curve: bool) -> None:

@@ -1,0 +1,157 @@
+"""Theory of a run by the equation that its engine solves, and of its number of particles."""
+
+import math
+
+import numpy as np
+import pytest
+from scenes import gas
+
+import gaspart as gp
+from gaspart.analysis import bulk
+from gaspart.analysis.expected.equilibrium import compressibility_factor
+from gaspart.analysis.measuring import measure
+from gaspart.analysis.observables import OBSERVABLES
+from gaspart.analysis.run import measured
+from gaspart.inspection.checks import judge
+from gaspart.inspection.readers import read_frames
+from gaspart.scene.gas import Gas
+from gaspart.theory.dsmc import diffusion_by_modes
+from gaspart.trajectory.correlator import Correlations
+
+DENSE = gas(3, 278, 0.2, exact_temperature=True)
+NUMBERS = ("Z", "collision_rate", "D")
+
+
+@pytest.fixture(scope="module", params=["boltzmann", "enskog"])
+def made(request, tmp_path_factory):
+    """(model, path) of a run of the DSMC engine at a packing fraction of 0.2."""
+    path = tmp_path_factory.mktemp(request.param) / "run.nc"
+    engine = gp.DSMC(model=request.param)
+    return request.param, gp.run(DENSE, engine, 3, 40.0, 0.125, path, displacements=True)
+
+
+def test_a_run_of_a_kinetic_equation_is_compared_with_that_equation(made):
+    """Of spheres that touch Z is 2.41, the rate 4.75 and D 0.37, not 1, 2.70 and 0.64."""
+    model, path = made
+    for name in NUMBERS:
+        found = measure(name, path)
+        scale = math.hypot(float(found.error), float(found[f"{found.attrs['quantity']}_theory_error"]))
+        assert abs(float(found.estimate - found.theory)) <= 3.0 * scale, name
+        assert model in found.attrs["source"].lower()
+    of_spheres = float(gp.theory.compressibility_factor(DENSE.packing_fraction, 3))
+    assert abs(float(measure("Z", path).theory) - of_spheres) > (1.4 if model == "boltzmann" else 0.005)
+
+
+def test_places_of_points_are_independent(made):
+    model, path = made
+    for name in ("rdf", "structure_factor"):
+        found = measure(name, path)
+        if model == "enskog":
+            assert found.theory is None
+            continue
+        apart = ((found.estimate - found.theory) / found.error) ** 2
+        if name == "rdf":  # nearer places are those of few pairs
+            apart = apart.sel(distance=slice(0.5, None))
+        assert float(apart.mean()) < 1.6, name
+    inserted = measure("chemical_potential", path)
+    assert (inserted.theory is None) == (model == "enskog")
+    if model == "boltzmann":
+        assert abs(float(inserted.deviation)) < 3.0
+        lattice = -278.0 * math.log(1.0 - 8.0 * DENSE.packing_fraction / 278.0)
+        assert float(inserted.theory) == pytest.approx(lattice)
+
+
+def test_the_check_of_a_healthy_run_of_dsmc_is_passed(made):
+    _, path = made
+    checks = {one.name: one for one in judge(read_frames(path))}
+    assert checks["diffusion coefficient D"].passed
+    assert not [one for one in checks.values() if one.passed is False]
+
+
+def test_the_simulation_is_compared_as_its_file(made):
+    """Its frames state the engine too."""
+    model, _ = made
+    simulation = gp.Simulation(DENSE, gp.DSMC(model=model), seed=3)
+    simulation.advance(duration=5.0)
+    assert model in measure("collision_rate", simulation).attrs["source"].lower()
+
+
+def test_the_flow_that_cells_resolve_adds_to_diffusion():
+    """By hand: 26 wave vectors of three cells a side; none with one cell, or with long free paths."""
+    side, count, spreading = 9.0, 278, 1.035
+    shortest = (2.0 * math.pi / side) ** 2
+    expected = 2.0 / (3.0 * count * spreading * shortest) * (6.0 + 12.0 / 2.0 + 8.0 / 3.0)
+    assert diffusion_by_modes(side, count, 3, 3, 0.6, spreading) == pytest.approx(expected)
+    assert diffusion_by_modes(side, count, 3, 1, 0.6, spreading) == 0.0
+    assert diffusion_by_modes(side, count, 3, 9, 9.0, spreading) == 0.0
+
+
+def test_a_mixture_by_the_enskog_equation_is_its_contact_values():
+    """Two equal halves are the gas of one species, exactly."""
+    one = gas(3, 20, 0.2)
+    half = gp.Scene(one.container, [gp.Species(10, one.species[0].radius, temperature=1.0)] * 2)
+    found = []
+    for scene in (one, half):
+        simulation = gp.Simulation(scene, gp.DSMC(model="enskog"), seed=1)
+        simulation.advance(duration=1.0)
+        with measured(simulation, None) as run:
+            found.append(compressibility_factor(run)[0])
+    assert found[0] == pytest.approx(found[1], rel=1e-12)
+    beyond = float(gp.theory.carnahan_starling(0.2)) - 1.0
+    assert found[0] == pytest.approx(1.0 + 0.95 * beyond, rel=1e-9)
+
+
+def test_fluxes_by_the_boltzmann_equation(tmp_path):
+    """The pressure of 64 particles about their centre of mass, and the viscosity of points."""
+    scene = gas(3, 64, 0.01, exact_temperature=True)
+    path = gp.run(
+        scene,
+        gp.DSMC(),
+        1,
+        4000.0,
+        20.0,
+        tmp_path / "run.nc",
+        correlations=Correlations(2.0, 10, stress=True),
+    )
+    tensor = measure("pressure_tensor", path)
+    kinetic = 63.0 / scene.container.volume
+    known = tensor.theory.sel(component=["xx", "yy", "zz"])
+    assert np.allclose(known, kinetic, rtol=0.02)
+    assert (abs(tensor.estimate - tensor.theory) < 3.5 * tensor.error).all()
+    viscosity = measure("shear_viscosity", path)
+    unsure = float(viscosity["shear_viscosity_theory_error"])
+    assert abs(float(viscosity.estimate - viscosity.theory)) < 3.0 * math.hypot(
+        float(viscosity.error), unsure
+    )
+    conductivity = measure("thermal_conductivity", path)
+    assert float(conductivity.theory) < float(gp.theory.enskog_conductivity(1e-9, 3))
+    assert float(measure("bulk_viscosity", path).theory) == 0.0
+
+
+def test_like_pairs_of_few_particles_have_fewer_partners(tmp_path):
+    """10 + 10 spheres: one has 9 like partners and 10 others."""
+    side = 8.0
+    kinds = [gp.Species(10, 0.5, temperature=1.0, exact_temperature=True, mass=mass) for mass in (1.0, 1.5)]
+    scene = gp.Scene(gp.Container((side,) * 3, "periodic"), kinds)
+    path = gp.run(scene, gp.EventDriven(), 2, 20000.0, 100.0, tmp_path / "run.nc", pairs=True)
+    for name in ("pair_rates", "contact_values"):
+        found = measure(name, path)
+        assert (abs(found.estimate - found.theory) < 3.0 * found.error).all(), name
+    rates = measure("pair_rates", path).theory
+    infinite = gp.theory.mixture_collision_rates(
+        scene.packing_fraction, 3, [1.0, 1.0], [10, 10], temperature=1.0, masses=[1.0, 1.5]
+    )
+    assert float(rates.sel(pair="0-0")) / infinite[0, 0] == pytest.approx(0.9, rel=0.03)
+
+
+def test_each_bulk_theory_is_that_of_its_contact_value():
+    dilute, dense = Gas(3, 1e-6, 100, 1.0, 1.0), Gas(3, 0.3, 100, 1.0, 1.0)
+    for name in {one.bulk for one in OBSERVABLES.values()} - {""}:
+        of = getattr(bulk, name)
+        exact, points = of(dilute, bulk.EXACT), of(dilute, bulk.BOLTZMANN)
+        assert exact == pytest.approx(points, rel=1e-5, abs=1e-5), name
+    assert bulk.compressibility_factor(dense, bulk.ENSKOG) == pytest.approx(gp.theory.carnahan_starling(0.3))
+    assert bulk.diffusion(dense, bulk.EXACT) / bulk.diffusion(dense, bulk.ENSKOG) == pytest.approx(
+        float(gp.theory.erpenbeck_wood_ratio(0.3)), rel=0.01
+    )
+    assert math.isnan(bulk.diffusion(Gas(2, 0.3, 100, 1.0, 1.0), bulk.EXACT))
