@@ -287,7 +287,7 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
             "until = 'Z': species.fixed: the virial of fixed particles is not a pressure",
         ),
         (
-            {"scene": replace(GAS, gravity=(0.0, 0.0, -1.0)), "sample_interval": None},
+            {"scene": replace(GAS, restitution=gp.Restitution(tangential=1.0)), "sample_interval": None},
             "sample_interval = None: must be given: the time between collisions",
         ),
     ],
