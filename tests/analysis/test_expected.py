@@ -44,8 +44,8 @@ def test_a_run_of_a_kinetic_equation_is_compared_with_that_equation(made):
 
 
 def test_places_of_points_are_independent(made):
-    """Nearer than a diameter there are 220 pairs in a frame, where spheres have none, and 700 waves; 50 frames
-    or more are independent: standard errors of 1 % and 0.6 %."""
+    """Nearer than a diameter there are 220 pairs in a frame, where spheres have none. Their mean number varies
+    by 2 % from run to run, that of the 700 waves by 0.6 %: three seeds."""
     model, path = made
     if model == "enskog":
         assert all(measure(name, path).theory is None for name in OF_PLACES)
@@ -53,7 +53,7 @@ def test_places_of_points_are_independent(made):
     pairs, waves, inserted = (measure(name, path) for name in OF_PLACES)
     assert (pairs.theory == 1.0).all() and (waves.theory == 1.0).all()
     near = pairs.estimate.sel(distance=slice(0.0, 1.0))
-    assert float(near.weighted(near["distance"] ** 2).mean()) == pytest.approx(1.0, abs=0.03)
+    assert float(near.weighted(near["distance"] ** 2).mean()) == pytest.approx(1.0, abs=0.06)
     assert float(waves.estimate.mean()) == pytest.approx(1.0, abs=0.018)
     lattice = -278.0 * math.log(1.0 - 8.0 * DENSE.packing_fraction / 278.0)
     assert float(inserted.theory) == pytest.approx(lattice)
