@@ -97,7 +97,9 @@ class Named:
     of it, each with the reason.
 
     What it is compared with. theory: a function in `analysis.expected`, which knows the equation of the
-    engine; bulk: a function of `analysis.bulk`, of an infinite plain gas by each equation; "" without one.
+    engine; bulk: a function of `analysis.bulk`, of an infinite plain gas by each equation, and source: where
+    its value for particles that touch is from, with {state} for the equation of state; mixture: a function of
+    `gaspart.theory` of a mixture; "" without one.
 
     How it transforms. Units and `along` state it for changes of units, exchanges of axes, mirrors and shifts.
     moving: whether it is the same in a frame that moves uniformly; scatter: what its uncertainty is the
@@ -125,6 +127,8 @@ class Named:
     nothing: dict[str, str] = field(default_factory=dict)
     theory: str = ""
     bulk: str = ""
+    source: str = ""
+    mixture: str = ""
     moving: bool = True
     scatter: str = "run"
     merged: str = ""
@@ -147,6 +151,12 @@ class Named:
     def label(self) -> str:
         """The title with the symbol."""
         return f"{self.title} {self.symbol}".rstrip()
+
+    @property
+    def listed(self) -> str:
+        """The definition, with the option of the run that it needs."""
+        options = {"pairs": ", of a run with --pairs", "fluxes": ", of a run with --stress"}
+        return self.definition + options.get(self.needs, "")
 
     def powers(self, dimension: int) -> tuple[int, int, int]:
         """Of length, mass and time in its units."""

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.cli.arguments import Parser, real, set_command, several
 from gaspart.errors import SceneError
+from gaspart.scene.gas import Gas
 
 _PARTICLE = ("diameter", "temperature", "mass")
+_EQUATIONS = ("exact", "boltzmann", "enskog")
 _STATE = {
     2: "virial series to B10 with a linear tail (Clisby and McCoy 2006)",
     3: "Kolafa, Labik and Malijevsky 2004",
@@ -21,37 +26,74 @@ _FLUID = {2: "the fluid of discs", 3: "the fluid of spheres (metastable from 0.4
 
 @dataclass(frozen=True)
 class _Quantity:
-    """A function of gaspart.theory, the particle's properties that it depends on, its meaning and source."""
+    """A value of theory: of a `Gas` by an equation; takes: the particle's properties that it depends on;
+    mixture: the function of gaspart.theory of a mixture."""
 
-    function: str
+    value: Callable[[Gas, str], float]
     takes: tuple[str, ...]
     meaning: str
-    source: dict[int, str]
+    source: str
+    mixture: str = ""
 
 
-_RATE = {d: f"exact in equilibrium, with g(sigma) from: {source}" for d, source in _STATE.items()}
-_ENSKOG = {
-    2: "Enskog's theory (Gass 1971), with g(sigma) from: " + _STATE[2],
-    3: "Enskog's theory (Chapman and Cowling 1970), with g(sigma) from: " + _STATE[3],
-}
+def _formula(name: str, takes: tuple[str, ...]) -> Callable[[Gas, str], float]:
+    """A function of gaspart.theory, of particles that touch."""
+
+    def value(gas: Gas, equation: str) -> float:
+        from gaspart import theory
+
+        if equation != "exact":
+            raise SceneError("equation", equation, "this quantity is that of particles that touch")
+        properties = {key: gas.particle[key] for key in takes}
+        return float(getattr(theory, name)(gas.packing_fraction, gas.dimension, **properties))
+
+    return value
+
+
+def _observable(name: str) -> Callable[[Gas, str], float]:
+    """A function of `gaspart.analysis.bulk`."""
+
+    def value(gas: Gas, equation: str) -> float:
+        from gaspart.analysis import bulk
+
+        return float(getattr(bulk, name)(gas, equation))
+
+    return value
+
+
+_ENSKOG = "Enskog's theory (Chapman and Cowling 1970; discs Gass 1971), with g(sigma) from: {state}"
+_RATE = "exact in equilibrium, with g(sigma) from: {state}"
 _QUANTITIES = {
-    "Z": _Quantity("compressibility_factor", (), "compressibility factor PV/(N k_B T)", _STATE),
-    "contact_value": _Quantity("contact_value", (), "pair distribution at contact g(sigma)", _RATE),
-    "compressibility": _Quantity("reduced_compressibility", (), "k_B T d(rho)/dP, which is S(0)", _STATE),
-    "chemical_potential": _Quantity(
-        "excess_chemical_potential", (), "chemical potential beyond an ideal gas's over k_B T", _STATE
+    name: _Quantity(
+        _observable(one.bulk),
+        _PARTICLE if any(one.powers(3)) else (),
+        one.definition,
+        one.source,
+        one.mixture,
+    )
+    for name, one in OBSERVABLES.items()
+    if one.bulk
+}
+_QUANTITIES |= {
+    "contact_value": _Quantity(
+        _formula("contact_value", ()),
+        (),
+        "pair distribution at contact g(sigma)",
+        _RATE,
+        "mixture_contact_values",
     ),
-    "mean_free_path": _Quantity("mean_free_path", ("diameter",), "mean free path", _RATE),
-    "collision_rate": _Quantity("collision_rate", _PARTICLE, "collisions per particle and time", _RATE),
-    "diffusion_coefficient": _Quantity("enskog_diffusion", _PARTICLE, "self-diffusion coefficient", _ENSKOG),
-    "viscosity": _Quantity("enskog_viscosity", _PARTICLE, "shear viscosity", _ENSKOG),
+    "compressibility": _Quantity(
+        _formula("reduced_compressibility", ()), (), "k_B T d(rho)/dP, which is S(0)", "{state}"
+    ),
+    "mean_free_path": _Quantity(
+        _formula("mean_free_path", ("diameter",)), ("diameter",), "mean free path", _RATE
+    ),
+    "diffusion_coefficient": _Quantity(
+        _formula("enskog_diffusion", _PARTICLE), _PARTICLE, "self-diffusion coefficient", _ENSKOG
+    ),
+    "viscosity": _Quantity(_formula("enskog_viscosity", _PARTICLE), _PARTICLE, "shear viscosity", _ENSKOG),
 }
-_MIXTURE = {
-    "Z": ("mixture_compressibility_factor", ()),
-    "contact_value": ("mixture_contact_values", ()),
-    "collision_rate": ("mixture_collision_rates", ("temperature",)),
-}
-"""Quantity -> its function of a mixture, and the properties that this takes."""
+"""The observables that have a value in an infinite gas, and formulas."""
 _MIXTURE_SOURCES = {
     "boublik": "Boublik 1970, Mansoori and others 1971",
     "linear": "Santos, Yuste and Lopez de Haro 1999",
@@ -72,6 +114,14 @@ def add_theory(parser: Parser) -> None:
     add("quantity", choices=tuple(_QUANTITIES), metavar="QUANTITY", help=", ".join(_QUANTITIES))
     add("--eta", type=several(real(least=0.0)), required=True, metavar="X[,X...]", help="packing fraction")
     add("--dimension", type=int, choices=(2, 3), default=3, help="default: 3")
+    text = "of particles that touch, or the kinetic equation that the DSMC engine solves; default: exact"
+    add(
+        "--equation",
+        choices=_EQUATIONS,
+        default="exact",
+        metavar="NAME",
+        help=f"{', '.join(_EQUATIONS)}: {text}",
+    )
     for name in _PARTICLE:
         add(f"--{name}", type=real(above=0.0), help="default: 1")
     text = "of the species of a mixture, in the place of --diameter"
@@ -98,11 +148,17 @@ def _theory(given: argparse.Namespace) -> None:
             raise SceneError(key, properties[key], f"{given.quantity} does not depend on it")
     for eta in given.eta:
         spread = theory.compressibility_uncertainty(eta, dimension)  # first: it refuses any other eta
-        value = getattr(theory, quantity.function)(eta, dimension, **properties)
-        about = f" +- {float(spread):.1g}" if given.quantity == "Z" else ""
-        print(f"{given.quantity}(eta = {eta:g}, dimension = {dimension}) = {float(value):.10g}{about}")
+        gas = Gas(dimension, eta, 1, **{key: properties.get(key, 1.0) for key in _PARTICLE})
+        value = quantity.value(gas, given.equation)
+        if math.isnan(value):
+            raise SceneError(
+                "quantity", given.quantity, f"is not known for {_FLUID[dimension]} at eta = {eta:g}"
+            )
+        about = f" +- {float(spread):.1g}" if given.quantity == "Z" and given.equation == "exact" else ""
+        print(f"{given.quantity}(eta = {eta:g}, dimension = {dimension}) = {value:.10g}{about}")
     highest = theory.HIGHEST_PACKING_FRACTION[dimension]
-    print(f"{quantity.meaning}, {quantity.source[dimension]}")
+    exact = quantity.source.format(state=_STATE[dimension])
+    print(f"{quantity.meaning}, {exact if given.equation == 'exact' else f'{given.equation} equation'}")
     print(f"holds for eta from 0 to {highest:g}, {_FLUID[dimension]}")
 
 
@@ -110,16 +166,21 @@ def _of_mixture(given: argparse.Namespace) -> None:
     """A line for each theory, density and, of properties of pairs, pair of species."""
     from gaspart import theory
 
-    if given.quantity not in _MIXTURE:
-        rule = f"of mixtures there are {', '.join(_MIXTURE)}"
-        raise SceneError("quantity", given.quantity, rule)
-    name, takes = _MIXTURE[given.quantity]
+    name = _QUANTITIES[given.quantity].mixture
+    if not name:
+        able = (key for key, quantity in _QUANTITIES.items() if quantity.mixture)
+        raise SceneError("quantity", given.quantity, f"of mixtures there are {', '.join(able)}")
+    if given.equation != "exact":
+        raise SceneError(
+            "equation", given.equation, "of mixtures there is the theory of particles that touch"
+        )
+    takes = ("temperature",) if _QUANTITIES[given.quantity].takes else ()
     properties = {key: getattr(given, key) for key in _PARTICLE if getattr(given, key) is not None}
     for key in properties:
         if key not in takes:
             raise SceneError(key, properties[key], f"{given.quantity} of a mixture does not depend on it")
     if given.masses is not None:
-        if given.quantity != "collision_rate":
+        if not takes:
             raise SceneError("masses", given.masses, f"{given.quantity} does not depend on them")
         properties["masses"] = given.masses
     state = given.dimension, given.diameters, given.fractions
@@ -131,7 +192,7 @@ def _of_mixture(given: argparse.Namespace) -> None:
                 print(
                     f"{given.quantity}(eta = {eta:g}, dimension = {given.dimension}), {kind}: {_pairs(value)}"
                 )
-    print(f"{_QUANTITIES[given.quantity].meaning}{of_first if given.quantity == 'collision_rate' else ''}")
+    print(f"{_QUANTITIES[given.quantity].meaning}{of_first if takes else ''}")
     print("; ".join(f"{kind}: {source}" for kind, source in _MIXTURE_SOURCES.items()))
     highest = theory.HIGHEST_PACKING_FRACTION[given.dimension]
     print(f"approximations, for eta from 0 to {highest:g}; their differences are a measure of their errors")
