@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -93,20 +93,22 @@ def mutual_diffusion(run: Run) -> Expected | None:
     return value, math.nan, f"{source}, first approximation"
 
 
-def _transport(name: str, run: Run, temperature: float) -> Expected | None:
+def _transport(
+    run: Run, temperature: float, coefficient: Callable[[Gas, str], float], kind: str = ""
+) -> Expected | None:
     """A transport coefficient by fluctuations of N particles at fixed energy.
 
-    Those of a dilute gas are lower than of an infinite one by `theory.transport_finite_size_factor`.
+    Those of a dilute gas, of a kind that `theory.transport_finite_size_factor` knows, are lower than of an
+    infinite one by this factor.
     """
     gas, equation = run.fluid, equation_of(run)
     if gas is None or not temperature > 0.0:
         return None
-    value = getattr(bulk, name)(replace(gas, temperature=temperature), equation)
+    value = coefficient(replace(gas, temperature=temperature), equation)
     if not math.isfinite(value):
         return None
-    kind = {"shear_viscosity": "viscosity", "thermal_conductivity": "conductivity"}.get(name)
     if equation == EXACT:
-        measured = name == "shear_viscosity" and gas.dimension == 3
+        measured = coefficient is bulk.shear_viscosity and gas.dimension == 3
         error = theory.VISCOSITY_RATIO_UNCERTAINTY * value if measured else math.nan
         return value, error, f"Enskog{', and the ratio measured in a dense gas' if measured else ''}"
     if kind:
@@ -114,15 +116,20 @@ def _transport(name: str, run: Run, temperature: float) -> Expected | None:
     return value, value * bias_of(run, "fluxes"), f"{SOURCES[equation]}, {OF_NUMBER}"
 
 
-shear_viscosity_at_rest = partial(_transport, "shear_viscosity")
-bulk_viscosity = partial(_transport, "bulk_viscosity")
-thermal_conductivity = partial(_transport, "thermal_conductivity")
+def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
+    """By fluctuations."""
+    return _transport(run, temperature, bulk.bulk_viscosity)
+
+
+def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
+    """By fluctuations."""
+    return _transport(run, temperature, bulk.thermal_conductivity, "conductivity")
 
 
 def shear_viscosity(run: Run, temperature: float) -> Expected | None:
     """By fluctuations; of a sheared gas by its response to a small rate."""
     if run.scene.shear_rate is None:
-        return shear_viscosity_at_rest(run, temperature)
+        return _transport(run, temperature, bulk.shear_viscosity, "viscosity")
     gas, equation = replace(run.scene, faces={}).gas, equation_of(run)
     if gas is None or gas.packing_fraction > theory.HIGHEST_PACKING_FRACTION[gas.dimension]:
         return None
