@@ -35,7 +35,7 @@ def periodic(scene: Scene, selection: Selection) -> None:
 
 
 def periodic_virial(scene: Scene, selection: Selection) -> None:
-    """Likewise, where the pressure on walls takes its place."""
+    """No walls of the container, on which the pressure would be measured instead."""
     _periodic(scene, "Z needs a periodic container; between walls measure pressure (wall_pressure)")
 
 
@@ -52,7 +52,7 @@ def walled(scene: Scene, selection: Selection) -> None:
 
 
 def elastic(scene: Scene, selection: Selection) -> None:
-    """Contacts that keep energy, so that there is an equilibrium."""
+    """Contacts that keep energy."""
     law = scene.restitution
     if law is not None and law.normal < 1.0:
         raise SceneError("restitution.normal", law.normal, "a gas that loses energy is in no equilibrium")
@@ -76,7 +76,7 @@ def _moving(scene: Scene) -> int:
 
 
 def thermal(scene: Scene, selection: Selection) -> None:
-    """Particles enough for a temperature: one in a periodic container has no flight about its own centre."""
+    """More than one particle in a periodic container, whose centre keeps its velocity."""
     if scene.dimension * _moving(scene) - sum(scene.conserved_axes) < 1:
         raise SceneError("count", _moving(scene), "too few moving particles for a temperature")
 
@@ -89,7 +89,7 @@ def of_species(scene: Scene, selection: Selection) -> None:
 
 
 def one_size_each(scene: Scene, selection: Selection) -> None:
-    """Species of one size each, which all move: a contact value is that of two sizes, by rates of flight."""
+    """Species of one size each, which all move."""
     for n, kind in enumerate(scene.species):
         if not kind.alike:
             rule = "a contact value is that of two sizes; measure pair_collision_rates"
@@ -100,7 +100,7 @@ def one_size_each(scene: Scene, selection: Selection) -> None:
 
 
 def grouped(scene: Scene, selection: Selection) -> None:
-    """Particles enough for groups, unless some are selected; a selection that exists and moves."""
+    """16 particles that move, unless some are selected, of which any must move."""
     chosen = {key: selection.get(key) for key in ("species", "particles")}
     if all(value is None for value in chosen.values()):
         _enough(scene)
@@ -117,7 +117,7 @@ def grouped(scene: Scene, selection: Selection) -> None:
 
 
 def grouped_species(scene: Scene, selection: Selection) -> None:
-    """Particles enough for groups, those of a selected species too."""
+    """16 particles that move, of a selected species too."""
     species = selection.get("species")
     if species is None:
         _enough(scene)
@@ -140,7 +140,7 @@ def _in_species(scene: Scene, species: Any) -> int:
 
 
 def free_axis(scene: Scene, selection: Selection) -> None:
-    """A periodic axis, along which particles go any distance."""
+    """A periodic axis."""
     if not any(scene.container.periodic):
         rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
         raise SceneError("container.boundary", scene.container.boundary, rule)
@@ -153,7 +153,7 @@ def no_lasting_discs(scene: Scene, selection: Selection) -> None:
 
 
 def two_species(scene: Scene, selection: Selection) -> None:
-    """Two species, which both move, and no single particles."""
+    """Two species, which both move, alone."""
     if len(scene.species) != 2 or scene.particles:
         raise SceneError("species", len(scene.kinds), "mutual diffusion is that of two species")
     if any(kind.fixed for kind in scene.species):
@@ -167,7 +167,7 @@ def a_pair(scene: Scene, selection: Selection) -> None:
 
 
 def a_neighbourhood(scene: Scene, selection: Selection) -> None:
-    """A particle and its neighbours."""
+    """7 discs or 13 spheres."""
     least = _NEIGHBOURHOOD[scene.dimension]
     if scene.count < least:
         raise SceneError("count", scene.count, f"needs {least} particles or more")
@@ -185,17 +185,17 @@ def alike(scene: Scene, selection: Selection) -> None:
 
 
 def has_axis(scene: Scene, selection: Selection) -> None:
-    """The selected axis."""
+    """The axis that is selected."""
     if selection.get("axis") is not None:
         choice("axis", selection["axis"], tuple("xyz"[: scene.dimension]))
 
 
 def tallied(scene: Scene, selection: Selection) -> None:
-    """A scene whose fluxes can be tallied."""
+    """A periodic container in which velocities change at contacts alone."""
     require_tallied(scene)
 
 
 def shears(scene: Scene, selection: Selection) -> None:
-    """No sheared faces, or such that shear."""
+    """A shear rate that is not 0, if there is one."""
     if scene.shear_rate == 0.0:
         raise SceneError("shear_rate", scene.shear_rate, "gives no response")

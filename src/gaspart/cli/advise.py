@@ -12,7 +12,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart.analysis.observables import OBSERVABLES
-from gaspart.cli.arguments import Parser, UsageError, of_configs, print_lines, real, set_command
+from gaspart.cli.arguments import (
+    Parser,
+    Suggested,
+    UsageError,
+    of_configs,
+    print_lines,
+    real,
+    set_command,
+)
 from gaspart.cli.engine_options import one_of, stated
 from gaspart.cli.progress import waiting
 from gaspart.cli.run import run_options
@@ -47,7 +55,7 @@ def add_advise(parser: Parser) -> None:
     add = parser.add_argument
     add("scene", nargs="?", help="scene file (YAML)")
     text = f'{one_of(OBSERVABLES)}, or the pressure on one wall, as "pressure:x low"; default: Z'
-    add("--observable", default="Z", metavar="NAME", help=text)
+    add("--observable", default="Z", choices=Suggested(OBSERVABLES), metavar="NAME", help=text)
     add("--accuracy", type=real(above=0.0), default=1e-2, metavar="X", help="relative; default: 0.01")
     add("--budget", type=_seconds, metavar="S", help="largest processor time, in s (60 or 60s)")
     text = f"processor time of all pilot runs, in s; default: {PILOT_SECONDS:g}"

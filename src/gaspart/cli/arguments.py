@@ -22,6 +22,13 @@ class CheckFailed(Exception):
     """A check has failed; its line is printed already."""
 
 
+class Suggested(tuple):
+    """Words of which a shell completes one, where others may be given too."""
+
+    def __contains__(self, word: object) -> bool:
+        return True
+
+
 class Parser(argparse.ArgumentParser):
     """Raises UsageError instead of leaving, accepts complete options only, and keeps line breaks."""
 

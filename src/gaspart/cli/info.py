@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart.cli.arguments import Parser, add_trajectory, print_line, print_lines, set_command
+from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
     from gaspart.trajectory.recipe import Recipe
@@ -55,6 +56,7 @@ def _info(given: argparse.Namespace) -> None:
         print_line(line)
     print_line(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
     print_lines(certificate(stored_at))
+    print_lines(_measurable(recipe))
     for key, value in recipe.engine.predictions(scene).items():
         print_line(f"predicted {key.replace('_', ' ')}: {100.0 * value:+.2g} % (by its cells and steps)")
     print_line(f"checksums: the header and {'all frames' if frames else 'no frames yet'} are undamaged")
@@ -70,6 +72,28 @@ def _info(given: argparse.Namespace) -> None:
 def _lines_of(scene: str) -> list[str]:
     """The lines of a scene as a file has it."""
     return scene.rstrip("\n").split("\n")
+
+
+def _measurable(recipe: Recipe) -> list[str]:
+    """The observables that the scene has, and that the run keeps what they need for; and those that need
+    another run."""
+    from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept
+
+    asked = recipe.correlations
+    kept = ["fluxes"] * bool(asked and asked.stress) + ["pairs"] * recipe.pairs
+    measured, others = [], []
+    for name, one in OBSERVABLES.items():
+        try:
+            require_defined(name, recipe.scene)
+        except SceneError:
+            continue
+        try:
+            require_kept(name, kept)
+            measured.append(name)
+        except SceneError:
+            others.append(f"{name} ({one.needs})")
+    lines = [f"observables: {', '.join(measured) or 'none'}"]
+    return lines + ([f"of another run of this scene: {', '.join(others)}"] if others else [])
 
 
 def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:

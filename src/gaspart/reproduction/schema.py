@@ -11,6 +11,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from gaspart.analysis.declaration import DIMENSIONS
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import ENGINES
 from gaspart.kinds import Kind, choice, names, record
 from gaspart.reproduction.families import registry
@@ -28,6 +30,13 @@ Generated from the declarations in the code by `python -m gaspart.reproduction.s
 What the keys are for is explained in [the config page](config.md).
 For editors, `workflow/schemas` has the same rules as JSON schemas.
 A key without a default is required. A default of *none* means that the key is absent.
+"""
+_OBSERVABLES = """## Observables
+
+What `gaspart measure`, `gp.sweep`, `gaspart advise` and figures of one's own know by name, in units of
+length, mass, time and energy with k_B = 1, d the dimension. A scene that breaks a condition is refused before
+a run. Theory is that of the equation that the engine of a run solves: of particles that touch, or of the
+Boltzmann or the Enskog equation.
 """
 _FEATURES = "## Features and engines\n\nWhich engine models what, and which features exclude each other.\n"
 
@@ -97,7 +106,7 @@ def reference() -> str:
     parts += ["## Scene file\n", _table(scene["properties"])]
     for name, part in _parts(scene):
         parts += [f"### {name}\n\n{part['description']}\n", _table(part["properties"])]
-    parts += [_FEATURES, _models(), _excluded()]
+    parts += [_FEATURES, _models(), _excluded(), _OBSERVABLES, _observables()]
     return "\n".join(parts)
 
 
@@ -111,6 +120,30 @@ def _models() -> str:
         for pair in engine.excludes:
             one, other = (FEATURES[name].meaning for name in pair)
             rows += ["", f"Not together with engine `{engine.name}`: {one} and {other}."]
+    return "\n".join([*rows, ""])
+
+
+def _observables() -> str:
+    """Each named observable, as it is declared."""
+    heads = ("name", "meaning", "units", "result", "selections", "needs of a run", "conditions", "not by")
+    heads += ("theory", "`--until`")
+    rows = [f"| {' | '.join(heads)} |", f"|{' --- |' * len(heads)}"]
+    for name, one in OBSERVABLES.items():
+        along = ", ".join(DIMENSIONS[dim].meaning for dim in one.along)
+        where = " ".join((condition.__doc__ or "").split("\n")[0] for condition in one.conditions)
+        cells = (
+            f"`{name}`{f' ({one.symbol})' if one.symbol else ''}",
+            one.definition,
+            f"`{one.units}`",
+            f"by {along}" if along else "number",
+            ", ".join(f"`{key}`" for key in one.selections),
+            one.needs,
+            where,
+            ", ".join(f"`{equation}`" for equation in one.nothing),
+            "yes" if one.theory else "",
+            "yes" if one.ends_runs else "",
+        )
+        rows.append(f"| {' | '.join(cells)} |")
     return "\n".join([*rows, ""])
 
 
