@@ -39,6 +39,7 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
     than 17 frames, and a shear rate of 0.
     """
     with measured(source, start, sheared=True) as run:
+        require_defined("shear_viscosity", run.scene)
         if run.scene.shear_rate is None:
             return _coefficient(run, "shear_viscosity", "shear", lag)
         return _response(run, lag)
@@ -113,7 +114,6 @@ def _response(run: Run, lag: float | None) -> Observable:
     scene, rate = run.scene, run.scene.shear_rate
     if lag is not None:
         raise SceneError("lag", lag, "is that of fluctuations at rest; a sheared gas responds without")
-    require_defined("shear_viscosity", scene)
     assert rate, "see `conditions.shears`"
     carried = run.increments("stress_sum")[:, 1, 0]
     viscosity = -carried / (rate * scene.container.volume * np.diff(run.time))
