@@ -247,7 +247,7 @@ def test_what_is_stored_falls_faster_than_noise():
         (SHEARED, "pressure", "observable = 'pressure': container.boundary: has no walls"),
         (BOX, "pressure:z low", "there is no such wall; the walls are x low, x high, y low, y high"),
         (BOX, "collision_rate:x low", "collision_rate is not of a wall"),
-        (SHEARED, "vacf", "carries particles along: correlations need stress"),
+        (SHEARED, "vacf", "not defined where images of the particles slide"),
         (replace(SHEARED, restitution=None), "shear_viscosity", "nothing takes the energy"),
         (replace(BOX, faces={"y_low": gp.Vibrating(0.1, 1.0)}), "pressure", "nothing takes the energy"),
         (replace(BOX, thermostat=gp.Thermostat(1.0, 0.1)), "pressure", "nothing takes the energy"),

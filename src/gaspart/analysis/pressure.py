@@ -45,7 +45,7 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     distance (`gaspart.theory.wall_pressure`). Raises SceneError without walls, for too few frames, and where
     particles rest in a scene with obstacles, which may carry them.
     """
-    with measured(source, start) as run:
+    with measured(source, start, sheared=True) as run:
         require_defined("pressure", run.scene)
         blocks = min(_BLOCKS, len(run.time) - 1)
         if blocks < 4:
