@@ -13,6 +13,7 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import fields
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -101,22 +102,21 @@ def sweep(
     job = "simulate" if until is None else "simulate_until"
     grid = {key if key in point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
     planned = _planned({"job": job, "point": point, "grid": grid}, str(folder), count_of("seed", seed))
-    for one in planned:
-        _require_measurable(one, names)
-    _run(planned, count_of("workers", workers, least=1), progress or _print, overwrite)
+    _run(_measurable(planned, names), count_of("workers", workers, least=1), progress or _print, overwrite)
     rows: list[Measured] = [measured(one, names, equilibration is None) for one in planned]
     return table(rows, names, axes, {"scene": scene, "engine": engine, "seed": seed})
 
 
-def _require_measurable(point: Point, names: list[str]) -> None:
-    """Raise SceneError, before anything runs, for an observable that a point does not have, or that its run
-    does not keep what it needs for."""
-    for name in names:
+def _measurable(planned: list[Point], names: list[str]) -> list[Point]:
+    """The points. Raises SceneError, before anything runs, for an observable that one does not have, or that
+    its run does not keep what it needs for."""
+    for point, name in product(planned, names):
         try:
             require_defined(name, point.scene)
             require_kept(name, ("pairs",))
         except SceneError as error:
             raise error.inside(f"{name} of {EXPERIMENT}[{point.name}]") from None
+    return planned
 
 
 def _length(
