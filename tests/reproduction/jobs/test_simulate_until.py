@@ -38,7 +38,7 @@ def test_the_equilibration_is_not_examined():
     [
         ({"until": None}, "until = None: must be given with job: simulate_until"),
         ({"until": {"Q": 0.1}}, "until.observable = 'Q': unknown observable"),
-        ({"until": {"pressure": 0.1}}, "until = 'pressure': there are no walls: require Z"),
+        ({"until": {"pressure": 0.1}}, "until = 'pressure': container.boundary: has no walls: measure comp"),
         ({"lags": 10}, "lags = 10: has a meaning with job: simulate only"),
         ({"duration": None}, "exactly one of collisions_per_particle, duration, steps must be given"),
     ],
