@@ -53,10 +53,8 @@ class Target:
         observable, colon, face = str(name).partition(":")
         known(observable)
         walls = scene.container.walls
-        try:
-            require_defined(observable, scene)
-        except SceneError as error:
-            raise SceneError("observable", name, f"{error.key}: {error.rule}") from None
+        if scene.count:  # an empty one has no advice at all
+            _require_defined(scene, observable, name)
         if colon and (observable != "pressure" or face not in walls):
             rule = f"{observable} is not of a wall" if observable != "pressure" else "there is no such wall"
             raise SceneError("observable", name, f"{rule}; the walls are {', '.join(walls) or 'none'}")
@@ -165,6 +163,14 @@ class Target:
         per_frame = max(correlations.lags, round(length / sample / _FRAMES[0]))
         interval = tidy(per_frame * sample)
         return tidy(max(_LEAST_FRAMES, round(length / interval)) * interval), interval, correlations
+
+
+def _require_defined(scene: Scene, observable: str, name: str) -> None:
+    """Raise SceneError, with the name that was asked for, for an observable that a scene does not have."""
+    try:
+        require_defined(observable, scene)
+    except SceneError as error:
+        raise SceneError("observable", name, f"{error.key}: {error.rule}") from None
 
 
 def tidy(multiple: float) -> float:
