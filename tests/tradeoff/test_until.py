@@ -281,7 +281,7 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
             {"until": gp.Accuracy("shear_viscosity", 0.1)},
             "until = 'shear_viscosity': correlations: needs correlations",
         ),
-        ({"engine": gp.DSMC()}, "until = 'Z': observable: is 1 in the Boltzmann model, whatever happens"),
+        ({"engine": gp.DSMC()}, "until = 'Z': observable: is 1 of particles without extent, whatever happens"),
         (
             {"scene": gas(3, 8, 0.1, fixed=True)},
             "until = 'Z': species.fixed: the virial of fixed particles is not a pressure",
