@@ -128,7 +128,7 @@ def test_values_of_a_scene_file_and_of_the_engine_vary(tmp_path):
         ({"replicas": 0}, "replicas = 0"),
         ({"workers": 0}, "workers = 0"),
         ({"equilibration": -1.0}, "equilibration = -1.0: must not be negative"),
-        ({"observables": ["pressure"]}, "pressure of .*periodic"),
+        ({"observables": ["pressure"]}, "observables = 'pressure': cannot be measured: .*has no walls"),
         (
             {"scene": gp.Scene(gp.Container((8.0, 9.0, 8.0)), [gp.Species(60, 0.5)])},
             "over.packing_fraction = .*needs a container with equal sides",

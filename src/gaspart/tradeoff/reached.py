@@ -24,6 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gaspart.analysis.names import TOO_SHORT
 from gaspart.errors import SceneError
 from gaspart.tradeoff.estimates import LEAST_FREEDOM, components
 from gaspart.trajectory.reading import open_trajectory
@@ -38,8 +39,6 @@ if TYPE_CHECKING:
 _DOUBT = 0.1
 """Probability with which the true error exceeds its bound."""
 _CONFIDENCE = 0.95
-TOO_SHORT = ("frames", "duration", "collisions", "start", "D")
-"""Keys of the errors of an analysis that a longer run may not have."""
 
 
 @dataclass(frozen=True)
