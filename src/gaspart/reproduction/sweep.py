@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields, replace
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -110,21 +111,29 @@ def sweep(
     planned, failures = _planned({"job": job, "point": point, "grid": grid}, root, seed)
     able = [one for one in planned if one.name not in failures]
     _require_measurable(names, able)
-    show, done = progress or _print, [len(failures)]
-
-    def finished(one: Point, reason: str) -> None:
-        done[0] += 1
-        if reason:
-            failures[one.name] = reason
-            _complain(one.name, reason)
-        show(done[0], len(planned), one.name)
-
     for name, reason in failures.items():
         _complain(name, reason)
     _make_folder(root)
-    make_all(able, workers, bool(overwrite), finished)
+    show, done = progress or _print, count(len(failures) + 1)
+    failures |= _make(able, workers, bool(overwrite), lambda name: show(next(done), len(planned), name))
     rows = [_row(one, names, equilibration is None, failures.get(one.name, "")) for one in planned]
     return table(rows, names, axes, {"scene": scene, "engine": engine, "seed": seed})
+
+
+def _make(
+    points: list[Point], workers: int, overwrite: bool, report: Callable[[str], None]
+) -> dict[str, str]:
+    """Make the points; returns the reasons why some could not be made, by name. report(name): of each."""
+    failures = {}
+
+    def finished(point: Point, reason: str) -> None:
+        if reason:
+            failures[point.name] = reason
+            _complain(point.name, reason)
+        report(point.name)
+
+    make_all(points, workers, overwrite, finished)
+    return failures
 
 
 def _root(folder: Any) -> str:
@@ -177,7 +186,7 @@ def _kept(names: list[str], correlations: Correlations | None, length: dict[str,
         if correlations is not None:
             raise SceneError("correlations", correlations, "need a duration, not until")
         return {"displacements": bool({*names} & {*PATHS})}
-    kept = {"pairs": bool({*names} & {*PAIRS}), "displacements": bool({*names} & {*PATHS})}
+    kept: dict[str, Any] = {"pairs": bool({*names} & {*PAIRS}), "displacements": bool({*names} & {*PATHS})}
     if correlations is None:
         return kept
     if not isinstance(correlations, Correlations):
@@ -189,7 +198,7 @@ def _kept(names: list[str], correlations: Correlations | None, length: dict[str,
         raise SceneError("correlations.lags", correlations.lags, f"must be at most half of {intervals}")
     frames = next(n for n in range(min(intervals, length["samples"]), 0, -1) if intervals % n == 0)
     kept |= {"samples": intervals, "frames": frames, "lags": correlations.lags}
-    return kept | {"stress": True, "displacements": False} if correlations.stress else kept
+    return kept | {"stress": correlations.stress}
 
 
 def point_keys(engine: Engine) -> set[str]:

@@ -98,16 +98,17 @@ class _Process:
     def __init__(self, point: Point, overwrite: bool) -> None:
         self.point = point
         command = [sys.executable, "-m", "gaspart.reproduction.sweep_points"]
-        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-        self._process = subprocess.Popen(command, **pipes, start_new_session=True)
+        pipe = subprocess.PIPE
+        self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, start_new_session=True)
         given = pickle.dumps((point.to_dict(), overwrite))
         with suppress(BrokenPipeError):  # it has ended, for a reason that its exit code states
             assert self._process.stdin
             self._process.stdin.write(b"%d\n" % len(given) + given)  # open until it ends
             self._process.stdin.flush()
 
-    def fileno(self) -> int:
-        """Of what it writes; readable when it has ended."""
+    @property
+    def output(self) -> int:
+        """The descriptor of what it writes, which is readable when it has ended."""
         assert self._process.stdout
         return self._process.stdout.fileno()
 
@@ -145,15 +146,16 @@ def _in_processes(
 ) -> None:
     """`make` in processes, of which so many run at a time. A signal takes effect when all have ended after a
     checkpoint; where the caller's handler returns, they are begun again."""
-    waiting, running = list(reversed(points)), []
+    waiting: list[Point] = list(reversed(points))
+    running: list[_Process] = []
     with deferred() as signals:
         signals.unsaved = True
         try:
             while waiting or running:
                 while waiting and len(running) < workers:
                     running.append(_Process(waiting.pop(), overwrite))
-                for process in connection.wait(running, _LOOK):
-                    assert isinstance(process, _Process)
+                ended = connection.wait([process.output for process in running], _LOOK)
+                for process in [one for one in running if one.output in ended]:
                     running.remove(process)
                     code, reason = process.result()
                     if code in _SIGNALLED and signals.pending is not None:

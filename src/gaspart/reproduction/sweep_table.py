@@ -73,7 +73,7 @@ def table(
             failures[number] = "; ".join(filter(None, reasons))
         for key, variable in _variables(name, found, axes).items():
             data[key] = variable
-    durations = [np.mean(row.durations) if row.durations else np.nan for row in rows]
+    durations = [float(np.mean(row.durations)) if row.durations else np.nan for row in rows]
     shape = [len(values) for values in axes.values()]
     data["duration"] = (tuple(axes), np.reshape(durations, shape), {"units": "time"})
     about = {"long_name": "why something is NaN"}
