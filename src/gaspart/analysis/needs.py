@@ -33,13 +33,17 @@ def require_of(
     correlations: Correlations | None = None,
     displacements: bool = False,
     pairs: bool = False,
+    follow: int | None = None,
 ) -> None:
     """Raise SceneError for an observable that no run of a scene has, however long it is.
 
-    name: as of `gaspart measure`; correlations, displacements, pairs: what runs keep, as of `gaspart.run`.
+    name: as of `gaspart measure`; the others: what the run keeps, as of `gaspart.run`.
     """
+    unrun = _unrun(_few(scene), correlations, displacements, pairs)
+    if follow is not None and follow < scene.count:
+        unrun = unrun.isel(atom=slice(max(1, min(follow, unrun.sizes["atom"] - 1))))
     try:
-        measure(name, _unrun(_few(scene), correlations, displacements, pairs), start=0.0)
+        measure(name, unrun, start=0.0)
     except SceneError as error:
         if error.key not in _OF_RUN:
             raise

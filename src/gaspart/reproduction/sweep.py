@@ -15,12 +15,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from gaspart.analysis.names import PAIRS, PATHS
-from gaspart.analysis.needs import require_of
 from gaspart.engines import Engine, EventDriven, engine_to_dict
 from gaspart.errors import SceneError, unknown_word
 from gaspart.reproduction.config import check_point, gridded_points
 from gaspart.reproduction.jobs import simulate
 from gaspart.reproduction.points.keys import ENGINES, EXTENTS, GAS, PREFIX
+from gaspart.reproduction.points.measurable import distinct, require_observable
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.sweep_axes import axes_of, names_of
 from gaspart.reproduction.sweep_points import make_all
@@ -298,11 +298,12 @@ def _without_point(error: SceneError, name: str) -> str:
 
 def _require_measurable(names: list[str], points: list[Point]) -> None:
     """Raise SceneError for an observable that no run of any of the points can have."""
+    kinds = distinct(points)
     for name in names:
         refused = None
-        for point in points:
+        for point in kinds:
             try:
-                _require_of(name, point)
+                require_observable(name, point)
                 break
             except SceneError as error:
                 refused = refused or error
@@ -310,18 +311,6 @@ def _require_measurable(names: list[str], points: list[Point]) -> None:
             if refused:
                 rule = f"cannot be measured: {refused.key}: {refused.rule}"
                 raise SceneError("observables", name, rule)
-
-
-def _require_of(name: str, point: Point) -> None:
-    """Raise SceneError for an observable that no run of a point can have."""
-    correlations = point.parameters.get("correlations")
-    require_of(
-        name,
-        point.scene,
-        correlations=correlations and Correlations(**correlations),
-        displacements=point.parameters["displacements"],
-        pairs=point.parameters.get("pairs", False),
-    )
 
 
 def _row(point: Point, names: list[str], part: bool, failure: str) -> Measured:
