@@ -9,17 +9,22 @@ from collections.abc import Callable
 from pathlib import Path
 
 from gaspart.analysis.names import PATHS
+from gaspart.analysis.needs import require_of
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.tradeoff.reached import Examiner, Reached
+from gaspart.tradeoff.steady import require_steady
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.recording import Progress
 from gaspart.trajectory.until import Accuracy, Until
+
+_OF_CONTACTS = ("Z", "collision_rate", "D")
+"""Observables that are known by collisions of particles only."""
 
 
 def run(
@@ -61,7 +66,8 @@ def run(
     Defaults of engines follow from the scene's `speed` or `temperature` all the same.
 
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
-    examined at 64, 96, 128, 192 ... frames, or at_most after so long (`gaspart.reached_accuracy`). The
+    examined at 64, 96, 128, 192 ... frames, or at_most after so long (`gaspart.reached_accuracy`), and
+    without at_most after 16384 frames in which there was nothing to measure, such as no collision. The
     sample_interval is then by default the mean time between collisions; for D displacements are kept.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
@@ -78,6 +84,8 @@ def run(
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     start = last_state(initial) if isinstance(initial, str | Path) else initial
+    if wanted:
+        _require_end(wanted, scene, start is not None)
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
     recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
     manner = trajectory.Manner(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
@@ -163,6 +171,31 @@ def require_measurable(
         rule = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
     if rule:
         raise SceneError("until", asked.name, rule)
+    try:
+        require_of(asked.observable, scene, correlations=correlations, displacements=True, follow=follow)
+    except SceneError as error:
+        raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
+
+
+def _require_end(until: Until, scene: Scene, given: bool) -> None:
+    """Raise SceneError for a run in which nothing ever happens, and, without a longest duration, for one that
+    comes to no steady state. given: whether it starts from a given state."""
+    name = until.accuracies[0].name
+    moving = given or any(
+        kind.initial_temperature(scene.dimension) > 0.0 for kind in scene.kinds if kind.count
+    )
+    driven = scene.gravity or scene.thermostat or any(face.moves for face in scene.faces.values())
+    if not moving and not driven and scene.count:
+        raise SceneError("until", name, "never becomes known: nothing moves")
+    for asked in until.accuracies:
+        if scene.count == 1 and asked.observable in _OF_CONTACTS:
+            raise SceneError("until", asked.name, "never becomes known: a single particle meets no other")
+    if until.at_most is None and scene.count:
+        try:
+            require_steady(scene)
+        except SceneError as error:
+            rule = f"{error.key}: {error.rule}, or a longest one (at_most)"
+            raise SceneError("until", name, rule) from None
 
 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:

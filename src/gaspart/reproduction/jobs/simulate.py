@@ -32,8 +32,8 @@ KEYS: dict[str, Kind] = {
     "displacements": flag("keep displacements in float64, for mean-squared displacements", default=False),
     "lags": count(
         "accumulate time correlations of all samples up to so many intervals apart, but at most half the "
-        "length, and keep the first and the last frame only, of a sheared gas all; with `displacements` of "
-        "these too",
+        "length, and keep the first and the last frame only, or `frames` of them, of a sheared gas all; with "
+        "`displacements` of these too",
         default=None,
     ),
     "stress": flag(
