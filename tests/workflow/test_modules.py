@@ -18,7 +18,6 @@ ROOT = Path(__file__).parents[2]
 LAYERS = [  # a module imports only from the packages above its own
     {"public"},
     {"errors"},
-    {"entry_points"},
     {"interruption"},
     {"files"},
     {"yaml_text"},

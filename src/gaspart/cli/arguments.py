@@ -8,8 +8,7 @@ from collections.abc import Callable
 from textwrap import fill
 from typing import Any, NoReturn, TypeVar
 
-from gaspart.entry_points import entry_points_of
-from gaspart.errors import unknown_word
+from gaspart.errors import entry_points_of, unknown_word
 from gaspart.scene.validation import number
 
 T = TypeVar("T")

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -65,75 +65,85 @@ def sweep(
 ) -> xr.Dataset:
     """Run a scene for each combination of some values, and measure observables of each run.
 
-    over: the values of each key that varies, all combinations of which are run; without any key there is one
-    point. A key is one of a config: for one species alone in a container `packing_fraction`, `count`,
-    `radius`, `side`, `temperature` and the others of a gas, where of radius, packing fraction and count those
-    that are not varied keep their values as far as possible; a setting of the engine, such as `time_step`; or
-    the place of a value in a scene file, such as `gravity` or `species.0.mass`. observables: names as of
-    `gaspart measure`, or one name. engine: by default `EventDriven()`.
+    over: the values of each key that varies; without any key there is one point. A key is one of a config:
+    of one species alone in a container `packing_fraction`, `count`, `radius`, `side`, `temperature` and the
+    others of a gas, where of radius, packing fraction and count those that do not vary are kept as far as
+    possible; a setting of the engine, such as `time_step`; or the place of a value in a scene file, such as
+    `gravity` or `species.0.mass`. observables: names of `gaspart measure`. engine: by default event-driven.
 
-    Each run has a duration, divided into so many samples (128 by default), or ends when the standard
-    errors of `until` are reached (see `gaspart.run`; the samples are then those until `at_most`, by
-    default one for each collision of a particle), at the latest after `at_most`. equilibration: a time
-    before, which is not measured; by default the first quarter of each run is not. correlations: those that
-    each run accumulates, after the equilibration; transport coefficients need `Correlations(stress=True)`.
-    replicas: independent runs, whose mean is taken. seed: with the names of a point and a replica it gives
-    each random stream. workers: processes that run points at the same time, which changes no bit; they end,
-    after a checkpoint, when this one ends. progress(done, points, name) is called when a point is complete;
-    by default it writes a line to the standard error.
+    Each run has a duration, divided into so many samples (128), or ends when the standard errors of `until`
+    are reached (see `gaspart.run`; the samples are those until `at_most`, by default one for each collision
+    of a particle). equilibration: a time before, which is not measured; by default the first quarter of each
+    run is not. correlations: what each run accumulates; for viscosities and conductivity those of the stress.
+    replicas: independent runs, whose mean is taken. seed: with the names of point and replica it gives each
+    random stream. workers: processes that run points at a time, which changes no bit. progress(done, points,
+    name) is called when a point is complete; by default it writes a line to the standard error.
 
-    Returns a Dataset with a dimension for each key of `over`. An observable has its name; with the suffix
-    _error it is the standard uncertainty, with _theory the value of theory, where there is one. Curves
-    have their own dimension too, such as `rdf_distance`; where its places differ between the points,
-    these are the variable `rdf_distance_places`. `duration` is that of each run, the mean over replicas.
-    What could not be made or measured is NaN; `failure` has the reason, otherwise "", and it is written to
-    the standard error. The trajectories are `folder`/points/<name>/replica-<k>.nc. Those that are complete
-    are not made again, and one that was cut short goes on; those of other settings are replaced only with
-    `overwrite`. Several sweeps may use a folder, also at the same time: a point that two have is made once.
+    Returns a Dataset with a dimension for each key, with each observable, its standard uncertainty (_error),
+    its value by theory, if there is one (_theory), its curve's own dimension, such as `rdf_distance` (where
+    places differ `rdf_distance_places`), and `duration`. What could not be made or measured is NaN; `failure`
+    has the reason, otherwise "". Trajectories are `folder`/points/<name>/replica-<k>.nc: complete ones are
+    not made again, one that was cut short goes on, and those of other settings are replaced only with
+    `overwrite`. Several sweeps may use a folder, also at the same time.
 
-    Raises SceneError for settings that contradict each other, a folder that holds a trajectory of another
-    sweep, an observable that none of the scenes can have, and a grid of which no point can be run.
+    Raises SceneError for settings that contradict each other, trajectories of another sweep, an observable
+    that no point can have, and a grid of which no point can be run.
     """
-    if not isinstance(scene, Scene):
-        raise SceneError("scene", scene, "must be a gaspart.Scene")
-    engine = EventDriven() if engine is None else engine
-    if not isinstance(engine, Engine):
-        raise SceneError("engine", engine, "must be an engine, such as gaspart.EventDriven()")
+    engine = _checked(scene, EventDriven() if engine is None else engine)
     axes = axes_of(over)
     names = names_of(observables, axes)
-    point = {**_length(duration, until, at_most, samples, equilibration), **_settings(scene, axes, engine)}
-    point |= _kept(names, correlations, point)
-    point |= {"replicas": count_of("replicas", replicas, least=1)}
-    job = "simulate" if until is None else "simulate_until"
-    grid = {key if key in point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
-    root, seed = _root(folder), count_of("seed", seed)
-    workers = count_of("workers", workers, least=1)
-    planned, failures = _planned({"job": job, "point": point, "grid": grid}, root, seed)
-    able = [one for one in planned if one.name not in failures]
-    _require_measurable(names, able)
-    for name, reason in failures.items():
-        _complain(name, reason)
-    _make_folder(root)
-    show, done = progress or _print, count(len(failures) + 1)
-    failures |= _make(able, workers, bool(overwrite), lambda name: show(next(done), len(planned), name))
-    rows = [_row(one, names, equilibration is None, failures.get(one.name, "")) for one in planned]
+    length = _length(duration, until, at_most, samples, equilibration)
+    point = {**length, **_settings(scene, axes, engine), **_kept(names, correlations, length)}
+    point["replicas"] = count_of("replicas", replicas, least=1)
+    plan = _planned(_experiment(point, axes, engine), _root(folder), count_of("seed", seed))
+    _require_measurable(names, plan.able)
+    _make(plan, count_of("workers", workers, least=1), bool(overwrite), progress or _print)
+    rows = [_row(one, names, equilibration is None, plan.failures.get(one.name, "")) for one in plan.points]
     return table(rows, names, axes, {"scene": scene, "engine": engine, "seed": seed})
 
 
-def _make(
-    points: list[Point], workers: int, overwrite: bool, report: Callable[[str], None]
-) -> dict[str, str]:
-    """Make the points; returns the reasons why some could not be made, by name. report(name): of each."""
-    failures = {}
+@dataclass(frozen=True)
+class _Plan:
+    """The points of a sweep, and, by the name of each that cannot be made, the reason."""
+
+    points: list[Point]
+    failures: dict[str, str]
+
+    @property
+    def able(self) -> list[Point]:
+        """The points without a reason."""
+        return [point for point in self.points if point.name not in self.failures]
+
+
+def _checked(scene: Any, engine: Any) -> Engine:
+    """The engine. Raises SceneError for other things."""
+    if not isinstance(scene, Scene):
+        raise SceneError("scene", scene, "must be a gaspart.Scene")
+    if not isinstance(engine, Engine):
+        raise SceneError("engine", engine, "must be an engine, such as gaspart.EventDriven()")
+    return engine
+
+
+def _experiment(point: dict[str, Any], axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
+    """The experiment of a config, with what its points share."""
+    grid = {key if key in point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
+    return {"job": "simulate_until" if "until" in point else "simulate", "point": point, "grid": grid}
+
+
+def _make(plan: _Plan, workers: int, overwrite: bool, progress: Progress) -> None:
+    """Make the points, and add the reasons why some could not be made to the plan."""
+    done = count(len(plan.failures) + 1)
+    for name, reason in plan.failures.items():
+        _complain(name, reason)
 
     def finished(point: Point, reason: str) -> None:
         if reason:
-            failures[point.name] = reason
+            plan.failures[point.name] = reason
             _complain(point.name, reason)
-        report(point.name)
+        progress(next(done), len(plan.points), point.name)
 
-    make_all(points, workers, overwrite, finished)
-    return failures
+    _make_folder(plan.points[0].root)
+    make_all(plan.able, workers, overwrite, finished)
 
 
 def _root(folder: Any) -> str:
@@ -259,9 +269,9 @@ def _gas(scene: Scene, axes: Mapping[str, list], varied: str) -> dict[str, Any]:
     return {key: value for key, value in settings.items() if key not in axes}
 
 
-def _planned(experiment: dict, root: str, seed: int) -> tuple[list[Point], dict[str, str]]:
-    """The points of an experiment, in the order of the product of its values, and, by the name of each that
-    cannot be run, the reason. Raises SceneError for values of no use anywhere, and if that is all of them."""
+def _planned(experiment: dict, root: str, seed: int) -> _Plan:
+    """The points of an experiment, in the order of the product of its values. Raises SceneError for values of
+    no use anywhere, and if no point can be run."""
     config = {"experiments": {EXPERIMENT: experiment}, "points": root, "seed": seed}
     try:
         planned = list(gridded_points(config, EXPERIMENT).values())
@@ -277,7 +287,7 @@ def _planned(experiment: dict, root: str, seed: int) -> tuple[list[Point], dict[
             errors[point.name] = _of_sweep(error)
     if len(errors) == len(planned):
         raise errors[planned[0].name]
-    return planned, {name: _without_point(error, name) for name, error in errors.items()}
+    return _Plan(planned, {name: _without_point(error, name) for name, error in errors.items()})
 
 
 def _of_sweep(error: SceneError) -> SceneError:

@@ -66,9 +66,8 @@ def run(
     Defaults of engines follow from the scene's `speed` or `temperature` all the same.
 
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
-    examined at 64, 96, 128, 192 ... frames, or at_most after so long (`gaspart.reached_accuracy`), and
-    without at_most after 16384 frames in which there was nothing to measure, such as no collision. The
-    sample_interval is then by default the mean time between collisions; for D displacements are kept.
+    examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
+    without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
     examination. SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program
@@ -80,14 +79,13 @@ def run(
     wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, follow, correlations)
+        _require_end(asked, scene, at_most, initial is not None)
         displacements = displacements or asked.observable in PATHS
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    start = last_state(initial) if isinstance(initial, str | Path) else initial
-    if wanted:
-        _require_end(wanted, scene, start is not None)
+    initial = last_state(initial) if isinstance(initial, str | Path) else initial
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
-    recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
+    recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=initial)
     manner = trajectory.Manner(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return trajectory.record(recipe, _required(path), manner)
 
@@ -177,25 +175,24 @@ def require_measurable(
         raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
 
 
-def _require_end(until: Until, scene: Scene, given: bool) -> None:
+def _require_end(asked: Accuracy, scene: Scene, at_most: float | None, given: bool) -> None:
     """Raise SceneError for a run in which nothing ever happens, and, without a longest duration, for one that
     comes to no steady state. given: whether it starts from a given state."""
-    name = until.accuracies[0].name
-    moving = given or any(
-        kind.initial_temperature(scene.dimension) > 0.0 for kind in scene.kinds if kind.count
-    )
+    kinds = [kind for kind in scene.kinds if kind.count]
+    if not kinds:
+        return  # which the recipe refuses
+    moving = given or any(kind.initial_temperature(scene.dimension) > 0.0 for kind in kinds)
     driven = scene.gravity or scene.thermostat or any(face.moves for face in scene.faces.values())
-    if not moving and not driven and scene.count:
-        raise SceneError("until", name, "never becomes known: nothing moves")
-    for asked in until.accuracies:
-        if scene.count == 1 and asked.observable in _OF_CONTACTS:
-            raise SceneError("until", asked.name, "never becomes known: a single particle meets no other")
-    if until.at_most is None and scene.count:
+    if not moving and not driven:
+        raise SceneError("until", asked.name, "never becomes known: nothing moves")
+    if scene.count == 1 and asked.observable in _OF_CONTACTS:
+        raise SceneError("until", asked.name, "never becomes known: a single particle meets no other")
+    if at_most is None:
         try:
             require_steady(scene)
         except SceneError as error:
             rule = f"{error.key}: {error.rule}, or a longest one (at_most)"
-            raise SceneError("until", name, rule) from None
+            raise SceneError("until", asked.name, rule) from None
 
 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:

@@ -16,8 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from gaspart.entry_points import entry_points_of
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, entry_points_of
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint

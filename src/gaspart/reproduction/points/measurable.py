@@ -37,7 +37,7 @@ def distinct(points: Iterable[Point]) -> list[Point]:
     """One of the points of each kind whose trajectories have the same observables."""
     from gaspart.reproduction.points.variants import variant
 
-    kinds = {}
+    kinds: dict[tuple, Point] = {}
     for point in points:
         scene = point.scene
         counts = tuple(min(kind.count, _ENOUGH) for kind in scene.kinds)
