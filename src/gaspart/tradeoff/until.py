@@ -70,8 +70,7 @@ def run(
     without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
-    examination. SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program
-    that calls this are then called, of which Python's own raises KeyboardInterrupt.
+    examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
 
     Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
     SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
