@@ -54,10 +54,12 @@ SELECTIONS = {
     "axis": ("density", "temperature"),
 }
 """Those that can be of one species, of some particles, along each axis, or along one of them."""
+TOO_SHORT = ("frames", "duration", "collisions", "start", "D")
+"""Keys of the errors of an analysis that a longer run may not have."""
 
 
 def known(name: object) -> str:
     """The name of an observable. Raises SceneError for any other value."""
-    if name not in OBSERVABLES:
+    if not isinstance(name, str) or name not in OBSERVABLES:
         raise SceneError("observable", name, unknown_word(name, OBSERVABLES, "observable"))
-    return str(name)
+    return name

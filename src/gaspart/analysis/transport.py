@@ -22,7 +22,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.observable import Observable, observable, scalar
+from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
@@ -75,6 +75,8 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     """
     with measured(source, start, sheared=True) as run:
         _stored(run)
+        if len(run.time) <= LEAST_INTERVALS:
+            raise SceneError("frames", len(run.time), f"an error needs {LEAST_INTERVALS + 1} or more")
         d, volume = run.dimension, math.prod(run.scene.container.lengths)
         rates = run.increments("stress_sum") / (volume * np.diff(run.time))[:, None, None]
         series = rates.reshape(len(rates), d * d).T

@@ -29,7 +29,11 @@ What the keys are for is explained in [the config page](config.md).
 For editors, `workflow/schemas` has the same rules as JSON schemas.
 A key without a default is required. A default of *none* means that the key is absent.
 """
-_FEATURES = "## Features and engines\n\nWhich engine models what, and which features exclude each other.\n"
+_FEATURES = """## Features and engines
+
+Which engine models what, and which features exclude each other.
+All engines model any number of species, whose radii and masses may differ.
+"""
 
 
 @cache

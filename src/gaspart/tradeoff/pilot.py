@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.analysis.names import FLUXES, MOTION, PAIRS
+from gaspart.analysis.names import FLUXES, MOTION, PAIRS, TOO_SHORT
 from gaspart.analysis.run import EQUILIBRATION, measured
 from gaspart.engines import Engine, EventDriven, engine_to_dict
 from gaspart.errors import SceneError, SimulationError
@@ -24,7 +24,7 @@ from gaspart.kernels.compile.policy import source_digest
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.tradeoff.estimates import Component, components
-from gaspart.tradeoff.reached import TOO_SHORT, bound
+from gaspart.tradeoff.reached import bound
 from gaspart.tradeoff.target import DIFFUSION, SEED, STRUCTURE, Target
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe

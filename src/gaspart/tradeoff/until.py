@@ -9,12 +9,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 from gaspart.analysis.names import PATHS
+from gaspart.analysis.needs import require_of
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.files import is_same_file, output_path
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.tradeoff.reached import Examiner, Reached
+from gaspart.tradeoff.steady import require_steady
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
 from gaspart.trajectory.correlator import Correlations
@@ -23,6 +25,9 @@ from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.recording import Progress
 from gaspart.trajectory.until import Accuracy, Until
+
+_OF_CONTACTS = ("Z", "collision_rate", "D")
+"""Observables that are known by collisions of particles only."""
 
 
 def run(
@@ -64,12 +69,11 @@ def run(
     Defaults of engines follow from the scene's `speed` or `temperature` all the same.
 
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
-    examined at 64, 96, 128, 192 ... frames, or at_most after so long (`gaspart.reached_accuracy`). The
-    sample_interval is then by default the mean time between collisions; for D displacements are kept.
+    examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
+    without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
-    examination. SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program
-    that calls this are then called, of which Python's own raises KeyboardInterrupt.
+    examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
 
     Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
     SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
@@ -77,6 +81,7 @@ def run(
     wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, follow, correlations)
+        _require_end(asked, scene, at_most, initial is not None)
         displacements = displacements or asked.observable in PATHS
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
@@ -179,6 +184,30 @@ def require_measurable(
         rule = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
     if rule:
         raise SceneError("until", asked.name, rule)
+    try:
+        require_of(asked.observable, scene, correlations=correlations, displacements=True, follow=follow)
+    except SceneError as error:
+        raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
+
+
+def _require_end(asked: Accuracy, scene: Scene, at_most: float | None, given: bool) -> None:
+    """Raise SceneError for a run in which nothing ever happens, and, without a longest duration, for one that
+    comes to no steady state. given: whether it starts from a given state."""
+    kinds = [kind for kind in scene.kinds if kind.count]
+    if not kinds:
+        return  # which the recipe refuses
+    moving = given or any(kind.initial_temperature(scene.dimension) > 0.0 for kind in kinds)
+    driven = scene.gravity or scene.thermostat or any(face.moves for face in scene.faces.values())
+    if not moving and not driven:
+        raise SceneError("until", asked.name, "never becomes known: nothing moves")
+    if scene.count == 1 and asked.observable in _OF_CONTACTS:
+        raise SceneError("until", asked.name, "never becomes known: a single particle meets no other")
+    if at_most is None:
+        try:
+            require_steady(scene)
+        except SceneError as error:
+            rule = f"{error.key}: {error.rule}, or a longest one (at_most)"
+            raise SceneError("until", asked.name, rule) from None
 
 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
