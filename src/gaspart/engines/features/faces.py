@@ -86,6 +86,11 @@ class FacesPart(Part):
         self._scene, self._unit_mass = scene, unit_mass
         self.gained = face_energy(scene) / lightest
 
+    @property
+    def stored(self) -> float:
+        """The energy of particles that stick to a face."""
+        return float(self.arrays["held"].sum()) * self._unit_mass
+
     def write(self, state: State, clock: float) -> None:
         """Write the energies in wells, and add those of particles that stick to a face."""
         state.well_energies = well_energies(self._scene, self.arrays["place"])
