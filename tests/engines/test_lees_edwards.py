@@ -135,6 +135,7 @@ def test_neighbour_lists_and_oversized_particles_are_not_used():
 MIXED = [gp.Species(40, 0.5, mass=1.0, temperature=1.0), gp.Species(20, 0.25, mass=0.2, temperature=1.0)]
 
 
+SIZES = [gp.Species(60, 0.5, polydispersity=0.3, temperature=1.0)]
 LAWS = {
     "elastic": None,
     "inelastic": gp.Restitution(normal=0.95),
@@ -143,7 +144,7 @@ LAWS = {
 
 
 @pytest.mark.parametrize("rate", [0.6, -0.6])
-@pytest.mark.parametrize("species", [None, MIXED], ids=["alike", "mixture"])
+@pytest.mark.parametrize("species", [None, MIXED, SIZES], ids=["alike", "mixture", "sizes"])
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_the_energy_gained_is_the_work_of_the_stress(rate, species, law):
     """d(thermal energy) / dt = -shear rate V P_yx - losses, exactly; the faces' work, of all energy."""

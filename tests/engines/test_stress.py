@@ -18,6 +18,10 @@ SCENES = {
     "mixture": gp.Scene(CUBE, PAIR),
     "discs": gp.Scene(FLAT, PAIR),
     "rough": gp.Scene(FLAT, PAIR, restitution=gp.Restitution(0.9, 0.5, contact_duration=0.0)),
+    "sizes": gp.Scene(CUBE, [replace(PAIR[0], polydispersity=0.4)]),
+    "inelastic sizes": gp.Scene(
+        FLAT, [replace(kind, polydispersity=0.3) for kind in PAIR], restitution=gp.Restitution(0.8)
+    ),
 }
 ENGINES = {
     "event": gp.EventDriven(),

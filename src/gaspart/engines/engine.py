@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from gaspart.state.tally import Tally
 
 E = TypeVar("E", bound="type[Engine]")
-_WITH_STRESS = frozenset(("restitution", "roughness", "viscoelasticity", "contact_duration", "lees_edwards"))
+_WITH_STRESS = frozenset(
+    ("restitution", "roughness", "viscoelasticity", "contact_duration", "polydispersity", "lees_edwards")
+)
 """The features of scenes whose stress tensor can be tallied: velocities change at contacts only."""
 
 
