@@ -32,9 +32,9 @@ class Tally:
     the same particle had not ended (`Restitution.contact_duration`), and retained_energy, what they would
     have dissipated; thermostat_energy: energy given by kicks.
 
-    If a thermal face moves, otherwise None: wall_shear (2d + interior walls, d), the momentum along each axis
-    given to each thermal face by particles that leave it with all components drawn; wall_energy then includes
-    the work that the face does.
+    If a thermal face moves, or a force drives the gas along it, otherwise None: wall_shear (2d + interior
+    walls, d), the momentum along each axis given to each thermal face by particles that leave it with all
+    components drawn; wall_energy then includes the work that the face does.
 
     If they were asked for, otherwise None: stress_sum (d, d), the time integral of the stress tensor times
     the volume, of m v v and, at a collision, of r dp, with r the vector from the second particle to the
@@ -67,7 +67,7 @@ class Tally:
     multiple_contacts: int = 0
     rebuilds: int = 0
     wall_shear: np.ndarray | None = field(
-        default=None, metadata={"along": ("face", "axis"), "units": IMPULSE, "only": "sliding"}
+        default=None, metadata={"along": ("face", "axis"), "units": IMPULSE, "only": "dragged"}
     )
     stress_sum: np.ndarray | None = field(
         default=None, metadata={"along": ("axis", "direction"), "units": ACTION, "only": "stress"}
