@@ -1,4 +1,4 @@
-"""A force along a periodic axis: exact flights, bits of all searches, balances, and the flow of Poiseuille."""
+"""A force along a periodic axis: exact flights, bits of all searches, balances, the flow of Poiseuille."""
 
 import math
 from dataclasses import replace

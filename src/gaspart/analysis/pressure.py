@@ -126,7 +126,7 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
         refuse_rest(run, "obstacles may carry particles at rest, whose contacts give no impulse")
         return carried
     momentum = np.einsum("tnd,n->td", run.velocities[ends], run.masses)
-    weight = run.masses.sum() * np.where(run.periodic, 0.0, run.scene.gravity)
+    weight = run.masses.sum() * np.where(run.periodic, 0.0, np.array(run.scene.gravity))
     if not weight.any():  # it drives a flow along walls, and presses nothing
         return carried
     gain = weight * np.diff(run.time[ends])[:, None]

@@ -10,6 +10,7 @@ import numpy as np
 from gaspart.engines.dsmc.rates import accessible
 from gaspart.engines.features.faces import WALL_DRAWS, kinds_and_levels, sliding_velocities
 from gaspart.engines.features.masses import largest_terms
+from gaspart.engines.features.stress import drift_of
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Tools
 from gaspart.kernels.dsmc.stress import Stress
@@ -104,7 +105,7 @@ def stress_for(scene: Scene, state: State, threads: int) -> Stress:
     number = 2 * d * d + d
     sums, cell = np.zeros((threads, number, 2), np.int64), np.zeros((threads, number))
     scales = np.array([momentum * length, energy * length])
-    return Stress(sums, cell, np.zeros((threads, 2, d + 1)), scales)
+    return Stress(sums, cell, np.zeros((threads, 2, d + 1)), scales, drift_of(scene, state))
 
 
 TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")

@@ -62,7 +62,7 @@ class EventDynamics:
         self._model, unit_mass = event_model(scene, state, seed, self._grid, largest)
         self._collapse = CollapsePart(self._model, n)
         self._parts = [*event_parts(scene, state, seed, self._model, unit_mass), self._collapse]
-        self._stress = stress_part(self._flights, self._model, unit_mass) if stress else None
+        self._stress = stress_part(self._flights, self._model, unit_mass, scene, state) if stress else None
         self._parts += [self._stress] if self._stress else []
         self._epochs = Epochs(scene, state.masses, sum(part.gained for part in self._parts))
         self._base, self._quiet = self._base_from(0.0), 0
