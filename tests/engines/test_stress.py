@@ -244,3 +244,45 @@ def test_green_and_kubo_agree_with_helfand(tmp_path):
     with gp.open_trajectory(path) as data:
         ideal = 2.0 * float(data["kinetic_energy"][0]) / 3.0 / math.prod(gas(3, 64, 0.3).container.lengths)
     assert mean == pytest.approx(z * ideal, rel=0.02)
+
+
+def test_coefficients_are_those_of_a_gas_at_rest(tmp_path):
+    """A drift of the initial state changes viscosities, conductivity and pressure tensor by no more than what
+    collisions have made of rounding: until it has grown, after some hundred of them."""
+    scene, drift = gas(3, 40, 0.2), np.array([3.0, -2.0, 1.5])
+    still = gp.Simulation(scene, gp.EventDriven(), 3).initial_state
+    moved = replace(still, velocities=still.velocities + drift)
+    found = []
+    for name, state in (("still", still), ("moved", moved)):
+        asked = gp.Correlations(0.0125, 4, stress=True)
+        to = tmp_path / f"{name}.nc"
+        gp.run(scene, gp.EventDriven(), 3, 1.25, 0.0625, to, correlations=asked, initial=state, follow=1)
+        names = ("shear_viscosity", "bulk_viscosity", "thermal_conductivity", "pressure_tensor")
+        found.append([getattr(gp.analysis, each)(to, start=0.0) for each in names])
+    for one, two in zip(*found, strict=True):
+        assert two.estimate.values == pytest.approx(one.estimate.values, rel=1e-6)
+        assert two.theory.values == pytest.approx(one.theory.values, rel=1e-9)
+
+
+def test_older_files_are_measured_rightly_or_refused(tmp_path):
+    """Without a mean velocity their fluxes are the same; with one, they are refused."""
+    for exact in (True, False):
+        scene = gas(3, 40, 0.2, exact_temperature=exact)
+        path = run(tmp_path / f"{exact}.nc", scene, gp.EventDriven(), 0.05, 4, 20, 5)
+        with gp.open_trajectory(path) as data:
+            older = data.load().drop_vars("flux_velocity")
+        if exact:
+            new, old = (gp.analysis.thermal_conductivity(each, start=0.0) for each in (path, older))
+            assert float(old.estimate) == float(new.estimate)
+            continue
+        for name in ("thermal_conductivity", "shear_viscosity", "pressure_tensor"):
+            with pytest.raises(gp.SceneError, match="correlations = .*absolute velocities.*: run it again"):
+                getattr(gp.analysis, name)(older, start=0.0)
+
+
+def test_the_conductivity_of_a_gas_with_drawn_velocities_is_that_of_enskog(tmp_path):
+    """Whose small mean velocity carried ten times as much heat: 3 sigma, of 10 %."""
+    path = run(tmp_path / "run.nc", gas(3, 100, 0.15), gp.EventDriven(), 0.05, 40, 25, 600)
+    found = gp.analysis.thermal_conductivity(path, start=0.0)
+    assert float(found.error) < 0.12 * float(found.theory)
+    assert abs(float(found.estimate) - float(found.theory)) < 3.0 * float(found.error)

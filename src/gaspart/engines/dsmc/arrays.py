@@ -10,12 +10,12 @@ import numpy as np
 from gaspart.engines.dsmc.rates import accessible
 from gaspart.engines.features.faces import WALL_DRAWS, kinds_and_levels, sliding_velocities
 from gaspart.engines.features.masses import largest_terms
-from gaspart.engines.features.stress import drift_of
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Tools
 from gaspart.kernels.dsmc.stress import Stress
 from gaspart.kernels.model import ContactLaw, flight_dtype
 from gaspart.scene.scene import Scene
+from gaspart.state.drift import drift_of
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 
