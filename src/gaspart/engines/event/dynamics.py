@@ -10,7 +10,7 @@ import numpy as np
 
 from gaspart.engines.belonging import check_parts
 from gaspart.engines.event.clock_epochs import Epochs
-from gaspart.engines.event.model import event_model, event_parts, particles_of
+from gaspart.engines.event.model import event_model, event_parts, particles_of, wrap
 from gaspart.engines.event.search import chosen_search, make_lists, neighbour_lists
 from gaspart.engines.event.stalling import MANY, CollapsePart, check_clocks, check_events, check_progress
 from gaspart.engines.event.tally import EventTally
@@ -23,7 +23,6 @@ from gaspart.kernels.event import neighbour_lists as lists
 from gaspart.kernels.event.box_lists import empty_lists
 from gaspart.kernels.event.monitors import Monitors, Record
 from gaspart.kernels.event.queue import EVENT_COUNT, empty_queue
-from gaspart.kernels.model import Space
 from gaspart.kernels.physics.flight import advance_all, restart_clocks
 from gaspart.scene.faces import GRADIENT
 from gaspart.scene.scene import Scene
@@ -262,7 +261,7 @@ class EventDynamics:
             images=self._particles.images.copy(),
         )
         write_parts(self._parts, state, self._clock)
-        _wrap(state.positions, state.images, self._model.space)
+        wrap(state.positions, state.images, self._model.space)
         return state
 
     def _arrays(self) -> dict[str, np.ndarray]:
@@ -305,17 +304,3 @@ class EventDynamics:
         if self._boxes.lists:
             self._make_lists()
         self._begin(anew=False)
-
-
-def _wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
-    """Put particles back that rounding shows beyond a periodic face, which they reach just now."""
-    lengths = np.array(space.lengths)
-    outside = ((positions < 0.0) | (positions >= lengths)) & space.periodic
-    if not outside.any():
-        return
-    beyond = np.nonzero(outside)
-    there, length = positions[beyond], lengths[beyond[1]]
-    crossed = np.where(there < 0.0, -1, 1)
-    there = there - crossed * length
-    positions[beyond] = np.where(there >= length, 0.0, there)
-    images[beyond] += crossed
