@@ -107,7 +107,9 @@ def test_thermal_walls_make_runs_of_one_state_different(tmp_path):
     )
     first = gp.run(scene, gp.EventDriven(), 1, 10.0, 0.5, tmp_path / "first.nc")
     runs = [
-        gp.run(scene, gp.EventDriven(), seed, 20.0, 0.5, tmp_path / f"{seed}.nc", initial=gp.last_state(first))
+        gp.run(
+            scene, gp.EventDriven(), seed, 20.0, 0.5, tmp_path / f"{seed}.nc", initial=gp.last_state(first)
+        )
         for seed in (1, 2)
     ]
     assert gp.analysis.replicas("collision_rate", runs).attrs["freedom"] == 1

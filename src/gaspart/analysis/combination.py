@@ -29,11 +29,11 @@ def replicas(
 ) -> Observable:
     """An observable, by its name as of `gaspart measure`, as the mean over independent runs of one scene.
 
-    sources: at least two trajectories, by their paths or open, or simulations, of different seeds or different
-    initial states; start and `selection` as of the observable's function. The uncertainty is that of the mean by the scatter of the
-    runs, which needs no assumption about correlations within a run, with one degree of freedom less than
-    there are runs (`freedom`). The variable with the suffix _replicas has the value of each (replica, ...).
-    Theory is the mean of theirs.
+    sources: at least two trajectories, by their paths or open, or simulations, of different seeds or initial
+    states; start and `selection` as of the observable's function. The uncertainty is that of the mean by the
+    scatter of the runs, which needs no assumption about correlations within a run, with one degree of freedom
+    less than there are runs (`freedom`). The variable with the suffix _replicas has the value of each
+    (replica, ...). Theory is the mean of theirs.
 
     Raises SceneError for fewer than two runs, runs of different scenes or engines, with the first difference,
     two that are the same bit for bit (of one initial state and one seed, or of one initial state in a scene

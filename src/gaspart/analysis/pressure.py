@@ -10,6 +10,7 @@ import numpy as np
 from gaspart import theory
 from gaspart.analysis.mixtures import theory_of_z
 from gaspart.analysis.observable import Observable, observable, scalar
+from gaspart.analysis.room import mean_areas, touched
 from gaspart.analysis.run import (
     Run,
     Source,
@@ -17,6 +18,7 @@ from gaspart.analysis.run import (
     require_collisions,
     require_elastic,
 )
+from gaspart.analysis.series import over
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.trajectory.amber import face_names
@@ -63,7 +65,8 @@ def _theory_of_z(run: Run) -> dict[str, Any]:
 
 def wall_pressure(source: Source, start: float | None = None) -> Observable:
     """Pressure on each face of the container that is a wall, (face,): the momentum given to it per time and
-    per area that centres can touch.
+    per area that centres can touch at that time, between faces where they are: beside a piston or a vibrating
+    floor the area changes.
 
     Contacts of particles at rest are no events: they press a floor with what gravity gives the particles and
     no event takes (`_rest_on_floors`). Their thrust on side walls is not known: NaN while particles rest.
@@ -101,11 +104,12 @@ def pressures_on_walls(run: Run, ends: np.ndarray) -> tuple[np.ndarray, np.ndarr
     """Names (W,) of the faces that are walls, and the pressures on them (K, W) between the frames `ends`
     (K + 1,). Raises SceneError as `wall_pressure`."""
     _require_walls(run)
-    d, touched = run.dimension, _touched(run)
-    areas = np.repeat(touched.prod() / touched, 2)
-    impulse = np.diff(run.data["wall_impulse"].values[ends, : 2 * d], axis=0)
-    series = (np.abs(impulse) + _rest_on_floors(run, ends)) / np.diff(run.time[ends])[:, None] / areas
+    d, areas = run.dimension, np.repeat(mean_areas(run), 2, axis=1)
+    impulse = run.increments("wall_impulse")[:, : 2 * d]
+    pressed = np.abs(over(impulse / areas, ends))
+    resting = _rest_on_floors(run, ends) * over(1.0 / areas, ends) / np.diff(ends)[:, None]
     chosen = np.repeat(~run.periodic, 2)
+    series = (pressed + resting) / np.diff(run.time[ends])[:, None]
     return np.array(face_names(d))[chosen], series[:, chosen]
 
 
@@ -146,19 +150,14 @@ def refuse_rest(run: Run, rule: str) -> None:
             raise SceneError("particles at rest", int(resting), rule)
 
 
-def _touched(run: Run) -> np.ndarray:
-    """(d,) sides of the volume that centres of the largest particles can reach."""
-    lower, upper = run.scene.reach(run.scene.largest_radius)
-    return np.subtract(upper, lower)
-
-
 def _theory_at_walls(run: Run) -> dict[str, Any]:
-    walled, lengths, touched = ~run.periodic, np.array(run.scene.container.lengths), _touched(run)
+    walled, lengths = ~run.periodic, np.array(run.scene.container.lengths)
+    reached = touched(run, run.time[:1])[0]
     sides = lengths[walled]
     gas = run.scene.gas
     if gas is None or run.scene.centres_to_walls or np.ptp(sides) > 1e-9 * sides.max():
         return {}
-    density = gas.count / float((touched / gas.diameter).prod())
+    density = gas.count / float((reached / gas.diameter).prod())
     try:
         value, error = theory.wall_pressure(
             sides[0] / gas.diameter, density, gas.count, gas.dimension, int(walled.sum())
