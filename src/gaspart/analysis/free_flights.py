@@ -84,10 +84,7 @@ def _theory(simulation: Simulation, edges: np.ndarray) -> tuple[np.ndarray, tupl
     gas, state = simulation.scene.gas, simulation.state
     if gas is None or gas.packing_fraction > theory.HIGHEST_PACKING_FRACTION[gas.dimension]:
         return None
-    momentum = state.momentum
-    total = gas.mass * gas.count
-    energy = state.translational_energy - 0.5 * float((momentum**2).sum()) / total
-    temperature = 2.0 * energy / (gas.dimension * (gas.count - 1))
+    temperature = state.temperature
     settings = {**gas.parameters, "temperature": temperature}
     inner = np.linspace(edges[:-1], edges[1:], 5)  # Boole's rule
     weights = np.array([7.0, 32.0, 12.0, 32.0, 7.0]) / 90.0

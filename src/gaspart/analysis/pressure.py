@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis import series
 from gaspart.analysis.mixtures import theory_of_z
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.room import mean_areas, touched
@@ -18,7 +19,6 @@ from gaspart.analysis.run import (
     require_collisions,
     require_elastic,
 )
-from gaspart.analysis.series import over
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.trajectory.amber import face_names
@@ -45,10 +45,8 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
         if not run.moving.all():
             raise SceneError("species.fixed", True, "the virial of fixed particles is not a pressure")
         require_collisions(run)
-        scale = run.dimension * run.count * run.temperature
-        z = 1.0 + run.increments("virial_sum") / (scale * np.diff(run.time))
-        about: dict[str, Any] = {"units": "1", "long_name": "compressibility factor Z"}
-        return scalar("compressibility_factor", z, run.time, **about, **_theory_of_z(run))
+        about: dict[str, Any] = {"units": "1", "long_name": "compressibility factor Z", **_theory_of_z(run)}
+        return scalar("compressibility_factor", series.compressibility(run), run.time, **about)
 
 
 def _theory_of_z(run: Run) -> dict[str, Any]:
@@ -81,12 +79,12 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
         if blocks < 4:
             raise SceneError("frames", len(run.time), "an error needs 5 or more")
         ends = np.linspace(0, len(run.time) - 1, blocks + 1).astype(int)
-        faces, series = pressures_on_walls(run, ends)
-        values, errors = means_of(series - series[0])  # no error of rounding at rest
+        faces, found = pressures_on_walls(run, ends)
+        values, errors = means_of(found - found[0])  # no error of rounding at rest
         return observable(
             "wall_pressure",
             {"face": (faces, {"long_name": "face of the container"})},
-            values + series[0],
+            values + found[0],
             errors,
             units="energy / length^d",
             long_name="pressure",
@@ -104,13 +102,13 @@ def pressures_on_walls(run: Run, ends: np.ndarray) -> tuple[np.ndarray, np.ndarr
     """Names (W,) of the faces that are walls, and the pressures on them (K, W) between the frames `ends`
     (K + 1,). Raises SceneError as `wall_pressure`."""
     _require_walls(run)
-    d, areas = run.dimension, np.repeat(mean_areas(run), 2, axis=1)
-    impulse = run.increments("wall_impulse")[:, : 2 * d]
-    pressed = np.abs(over(impulse / areas, ends))
-    resting = _rest_on_floors(run, ends) * over(1.0 / areas, ends) / np.diff(ends)[:, None]
+    d, time = run.dimension, np.diff(run.time)[:, None]
+    pressed = np.abs(series.over(series.face_pressures(run) * time, ends))
+    areas = np.repeat(mean_areas(run), 2, axis=1)
+    resting = _rest_on_floors(run, ends) * series.over(time / areas, ends) / series.over(time, ends)
     chosen = np.repeat(~run.periodic, 2)
-    series = (pressed + resting) / np.diff(run.time[ends])[:, None]
-    return np.array(face_names(d))[chosen], series[:, chosen]
+    pressures = (pressed + resting) / series.over(time, ends)
+    return np.array(face_names(d))[chosen], pressures[:, chosen]
 
 
 def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
@@ -181,9 +179,8 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
             raise SceneError("species.fixed", True, "fixed particles do not collide")
         refuse_rest(run, "touch others without a collision, so that there is no rate")
         require_collisions(run)
-        rate = 2.0 * run.increments("collisions") / (run.moving.sum() * np.diff(run.time))
         about: dict[str, Any] = {"units": "1 / time", "long_name": "collisions of a particle per time"}
-        return scalar("collision_rate", rate, run.time, **about, **_theory_of_rate(run))
+        return scalar("collision_rate", series.collision_rate(run), run.time, **about, **_theory_of_rate(run))
 
 
 def _theory_of_rate(run: Run) -> dict[str, Any]:

@@ -154,18 +154,25 @@ class Run:
 
     @cached_property
     def temperatures(self) -> np.ndarray:
-        """(T,) k_B T of each frame: twice the kinetic energy of `motion` per degree of freedom. Raises
+        """(T,) k_B T of each frame: twice the kinetic energy of flight about the mean motion (see `motion`)
+        per degree of freedom; 0 if it is only rounding of the velocity of the centre of mass. Raises
         SceneError as `freedoms`."""
-        return np.asarray(self.motion.energies(self.masses[self.moving]).sum(axis=1) / self.freedoms)
+        masses, scene = self.masses[self.moving], self.scene
+        if flow_axes(self) or scene.rough or scene.thermostat or scene.shear_rate is not None:
+            energies = self.motion.energies(masses).sum(axis=1)
+            whole = np.einsum("tnd,tnd,n->t", *[self.velocities[:, self.moving]] * 2, masses)
+        else:  # the energy is in double precision, and the momentum that of any frame
+            whole = 2.0 * self.data["kinetic_energy"].values
+            first = self.data["velocities"][0].values[self.moving].astype(float)
+            momentum = np.where(self.conserved, masses @ first, 0.0)
+            energies = whole - (momentum @ momentum) / (masses.sum() or 1.0)
+        moves = energies.mean() > _AT_REST * whole.mean()
+        return np.asarray(energies / self.freedoms) if moves else np.zeros(len(self.time))
 
     @cached_property
     def temperature(self) -> float:
-        """k_B T, the mean of `temperatures`; 0 if it is only rounding of the velocity of the centre of mass.
-        Raises SceneError as `freedoms`."""
-        velocities, masses = self.velocities[:, self.moving], self.masses[self.moving]
-        whole = np.einsum("tnd,tnd,n->t", velocities, velocities, masses).mean()
-        mean = float(self.temperatures.mean())
-        return mean if mean * self.freedom > _AT_REST * whole else 0.0
+        """k_B T, the mean of `temperatures`."""
+        return float(self.temperatures.mean())
 
     @property
     def falls(self) -> bool:
@@ -314,6 +321,7 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
             counter.take()
             extra["pair_collisions"] = counter.counts.copy()
         row = {**vars(tally), **places, "velocities": state.velocities, **extra, "time": again.time}
+        row["kinetic_energy"] = state.kinetic_energy
         rows.append({name: value for name, value in row.items() if value is not None})
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]
