@@ -57,11 +57,16 @@ class Peculiar:
 def about_the_whole(run: Run) -> Peculiar:
     """Velocities about that of the centre of mass in each frame, along the axes on which the total momentum
     is conserved, and about the flow of a sheared gas."""
-    velocities, masses = _about_known(run), run.masses[run.moving]
+    return about_the_mean(_about_known(run), run.masses[run.moving], run.conserved)
+
+
+def about_the_mean(velocities: np.ndarray, masses: np.ndarray, axes: np.ndarray) -> Peculiar:
+    """Velocities (T, M, d) of particles of masses (M,) about that of their centre of mass in each frame,
+    along axes (d,)."""
     total = masses.sum() or 1.0  # of none: nothing
     drift = np.einsum("tnd,n->td", velocities, masses) / total
-    velocities = velocities - np.where(run.conserved, drift, 0.0)[:, None]
-    return Peculiar(velocities, np.where(run.conserved, 1.0 - masses[:, None] / total, 1.0)[None])
+    apart = velocities - np.where(axes, drift, 0.0)[:, None]
+    return Peculiar(apart, np.where(axes, 1.0 - masses[:, None] / total, 1.0)[None])
 
 
 def _about_known(run: Run) -> np.ndarray:

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.bins import Grid
 from gaspart.analysis.run import Run
+from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import jackknife
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
@@ -242,16 +244,17 @@ def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings
     leaving = ~held & (above < settings["near"]) & (velocity > 0.0)
     speed = velocity[leaving] / np.sqrt(holder.temperature / holder.mass)
     # a particle is near for a time proportional to 1 / speed
-    flux = np.histogram(speed, settings["bins"], (0.0, _REACH), weights=speed)[0]
+    grid = Grid.line(0.0, _REACH, settings["bins"])
+    flux = grid.sums(grid.cells(speed[:, None]), speed)
     frames = len(height)
     parts = held.sum(), (~held).sum(), far.sum(), speed[speed < slow].sum(), flux
     return tuple(part / frames for part in parts)
 
 
 def _parts(holder: Holder, run: Run, blocks: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """(height, velocity) of each block of a run."""
-    run.block_length(blocks)
-    height = run.data["coordinates"][1:, :, 0].values.astype(float) - holder.radius
-    velocity = run.data["velocities"][1:, :, 0].values.astype(float)
-    parts = (np.array_split(series, blocks) for series in (height, velocity))
+    """(height, velocity) of each block of a run, of equal length."""
+    frames = Blocks(run, blocks).frames
+    height = run.data["coordinates"][frames, :, 0].values.astype(float) - holder.radius
+    velocity = run.data["velocities"][frames, :, 0].values.astype(float)
+    parts = (np.split(series, blocks) for series in (height, velocity))
     return zip(*parts, strict=True)
