@@ -14,7 +14,6 @@ import xarray as xr
 
 from gaspart.analysis.bins import Grid
 from gaspart.analysis.run import Run
-from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import jackknife
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
@@ -252,9 +251,9 @@ def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings
 
 
 def _parts(holder: Holder, run: Run, blocks: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """(height, velocity) of each block of a run, of equal length."""
-    frames = Blocks(run, blocks).frames
-    height = run.data["coordinates"][frames, :, 0].values.astype(float) - holder.radius
-    velocity = run.data["velocities"][frames, :, 0].values.astype(float)
-    parts = (np.split(series, blocks) for series in (height, velocity))
+    """(height, velocity) of each block of a run."""
+    run.block_length(blocks)
+    height = run.data["coordinates"][1:, :, 0].values.astype(float) - holder.radius
+    velocity = run.data["velocities"][1:, :, 0].values.astype(float)
+    parts = (np.array_split(series, blocks) for series in (height, velocity))
     return zip(*parts, strict=True)
