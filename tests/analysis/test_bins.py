@@ -71,6 +71,13 @@ def test_what_does_not_change_has_no_error_and_what_is_empty_no_value():
     assert np.isnan([found.values[1], found.errors[1]]).all()
 
 
+def test_a_cell_that_was_filled_once_has_a_value_without_an_error():
+    above, below = np.zeros((20, 1)), np.zeros((20, 1))
+    above[7], below[7] = 3.0, 2.0
+    found = ratio(above, below)
+    assert found.values[0] == 1.5 and np.isnan(found.errors[0]) and found.freedoms[0] == 0.0
+
+
 def test_blocks_cover_the_intervals_of_a_run():
     scene = gp.Scene(gp.Container((8.0, 8.0)), [gp.Species(20, 0.5, temperature=1.0)])
     sim = gp.Simulation(scene, gp.EventDriven(), 1)

@@ -104,7 +104,7 @@ def about_the_flow(run: Run, along: Mapping[int, int] | None = None) -> Peculiar
     """Velocities about the local flow of mass, if the gas can have one, in cells along `flow_axes`; otherwise
     those `about_the_whole`. along: axis -> number of cells, where these are not the default ones; further
     axes are resolved too, unless the flow changes or there is none."""
-    across = flow_axes(run)
+    across = run.flow_axes
     if not across:
         return about_the_whole(run)
     changes = bool(moving_axes(run))

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from gaspart.analysis.bins import Grid
-from gaspart.analysis.flow import Peculiar, about_cells, about_the_flow, flow_axes
+from gaspart.analysis.flow import Peculiar, about_cells, about_the_flow
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.room import moving_axes, sides
 from gaspart.analysis.run import Run
@@ -26,7 +26,8 @@ LEAST_FRAMES = 16
 _BLOCKS = 256
 """Blocks of frames: more would cost memory, and their correlation is allowed for."""
 _LEAST_FREEDOM = 2.0
-"""Degrees of freedom of an error, below which it is not known: the run is too short for the correlation."""
+"""Degrees of freedom of an error, below which it is not known: the run is too short for the correlation, or
+the cell was filled in too few blocks."""
 _ROUNDING = 1e-12  # relative scatter of what does not change
 
 
@@ -55,18 +56,19 @@ def ratio(above: np.ndarray, below: np.ndarray) -> Means:
     """sum A / sum B of series (K, ...) of K consecutive blocks, at least 16."""
     total = below.sum(axis=0)
     values = np.divide(above.sum(axis=0), total, out=np.full(total.shape, np.nan), where=total > 0.0)
-    errors, freedoms = np.full(total.shape, np.nan), np.full(total.shape, np.nan)
+    errors, filled = np.full(total.shape, np.nan), (below > 0.0).sum(axis=0)
+    freedoms = np.where(total > 0.0, filled - 1.0, np.nan)
     with np.errstate(invalid="ignore"):
         rest = (above - values * below) / np.where(total > 0.0, total, np.nan) * len(below)
-    for cell in np.argwhere(total > 0.0):
+    for cell in np.argwhere(filled > _LEAST_FREEDOM):
         at = tuple(cell)
         series = rest[(slice(None), *at)]
         if np.ptp(series) <= _ROUNDING * abs(values[at]):
-            errors[at], freedoms[at] = 0.0, len(series) - 1.0
+            errors[at] = 0.0
             continue
         found = correlated_mean(series, LEAST_FRAMES).estimate
-        freedoms[at] = found.freedom
-        errors[at] = found.error if found.freedom >= _LEAST_FREEDOM else np.nan
+        freedoms[at] = min(found.freedom, freedoms[at])
+        errors[at] = found.error if freedoms[at] >= _LEAST_FREEDOM else np.nan
     return Means(values, errors, freedoms)
 
 
@@ -148,7 +150,7 @@ class Cells:
         in these cells, in any case; otherwise only if the gas flows, see `flow.about_the_flow`."""
         along = dict(zip(self.axes, self.numbers, strict=True))
         motion = about_the_flow(self.run, along)
-        if local and not flow_axes(self.run):
+        if local and not self.run.flow_axes:
             motion = about_cells(self.run, along, changes=False)
         return self.temperature_of(motion)
 

@@ -130,6 +130,11 @@ class Run:
         their centre of mass, where that is conserved (see `flow`)."""
         return about_the_flow(self)
 
+    @cached_property
+    def flow_axes(self) -> list[int]:
+        """The axes along which the velocity of the gas may vary (see `flow.flow_axes`)."""
+        return flow_axes(self)
+
     @property
     def peculiar(self) -> np.ndarray:
         """(T, M, d) the velocities of `motion`."""
@@ -141,7 +146,7 @@ class Run:
         particle in a periodic container."""
         moving = int(self.moving.sum())
         found = np.full(len(self.time), self.dimension * moving - int(self.conserved.sum()), dtype=float)
-        if flow_axes(self):
+        if self.flow_axes:
             found = self.motion.freedoms().sum(axis=1)
         if not found.min() >= 1.0:
             raise SceneError("count", moving, "too few moving particles for a temperature")
@@ -158,7 +163,7 @@ class Run:
         per degree of freedom; 0 if it is only rounding of the velocity of the centre of mass. Raises
         SceneError as `freedoms`."""
         masses, scene = self.masses[self.moving], self.scene
-        if flow_axes(self) or scene.rough or scene.thermostat or scene.shear_rate is not None:
+        if self.flow_axes or scene.rough or scene.thermostat or scene.shear_rate is not None:
             energies = self.motion.energies(masses).sum(axis=1)
             whole = np.einsum("tnd,tnd,n->t", *[self.velocities[:, self.moving]] * 2, masses)
         else:  # the energy is in double precision, and the momentum that of any frame

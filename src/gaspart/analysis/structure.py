@@ -11,7 +11,6 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.bins import Grid
-from gaspart.analysis.flow import flow_axes
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.profiles import Cells, Means, with_freedom
@@ -55,7 +54,7 @@ def speed_distribution(source: Source, bins: int = 40, start: float | None = Non
         groups = [slice(first, None, STRETCHES) for first in range(STRETCHES)]
         found = [grid.sums(cells[:, group]) / known[:, group].sum() / grid.volume for group in groups]
         values, errors = means_of(found)
-        flows = bool(flow_axes(run))
+        flows = bool(run.flow_axes)
         expected = {} if flows else _maxwell(run, edges, squares.sum(axis=(1, 2)))
         middle = 0.5 * (edges[1:] + edges[:-1])
         along = {"speed": (middle, {"units": "length / time", "long_name": "speed"})}
