@@ -92,7 +92,7 @@ def wind(run: Run) -> np.ndarray:
     that is weaker adds at most 9 / (d N) to the temperature."""
     found = np.zeros(run.dimension, dtype=bool)
     masses = run.masses[run.moving]
-    for axis in np.flatnonzero(run.periodic & ~run.conserved):
+    for axis in np.flatnonzero(run.periodic & ~run.conserved & bool(len(masses))):
         velocities = run.velocities[:, run.moving, axis]
         momentum = velocities @ masses
         square = (velocities**2 @ masses - momentum**2 / masses.sum()).mean() / len(masses)
