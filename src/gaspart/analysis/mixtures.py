@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -26,12 +27,22 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
 
     source: a trajectory of a run with `pairs`, by its path or open, or a simulation, which is run again;
     start: the time from which frames count (by default a quarter of the run). Theory: exact but for the
-    contact values. Raises SceneError for single particles, too few frames, and a run without `pairs`.
+    contact values, which are those of an infinite mixture; a particle of N_i has N_i - 1 partners of its own
+    species, and the mean speed is that of a finite number at fixed energy. Raises SceneError for single
+    particles, too few frames, and a run without `pairs`.
     """
     with measured(source, start, pairs=True) as run:
         found = estimates_of(run, rate_scales(run))
         about: dict[str, Any] = {"units": "1 / time", "long_name": "collisions of a particle per time"}
-        return _of_pairs("pair_collision_rate", run, found, about, theory.mixture_collision_rates)
+        return _of_pairs("pair_collision_rate", run, found, about, _finite_rates)
+
+
+def _finite_rates(run: Run, mixture: Mixture) -> np.ndarray:
+    """(S, S) theory's collision rates of a finite number of particles."""
+    settings: dict[str, Any] = {"temperature": run.temperature, "masses": mixture.masses}
+    rates = np.asarray(theory.mixture_collision_rates(*mixture.sizes, **settings))
+    partners = 1.0 - np.diag(1.0 / np.array(mixture.counts, dtype=float))
+    return rates * partners * mean_speed_factor(run.freedom)
 
 
 def contact_values(source: Source, start: float | None = None) -> Observable:
@@ -50,7 +61,12 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
     with measured(source, start, pairs=True) as run:
         found = estimates_of(run, contact_scales(run))
         about: dict[str, Any] = {"units": "1", "long_name": "pair distribution at contact"}
-        return _of_pairs("contact_value", run, found, about, theory.mixture_contact_values)
+        return _of_pairs("contact_value", run, found, about, _contact_values)
+
+
+def _contact_values(run: Run, mixture: Mixture) -> np.ndarray:
+    """(S, S) theory's contact values, of an infinite mixture."""
+    return np.asarray(theory.mixture_contact_values(*mixture.sizes))
 
 
 def rate_scales(run: Run) -> np.ndarray:
@@ -101,16 +117,17 @@ def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
 
 
 def _of_pairs(
-    name: str, run: Run, found: list[Estimate], about: dict[str, Any], predicted: Any
+    name: str,
+    run: Run,
+    found: list[Estimate],
+    about: dict[str, Any],
+    predicted: Callable[[Run, Mixture], np.ndarray],
 ) -> Observable:
     along = {"pair": (np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"})}
     values, errors = np.array([[one.value, one.error] for one in found]).T
     mixture = run.mixture
     if mixture is not None and len(mixture.counts) == len(run.scene.species):
-        properties = {}
-        if name == "pair_collision_rate":
-            properties = {"temperature": run.temperature, "masses": mixture.masses}
-        expected = predicted(*mixture.sizes, **properties)
+        expected = predicted(run, mixture)
         about |= {"theory": ([expected[pair] for pair in pairs_of(run.scene)], np.nan), "source": _SOURCE}
     return observable(name, along, values, errors, **about)
 

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis import series
 from gaspart.analysis.mixtures import theory_of_z
 from gaspart.analysis.observable import Observable, observable, scalar
+from gaspart.analysis.room import mean_areas, touched
 from gaspart.analysis.run import (
     Run,
     Source,
@@ -43,10 +45,8 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
         if not run.moving.all():
             raise SceneError("species.fixed", True, "the virial of fixed particles is not a pressure")
         require_collisions(run)
-        scale = run.dimension * run.count * run.temperature
-        z = 1.0 + run.increments("virial_sum") / (scale * np.diff(run.time))
-        about: dict[str, Any] = {"units": "1", "long_name": "compressibility factor Z"}
-        return scalar("compressibility_factor", z, run.time, **about, **_theory_of_z(run))
+        about: dict[str, Any] = {"units": "1", "long_name": "compressibility factor Z", **_theory_of_z(run)}
+        return scalar("compressibility_factor", series.compressibility(run), run.time, **about)
 
 
 def _theory_of_z(run: Run) -> dict[str, Any]:
@@ -63,7 +63,8 @@ def _theory_of_z(run: Run) -> dict[str, Any]:
 
 def wall_pressure(source: Source, start: float | None = None) -> Observable:
     """Pressure on each face of the container that is a wall, (face,): the momentum given to it per time and
-    per area that centres can touch.
+    per area that centres can touch at that time, between faces where they are: beside a piston or a vibrating
+    floor the area changes.
 
     Contacts of particles at rest are no events: they press a floor with what gravity gives the particles and
     no event takes (`_rest_on_floors`). Their thrust on side walls is not known: NaN while particles rest.
@@ -78,12 +79,12 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
         if blocks < 4:
             raise SceneError("frames", len(run.time), "an error needs 5 or more")
         ends = np.linspace(0, len(run.time) - 1, blocks + 1).astype(int)
-        faces, series = pressures_on_walls(run, ends)
-        values, errors = means_of(series - series[0])  # no error of rounding at rest
+        faces, found = pressures_on_walls(run, ends)
+        values, errors = means_of(found - found[0])  # no error of rounding at rest
         return observable(
             "wall_pressure",
             {"face": (faces, {"long_name": "face of the container"})},
-            values + series[0],
+            values + found[0],
             errors,
             units="energy / length^d",
             long_name="pressure",
@@ -101,12 +102,13 @@ def pressures_on_walls(run: Run, ends: np.ndarray) -> tuple[np.ndarray, np.ndarr
     """Names (W,) of the faces that are walls, and the pressures on them (K, W) between the frames `ends`
     (K + 1,). Raises SceneError as `wall_pressure`."""
     _require_walls(run)
-    d, touched = run.dimension, _touched(run)
-    areas = np.repeat(touched.prod() / touched, 2)
-    impulse = np.diff(run.data["wall_impulse"].values[ends, : 2 * d], axis=0)
-    series = (np.abs(impulse) + _rest_on_floors(run, ends)) / np.diff(run.time[ends])[:, None] / areas
+    d, time = run.dimension, np.diff(run.time)[:, None]
+    pressed = np.abs(series.over(series.face_pressures(run) * time, ends))
+    areas = np.repeat(mean_areas(run), 2, axis=1)
+    resting = _rest_on_floors(run, ends) * series.over(time / areas, ends) / series.over(time, ends)
     chosen = np.repeat(~run.periodic, 2)
-    return np.array(face_names(d))[chosen], series[:, chosen]
+    pressures = (pressed + resting) / series.over(time, ends)
+    return np.array(face_names(d))[chosen], pressures[:, chosen]
 
 
 def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
@@ -148,19 +150,14 @@ def refuse_rest(run: Run, rule: str) -> None:
             raise SceneError("particles at rest", int(resting), rule)
 
 
-def _touched(run: Run) -> np.ndarray:
-    """(d,) sides of the volume that centres of the largest particles can reach."""
-    lower, upper = run.scene.reach(run.scene.largest_radius)
-    return np.subtract(upper, lower)
-
-
 def _theory_at_walls(run: Run) -> dict[str, Any]:
-    walled, lengths, touched = ~run.periodic, np.array(run.scene.container.lengths), _touched(run)
+    walled, lengths = ~run.periodic, np.array(run.scene.container.lengths)
+    reached = touched(run, run.time[:1])[0]
     sides = lengths[walled]
     gas = run.scene.gas
     if gas is None or run.scene.centres_to_walls or np.ptp(sides) > 1e-9 * sides.max():
         return {}
-    density = gas.count / float((touched / gas.diameter).prod())
+    density = gas.count / float((reached / gas.diameter).prod())
     try:
         value, error = theory.wall_pressure(
             sides[0] / gas.diameter, density, gas.count, gas.dimension, int(walled.sum())
@@ -184,9 +181,8 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
             raise SceneError("species.fixed", True, "fixed particles do not collide")
         refuse_rest(run, "touch others without a collision, so that there is no rate")
         require_collisions(run)
-        rate = 2.0 * run.increments("collisions") / (run.moving.sum() * np.diff(run.time))
         about: dict[str, Any] = {"units": "1 / time", "long_name": "collisions of a particle per time"}
-        return scalar("collision_rate", rate, run.time, **about, **_theory_of_rate(run))
+        return scalar("collision_rate", series.collision_rate(run), run.time, **about, **_theory_of_rate(run))
 
 
 def _theory_of_rate(run: Run) -> dict[str, Any]:
