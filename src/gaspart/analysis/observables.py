@@ -309,11 +309,15 @@ OBSERVABLES: dict[str, Named] = {
 """By name, as on the command line, in a sweep and in a config."""
 
 
+TOO_SHORT = ("frames", "duration", "collisions", "start", "D")
+"""Keys of the errors of an analysis that a longer run may not have."""
+
+
 def known(name: object) -> str:
     """The name of an observable. Raises SceneError for any other value."""
-    if name not in OBSERVABLES:
+    if not isinstance(name, str) or name not in OBSERVABLES:
         raise SceneError("observable", name, unknown_word(name, OBSERVABLES, "observable"))
-    return str(name)
+    return name
 
 
 def having(**traits: Any) -> tuple[str, ...]:

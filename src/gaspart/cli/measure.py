@@ -45,7 +45,8 @@ def add_measure(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
     names = "; ".join(f"{name}: {one.listed}" for name, one in OBSERVABLES.items())
     text = f"{names}. Uncertainties are one standard deviation; of curves a few rows are printed. "
-    text += "Several files are runs of one scene with different seeds: their mean and its scatter are given."
+    text += "Several files are runs of one scene with other seeds or initial states: their mean and scatter "
+    text += "are given."
     set_command(parser, _measure, text, _EXAMPLES)
     add = parser.add_argument
     add_trajectory(parser)

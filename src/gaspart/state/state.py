@@ -100,16 +100,25 @@ class State:
         return 0.5 * float((_finite(self.moments_of_inertia) * (self.spins**2).T).sum())
 
     @property
+    def temperature(self) -> float:
+        """k_B T of a gas without walls: that of flight about the centre of mass, per degree of freedom.
+        Raises ZeroDivisionError for a single particle."""
+        momentum = self.momentum
+        whole = 0.5 * float((momentum**2).sum()) / float(_finite(self.masses).sum())
+        return 2.0 * (self.translational_energy - whole) / (self.dimension * (self.count - 1))
+
+    @property
     def kinetic_energy(self) -> float:
         """Translational and rotational."""
         return self.translational_energy + self.rotational_energy
 
     @property
     def potential_energy(self) -> float:
-        """The energy of all particles in wells and under gravity, 0 where their centres are at the origin."""
+        """The energy of all particles in wells and under gravity, 0 where their centres are at the origin; on
+        periodic axes it goes on falling from image to image."""
         energy = 0.0 if self.well_energies is None else float(self.well_energies.sum())
         if self.gravity is not None:
-            energy -= float((_finite(self.masses)[:, None] * self.positions * self.gravity).sum())
+            energy -= float((_finite(self.masses)[:, None] * self.unwrapped * self.gravity).sum())
         return energy
 
     @property

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.analysis.observables import KEPT
+from gaspart.analysis.observables import KEPT, TOO_SHORT
 from gaspart.analysis.run import EQUILIBRATION, measured
 from gaspart.engines import Engine, EventDriven, engine_to_dict
 from gaspart.errors import SceneError, SimulationError
@@ -23,7 +23,7 @@ from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
 from gaspart.simulation import Simulation
 from gaspart.tradeoff.estimates import Component, components
-from gaspart.tradeoff.reached import TOO_SHORT, bound
+from gaspart.tradeoff.reached import bound
 from gaspart.tradeoff.target import SEED, Target
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
