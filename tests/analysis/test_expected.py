@@ -9,6 +9,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.analysis import bulk
 from gaspart.analysis.expected.equilibrium import compressibility_factor
+from gaspart.analysis.expected.transport import diffusion_in_cube
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.analysis.run import measured
@@ -154,3 +155,12 @@ def test_each_bulk_theory_is_that_of_its_contact_value():
         float(gp.theory.erpenbeck_wood_ratio(0.3)), rel=0.01
     )
     assert math.isnan(bulk.diffusion(Gas(2, 0.3, 100, 1.0, 1.0), bulk.EXACT))
+
+
+def test_d_is_what_its_window_gives():
+    """500 spheres: modes of the container go on after 24 collisions; those of a long one took less part."""
+    few, many = (Gas(3, 0.3, count, 1.0, 1.0) for count in (500, 50000))
+    sides = [(gas.count * math.pi / 6.0 / 0.3) ** (1.0 / 3.0) for gas in (few, many)]
+    for gas, side, late in ((few, sides[0], -0.0066), (many, sides[1], -0.0098)):
+        limit = gp.theory.diffusion_in_cube(0.3, side)[0]
+        assert diffusion_in_cube(gas, side, None, None)[0] - limit == pytest.approx(late, abs=0.0035)
