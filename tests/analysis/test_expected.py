@@ -158,9 +158,10 @@ def test_each_bulk_theory_is_that_of_its_contact_value():
 
 
 def test_d_is_what_its_window_gives():
-    """500 spheres: modes of the container go on after 24 collisions; those of a long one took less part."""
-    few, many = (Gas(3, 0.3, count, 1.0, 1.0) for count in (500, 50000))
-    sides = [(gas.count * math.pi / 6.0 / 0.3) ** (1.0 / 3.0) for gas in (few, many)]
-    for gas, side, late in ((few, sides[0], -0.0066), (many, sides[1], -0.0098)):
-        limit = gp.theory.diffusion_in_cube(0.3, side)[0]
-        assert diffusion_in_cube(gas, side, None, None)[0] - limit == pytest.approx(late, abs=0.0035)
+    """Until 24 collisions of a particle it does not feel that a container is long, while the limit of D still
+    grows with it: from 0.1940 to 0.1986."""
+    found = []
+    for count in (5000, 50000):
+        side = (count * math.pi / 6.0 / 0.3) ** (1.0 / 3.0)
+        found.append(diffusion_in_cube(Gas(3, 0.3, count, 1.0, 1.0), side, None, None)[0])
+    assert found[0] == pytest.approx(found[1], rel=2e-3) and found[0] < 0.19
