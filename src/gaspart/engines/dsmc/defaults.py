@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.dsmc.pace import CROSSED, LONGEST, reach_of
+from gaspart.engines.dsmc.pace import CROSSED, LONGEST, falling_axis, reach_of
 from gaspart.engines.dsmc.rates import Rates, accessible
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
@@ -25,6 +25,8 @@ with few others in a cell those that approach become rare: with 8 in each a gas 
 has 6 % too few collisions."""
 USUAL = 16.0
 """Particles in a cell that are enough: it is narrower than recommended rather than with more."""
+LAYERS = 8
+"""Cells along the way that particles fall between walls, at least: their speeds depend on the height."""
 _DIGITS = 2.0**10  # a step is rounded to so many parts, so that it does not depend on how sums are rounded
 _VISCOSITY = {2: math.pi / 24.0, 3: 16.0 / (45.0 * math.pi)}
 _VISCOSITY_IN_TIME = 16.0 / (75.0 * math.pi)
@@ -43,9 +45,20 @@ def cells_for(engine: DSMC, scene: Scene, found: Rates, crowding: float = 1.0) -
 
 
 def recommended_cells(model: str, scene: Scene, found: Rates, number: float) -> tuple[int, ...]:
-    """(d,) those of a model for so many particles in the container."""
+    """(d,) those of a model for so many particles in the container. Where particles fall there are `LAYERS`
+    along the way, if the particles are enough, and what is left of them is shared by the other axes."""
     lower, upper = accessible(scene)
     lengths = tuple(float(length) for length in upper - lower)
+    fit, axis = _fitting(lengths, found, number, model), falling_axis(scene)
+    layers = min(LAYERS, math.floor(number / FEWEST[model]))
+    if axis is None or layers <= fit[axis]:
+        return fit
+    others = _fitting(lengths[:axis] + lengths[axis + 1 :], found, number / layers, model)
+    return (*others[:axis], layers, *others[axis:])
+
+
+def _fitting(lengths: tuple[float, ...], found: Rates, number: float, model: str) -> tuple[int, ...]:
+    """Cells along axes of these lengths that share so many particles."""
     width = min(WIDEST * found.path, cube_side(lengths, number / USUAL))
     width = max(width, cube_side(lengths, number / FEWEST[model]))
     return tuple(max(1, math.floor(length / width + 1e-9)) for length in lengths)
