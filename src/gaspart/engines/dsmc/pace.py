@@ -37,6 +37,8 @@ ROOM = math.sqrt(2.0)
 _KICKED = 0.09
 """Of the mean speed: the width of the kicks of a step, unless a step has one kick at most. They come at its
 end, and the energy there is above its mean over time by half of what they give, 0.35 % at most."""
+_FIRST = 20
+"""The level of parts that are as short as a start from rest needs, however many kicks are due in one."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +121,10 @@ def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.nda
     if not divided:
         return np.zeros(1), np.array([reach.speed(reach.most, step)])
     steps = [math.ldexp(step, -level) for level in range(FINEST + 1)]
-    kicked = [reach.push * math.sqrt(part) / _KICKED if part > reach.interval else 0.0 for part in steps]
+    several = [part > reach.interval and level < _FIRST for level, part in enumerate(steps)]
+    kicked = [
+        reach.push * math.sqrt(part) / _KICKED * many for many, part in zip(several, steps, strict=True)
+    ]
     return np.array(kicked), np.array([reach.speed(ROOM * reach.recommended, part) for part in steps])
 
 

@@ -261,8 +261,10 @@ def comes_to_rest(face, speed, left, which, setting, gravity, law):
         shortest = _REST * tools.dt
     if not (pull > 0.0 and 2.0 * speed <= pull * shortest):
         return False
-    add_exact(tools.loss[setting.part], 0.5 * tools.mass[which] * speed * speed)
-    lean(face, axis, tools.mass[which], left, setting, gravity)
+    mass = tools.mass[which]
+    add_exact(tools.loss[setting.part], 0.5 * mass * speed * speed)
+    add_exact(tools.wall_impulse[setting.part, face], mass * speed)
+    lean(face, axis, mass, left, setting, gravity)
     return True
 
 

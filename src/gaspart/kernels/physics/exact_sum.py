@@ -95,14 +95,17 @@ def join(parts, total):
 @kernel
 def evaluate(sums, units, found):
     """found (K, 2) becomes the values of sums (K, WIDTH), whose digits are used up: the nearest float64, and
-    what remains. units: `UNITS`."""
+    what remains, to 2^-64 of it. units: `UNITS`."""
     for k in range(len(sums)):
         total = sums[k]
         sign, top = _magnitude(total), DIGITS - 1
-        while top > 3 and total[top] == 0:
+        while top > 2 and total[top] == 0:
             top -= 1
+        for n in range(top - 2):
+            if total[n] != 0:
+                total[top - 2] |= 1  # decides where the digits that count are half-way between two float64
         value = rest = 0.0
-        for n in range(4):  # 97 bits at least
+        for n in range(3):  # 65 bits at least, and few enough for two float64 to hold
             value, error = _two_sum(value, total[top - n] * units[top - n])
             rest += error
         value, rest = _two_sum(value, rest)
