@@ -114,7 +114,7 @@ def one_of_each():
 
 
 @pytest.mark.filterwarnings("ignore:gaspart")
-@pytest.mark.parametrize("engine", one_of_each())
+@pytest.mark.parametrize("engine", list(one_of_each()))
 def test_a_checkpoint_that_lacks_anything_is_refused(engine):
     begun = gp.Simulation(MIXED, engine, 1)
     begun.advance(until=1.0)

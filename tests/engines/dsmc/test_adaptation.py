@@ -73,8 +73,8 @@ def test_cells_that_follow_the_density_give_the_same_bits_however_a_run_is_split
 
 
 def test_a_cold_gas_that_is_heated_comes_to_the_temperature_of_the_event_driven_engine():
-    """With steps of its own, from a hundredth of the final speed on. The Boltzmann model has fewer collisions,
-    by the contact value, and so a higher temperature, by its power 2/3."""
+    """With steps of its own, from a hundredth of the final speed on. The Boltzmann model has fewer
+    collisions, by the contact value, and so a higher temperature, by its power 2/3."""
     temperatures = []
     for seed in range(4):
         sim = gp.Simulation(driven(), gp.DSMC().resolved(driven(), 20.0), seed)

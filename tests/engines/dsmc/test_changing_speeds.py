@@ -53,8 +53,8 @@ def measured(scene, engine, seed):
 
 
 def compared(start, kind, seeds):
-    """Means (2,) of what is `measured` by the event-driven engine, and (2,) by how much that of the DSMC engine
-    is above, with its error: both begin with the same particles for each seed."""
+    """Means (2,) of what is `measured` by the event-driven engine, and (2,) by how much that of the DSMC
+    engine is above, with its error: both begin with the same particles for each seed."""
     kinds = POINTS if (start, kind) == ("rest", "gravity") else STARTS[start]
     scene = gp.Scene(gp.Container((SIDE,) * 3), kinds, **SCENES[kind])
     engines = gp.DSMC(), gp.EventDriven()

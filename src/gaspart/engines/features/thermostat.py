@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from gaspart.kernels.dsmc import model as dsmc
     from gaspart.kernels.model import Model, Particles, Tally
 
+_MOST_NUMBERS = 2**63 - 1  # of kicks, before they begin anew
 _KICK_DRAWS = 3  # the purpose of their random numbers, after those of thermal walls
 
 
@@ -108,7 +109,8 @@ class StepKicks:
         due = self._due(steps)
         number = due - self._due(steps - part)
         if number > 0:
-            kick_all(particles, tools, self._width * math.sqrt(number), (self._key, due), self.given)
+            counter = self._key, due & _MOST_NUMBERS
+            kick_all(particles, tools, self._width * math.sqrt(number), counter, self.given)
 
 
 def step_kicks(scene: Scene, time_step: float, seed: int | tuple[int, ...]) -> StepKicks | None:
