@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gaspart.engines.belonging import check_parts
-from gaspart.engines.dsmc.crowding import EPOCH, HIGHEST, crowding, may_crowd, next_level
-from gaspart.engines.dsmc.defaults import cells_for, coarse, recommended_cells, step_for
+from gaspart.engines.dsmc.crowding import EPOCH, HIGHEST
 from gaspart.engines.dsmc.limits import check_made, check_scene
-from gaspart.engines.dsmc.pace import FINEST, check_step, may_speed_up, pace_for, reach_of, too_fast
-from gaspart.engines.dsmc.rates import Rates, rates
+from gaspart.engines.dsmc.pace import FINEST
 from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.part import Part, arrays_of, write_parts
 from gaspart.engines.features.thermostat import step_kicks
@@ -27,8 +24,6 @@ from gaspart.state.tally import Tally, tallied_fluxes
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
     from gaspart.engines.event_log import EventLog
-    from gaspart.kernels.dsmc.enskog import Dense
-    from gaspart.kernels.dsmc.model import Grid
 
 _MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
 _WHOLE = 2**FINEST
@@ -38,26 +33,25 @@ _WHOLE = 2**FINEST
 class DsmcDynamics:
     """A scene under way; its time is a whole number of steps.
 
-    cells_per_side (d,), time_step: what was chosen. A step may be made in parts, and cells may become
-    narrower: see `pace` and `crowding`.
+    time_step: what was chosen. A step may be made in parts, and cells may become narrower: see `pace` and
+    `crowding`.
     """
 
     def __init__(
         self, engine: DSMC, scene: Scene, state: State, seed: int | tuple[int, ...], stress: bool
     ) -> None:
         from gaspart.engines.dsmc import arrays
-        from gaspart.kernels.dsmc import loop, model, pace
+        from gaspart.engines.dsmc.resolution import Resolution
+        from gaspart.kernels.dsmc import loop, model
         from gaspart.kernels.model import Space
         from gaspart.kernels.physics import exact_sum
 
         engine.check_features(scene)
         check_scene(scene, state)
-        self._found = rates(scene, engine.model == "enskog")
-        self.time_step = step_for(engine, scene, self._found)
-        check_step(reach_of(scene, self._found.path), self.time_step, self._found)
+        self._resolution = Resolution(engine, scene, state, len(arrays.kinds_of(state)[0]))
+        self.time_step = self._resolution.step
         self._engine, self._scene, self._reference = engine, scene, state
         self._arrays, self._loop, self._layout, self._sums = arrays, loop, model, exact_sum
-        self._fitting_level = pace.fitting_level
         self._particles = arrays.empty_particles(state)
         self._tools = arrays.tools_for(engine, scene, state, self.time_step, seed)
         self._space = Space(scene.container.lengths, scene.container.periodic, self._tools.margin)
@@ -71,51 +65,18 @@ class DsmcDynamics:
         self._place(np.arange(state.count), state.positions, state.velocities, state.images)
         self._lost = np.zeros(2)  # net and gross, before the tally began
         self._start, self._steps, self._place_in_step, self._since = state.time, 0, 0, np.zeros(2, np.int64)
-        self._crowds, self._warned = may_crowd(scene), set[str]()
-        self._grid: Grid | None = None
-        self._dense: Dense | None = None
-        self._set_cells(0)
-        self._warn(self._found, "")
         self._look()
 
-    def _set_cells(self, crowded: int) -> None:
-        """Make the cells, and find the lengths of steps, for a gas 2^`crowded` times as dense where its
-        particles are as on average."""
-        engine, scene, dense = self._engine, self._scene, None
-        self.cells_per_side = cells_for(engine, scene, self._found, 2.0**crowded)
-        grid = self._arrays.grid_for(scene, self._reference, self.cells_per_side, engine.threads)
-        if engine.model == "enskog":
-            from gaspart.engines.dsmc.dense import dense_for, moved_fields
-
-            dense = dense_for(scene, self._reference, grid, len(self._tools.radius))
-            if self._dense is not None and self._grid is not None:
-                dense.fields[...] = moved_fields(self._dense.fields, self._grid, grid)
-        self._crowded, self._grid, self._dense, self._pace = crowded, grid, dense, None
-        self._reach = reach_of(scene, self._found.crowded(2.0**crowded).path)
-        if may_speed_up(scene):
-            self._pace = pace_for(scene, self._reach, self.time_step, engine.adapts_steps)
+    @property
+    def cells_per_side(self) -> tuple[int, ...]:
+        """(d,) the cells along each axis at present."""
+        return self._resolution.cells
 
     def _look(self) -> None:
         """Let the cells fit the density that the gas has now."""
-        if not self._crowds:
-            return
-        scene, rows, found = self._scene, self._particles.rows, self._found.crowded(2.0**self._crowded)
-        places = self._particles.data[rows[: scene.dimension]].T
-        cells = recommended_cells(self._engine.model, scene, found, 2.0**self._crowded * scene.count)
-        level = next_level(self._crowded, crowding(places, cells, scene))
-        if level != self._crowded:
-            self._set_cells(level)
-            self._warn(self._found.crowded(2.0**level), f" where most particles are at time {self.time:g}")
-
-    def _warn(self, found: Rates, when: str) -> None:
-        """Warn once of each setting that was given and is coarser than recommended. when: words for the
-        time."""
-        settings = self._engine, self.cells_per_side, self.time_step
-        texts = coarse(*settings, self._scene, found, 2.0**self._crowded)
-        for key, text in texts.items():
-            if key not in self._warned:
-                self._warned.add(key)
-                warnings.warn(text.format(when=when), stacklevel=5)
+        if self._resolution.crowds:
+            particles = self._particles
+            self._resolution.look(particles.data[particles.rows[: self._scene.dimension]].T, self.time)
 
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
@@ -168,18 +129,16 @@ class DsmcDynamics:
 
             set_num_threads(min(self._engine.threads, config.NUMBA_NUM_THREADS))
         while self._steps < target:
-            self._make(min(target, self._steps - self._steps % EPOCH + EPOCH) if self._crowds else target)
+            epoch = self._steps - self._steps % EPOCH + EPOCH
+            self._make(min(target, epoch) if self._resolution.crowds else target)
             if self._steps % EPOCH == 0:
                 self._look()
-        if self._pace is not None:
-            speed = float(self._pace.fastest[0])
-            found = Rates(speed / self._reach.path, speed, self._reach.path)
-            self._warn(found, f" by time {self.time:g}")
+        self._resolution.warn_of_speed(self.time)
 
     def _make(self, stop: int) -> None:
         """Make all steps up to one."""
         while self._steps < stop:
-            level = self._level()
+            level = self._resolution.level(self._particles, self._place_in_step, self.time)
             part, at = _WHOLE >> level, self._steps * _WHOLE + self._place_in_step
             number = (stop * _WHOLE - at) // part
             if self._kicks is not None:
@@ -190,24 +149,15 @@ class DsmcDynamics:
                 self._kicks.happen(self._particles, self._tools, at / _WHOLE, 0.5**level)
             check_made(self._tools.counts, self.time)
 
-    def _level(self) -> int:
-        """The level of the next part of a step: that which fits the particles, or a higher one, of which a
-        whole number have been made."""
-        if self._pace is None:
-            return 0
-        level, place = self._fitting_level(self._particles, self._pace), self._place_in_step
-        if level == len(self._pace.low):
-            raise too_fast(self.time, self.time_step, self._reach, self._pace)
-        return max(level, 0 if place == 0 else FINEST + 1 - (place & -place).bit_length())
-
     def _run(self, level: int, number: int) -> int:
         """Let the kernel make so many parts of a step of a level. Returns how many it has made."""
         threads = self._engine.threads if self._engine.threads > 1 else None
-        pace = self._pace and self._pace._replace(level=level)
+        now = self._resolution
+        pace = now.pace and now.pace._replace(level=level)
         tools = self._tools._replace(dt=math.ldexp(self.time_step, -level))
         setting = self._layout.Setting(self._space, tools, 0)
-        options = self._gravity, self._faces, self._law, self._dense, self._stress, pace
-        return self._loop.run_steps(self._particles, self._grid, setting, number, threads, options)
+        options = self._gravity, self._faces, self._law, now.dense, self._stress, pace
+        return self._loop.run_steps(self._particles, now.grid, setting, number, threads, options)
 
     def reset_tally(self) -> None:
         """Begin to count anew."""
@@ -303,7 +253,7 @@ class DsmcDynamics:
         return {
             "steps": np.array([self._steps, self._place_in_step, self._tools.clock[0]]),
             "since": self._since.copy(),
-            "crowded": np.array(self._crowded),
+            "crowded": np.array(self._resolution.crowded),
             "lost": self._lost.copy(),
             "positions": self._by_particle(0),
             "velocities": self._by_particle(self._scene.dimension),
@@ -311,7 +261,7 @@ class DsmcDynamics:
             "slots": self._slots.copy(),
             **{key: self._over_threads(array) for key, array in self._counted.items()},
             **{key: array.copy() for key, array in arrays_of(self._parts).items()},
-            **({"fields": self._dense.fields.copy()} if self._dense else {}),
+            **({"fields": dense.fields.copy()} if (dense := self._resolution.dense) else {}),
         }
 
     def _over_threads(self, array: np.ndarray) -> np.ndarray:
@@ -326,20 +276,19 @@ class DsmcDynamics:
         crowded = int(parts["crowded"])
         if not 0 <= crowded <= HIGHEST:
             raise SceneError("checkpoint", crowded, "is no level of density: the checkpoint is damaged")
-        wanted = self.checkpoint()
-        if self._dense:
-            cells = cells_for(self._engine, self._scene, self._found, 2.0**crowded)
-            wanted["fields"] = np.empty((len(self._dense.fields), math.prod(cells)))
+        wanted, resolution = self.checkpoint(), self._resolution
+        if "fields" in wanted:
+            wanted["fields"] = np.empty((len(wanted["fields"]), math.prod(resolution.cells_of(crowded))))
         check_parts(parts, wanted)
-        if crowded != self._crowded:
-            self._set_cells(crowded)
+        if crowded != resolution.crowded:
+            resolution.set(crowded)
         self._place(*(parts[key] for key in ("slots", "positions", "velocities", "images")))
         for key, array in self._counted.items():
             array[...] = 0
             array[0] = parts[key]
         for key, array in arrays_of(self._parts).items():
             array[...] = parts[key]
-        if self._dense:
-            self._dense.fields[...] = parts["fields"]
+        if resolution.dense:
+            resolution.dense.fields[...] = parts["fields"]
         self._steps, self._place_in_step, self._tools.clock[0] = map(int, parts["steps"])
         self._since, self._lost = parts["since"].copy(), parts["lost"].copy()
