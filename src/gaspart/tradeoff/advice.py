@@ -229,7 +229,7 @@ def _engines(scene: Scene, gas: Gas) -> Iterator[tuple[Engine, str, float]]:
     for name, model in MODELS.items():
         own = DSMC(model=model).resolved(scene)
         for precision, part in table.steps(gas.dimension, name):
-            yield replace(own, time_step=part * (own.time_step or 0.0)), precision, part
+            yield own.with_step(part * (own.time_step or 0.0)), precision, part
 
 
 def _setting(scene: Scene, gas: Gas, wish: _Wish, made: tuple[Engine, str, float]) -> Setting | None:
