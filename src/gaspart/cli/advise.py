@@ -25,6 +25,7 @@ from gaspart.tradeoff import PILOT_SECONDS
 if TYPE_CHECKING:
     from gaspart.tradeoff.advice import Advice, Setting
     from gaspart.tradeoff.plan import Option, Plan
+    from gaspart.tradeoff.scatter import Scatter
     from gaspart.trajectory.recipe import Recipe
 
 _EXAMPLES = """examples:
@@ -91,6 +92,7 @@ def _advise(given: argparse.Namespace) -> None:
 def _lines(advice: Advice, file: str) -> list[str]:
     """The advice as text. file: of the scene, for the command."""
     from gaspart.tradeoff.advice import EQUILIBRATION
+    from gaspart.tradeoff.scatter import Scatter
 
     best, gas = advice.setting, advice.gas
     length = f"{advice.collisions_per_particle:.3g} collisions per particle, duration {advice.duration:.4g}"
@@ -105,7 +107,7 @@ def _lines(advice: Advice, file: str) -> list[str]:
         f"95 % half-width   {best.half_width:.2g} of {advice.observable} (bias: at most {best.bias:.1g})",
     ]
     if advice.observable in ("D", "collision_rate"):
-        lines += _drawn(advice.observable, advice.scatter)
+        lines += _drawn(advice.observable, Scatter(advice.scatter, drawn=True))
     lines.append(_pays(advice.scene, best.engine, advice.observable))
     if not advice.within_budget:
         lines.append(f"the budget does not suffice for {advice.accuracy:g}")
@@ -118,12 +120,29 @@ def _lines(advice: Advice, file: str) -> list[str]:
     return lines
 
 
-def _drawn(observable: str, scatter: float) -> list[str]:
-    """What velocities that are drawn add to the error."""
-    if not scatter:
+def _drawn(observable: str, scatter: Scatter) -> list[str]:
+    """What differences of the energy at the start add to the error."""
+    if not scatter.value:
         return []
-    text = f"{scatter:.2g} of {observable} from run to run, beyond this"
-    return [f"drawn velocities  {text}: exact_temperature: true removes it"]
+    lines = [f"energy at start   {scatter.value:.2g} of {observable} from run to run, beyond this"]
+    if scatter.drawn:
+        lines.append("                  velocities are drawn: exact_temperature: true removes their part")
+    if scatter.placed:
+        lines.append(
+            "                  heights are random: the mean of runs with several seeds, or of runs from "
+            "one state (--from), which have one energy"
+        )
+    return lines
+
+
+def _differences(plan: Plan) -> list[str]:
+    """Pilots that do not agree within their bounds, of which the exact one is believed."""
+    lines = []
+    for one in plan.differing:
+        exact = plan.pilots[0]
+        values = f"{one.value:.4g} against {exact.value:.4g} by the event-driven engine"
+        lines.append(f"pilots differ     {one.engine.title}: {values}, more than its bound and their noise")
+    return lines
 
 
 def _pays(scene: Scene, engine: Engine, observable: str) -> str:
@@ -166,6 +185,7 @@ def _plan_lines(plan: Plan, file: str) -> list[str]:
         cost = f"{pilot.seconds:.2g} s" if pilot.seconds else "kept from before"
         shown = f"{pilot.value:.4g} to {100.0 * pilot.accuracy:.2g} %" if pilot.measured else pilot.rule
         lines.append(f"pilot             {pilot.engine.title}, {cost}: {shown}")
+    lines += _differences(plan)
     for other in plan.options[1:]:
         cost = f"{other.seconds:.3g} s" if math.isfinite(other.seconds) else "not as accurate"
         without = f"gives up {other.candidate.gives_up}"
