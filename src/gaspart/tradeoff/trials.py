@@ -10,6 +10,7 @@ from typing import TypeAlias
 
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
+from gaspart.state.given import taken_state
 from gaspart.tradeoff.candidates import Candidate, candidates, exact_candidate, suited
 from gaspart.tradeoff.conditions import Conditions, measured_conditions
 from gaspart.tradeoff.pilot import Pilot, require_defined, run_pilot, speed_of
@@ -147,9 +148,10 @@ class Trials:
     def _settle(self, pilot: Pilot) -> None:
         """Start what follows from the end of a pilot, if its file holds the state."""
         try:
-            self.target = replace(self.target, settled=last_state(pilot.path or ""))
+            state = taken_state(self.target.scene, last_state(pilot.path or ""))
         except SceneError:  # as of a piston
             return
+        self.target = replace(self.target, settled=state)
 
     def _no_engine(self) -> SceneError:
         rule = f"no engine runs this scene: {'; '.join(self.refused.values())}"
