@@ -54,6 +54,9 @@ COARSE |= {"contact_values": 2.0, "vacf": 2.0, "msd": 2.0, "chemical_potential":
 """By how much the accuracies of those that take longer are coarser."""
 PILOT_SECONDS = 1.0
 LONGER = 10
+MOST_SECONDS = 20.0
+"""How many times as long as the advised run the one that judges it is, and its processor time, above which it
+is shorter, down to three times as long."""
 MOST_FRAMES = 2560
 """Of the run that judges, where its frames need not be those of the other one."""
 LEAST_REACHED, COSTS_MORE = 0.93, 1.5
@@ -110,9 +113,9 @@ def scene(number):
     return kind, made, observable, min(accuracy, 0.5)
 
 
-def difference(found, truth, face=""):
-    """Relative difference, as the accuracy of a pilot is defined: of a face, of the worst face or component by
-    its error, or of the norms of a curve, at the places that both have."""
+def difference(found, truth, face="", places=True):
+    """Relative difference, as the accuracy of a pilot is defined: of a face, of the worst face or component
+    by its error, or of the norms of a curve, at the places that both have, and the pilot."""
     along = found.estimate.dims[-1] if found.estimate.ndim else None
     if face:
         mine, exact = (one.estimate.sel({along: face}) for one in (found, truth))
@@ -134,7 +137,7 @@ def difference(found, truth, face=""):
     if found[along].dtype.kind in "US":
         worst = int(np.argmax(np.asarray(found.error) / np.abs(value)))
         return float(abs(value.flat[worst] / exact.flat[worst] - 1.0))
-    known = np.isfinite(value) & np.isfinite(exact)
+    known = np.isfinite(value) & np.isfinite(exact) & places
     return float(np.sqrt(np.mean((value - exact)[known] ** 2) / np.mean(exact[known] ** 2)))
 
 
@@ -181,14 +184,14 @@ def _kept(number, gas, observable, accuracy, made, folder):
     if len(paths) > 1:
         found = gp.analysis.replicas(observable, paths)
     if "lag" not in found.coords and observable not in STRUCTURE and not recipe.correlations:
-        interval *= math.ceil(LONGER * frames / MOST_FRAMES)
+        interval *= math.ceil(costs["longer"] * frames / MOST_FRAMES)
     path = folder / "longer.nc"
-    longest = round(LONGER * duration / interval) * interval
+    longest = round(costs["longer"] * duration / interval) * interval
     kept = {"displacements": True, **more, **same}
     gp.run(gas, gp.EventDriven(), (8, number), longest, interval, path=path, **kept)
     with gp.open_trajectory(path) as data:
         truth = _of_longer(observable, data)
-    off = difference(found, truth, face)
+    off = difference(found, truth, face, costs.get("places", True))
     if recipe.until and costs["predicted"]:
         result["longer"] = duration / costs["predicted"]
     return result | {
@@ -219,7 +222,7 @@ def _advice(gas, observable, accuracy):
         found = advise(gas, observable, accuracy)
         costs = {"ratio": _table_ratio(gas, found, observable), "predicted": 0.0}
         stated = {"stated": found.setting.half_width, "promised": found.within_budget}
-        return found.recipe, costs | stated | {"replicas": found.replicas}
+        return found.recipe, costs | stated | {"replicas": found.replicas, "longer": LONGER}
     made = plan(gas, observable, accuracy, pilot_seconds=PILOT_SECONDS)
     near = [one for one in made.options if one.half_width <= accuracy * 1.001]
     near = [one for one in near if one.seconds < 4.0 * made.best.seconds] or [made.best]
@@ -228,7 +231,12 @@ def _advice(gas, observable, accuracy):
     ]
     ratio = again[near.index(made.best)] / min(again)
     stated = {"stated": made.best.half_width, "promised": made.affordable}
-    return made.recipe, {"ratio": ratio, "predicted": made.best.duration, "replicas": 1, **stated}
+    longer = float(np.clip(MOST_SECONDS / made.best.seconds, 3.0, LONGER))
+    costs = {"ratio": ratio, "predicted": made.best.duration, "replicas": 1, "longer": longer}
+    if made.places[0] < made.places[1]:
+        pilot = max((one for one in made.pilots if one.measured), key=lambda one: one.component.places)
+        costs["places"] = np.isfinite(measure(observable, pilot.path).estimate.values)
+    return made.recipe, costs | stated
 
 
 def _table_ratio(gas, found, observable):

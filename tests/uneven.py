@@ -11,13 +11,13 @@ OBSERVABLES = {
     "falling": ("collision_rate", "temperature", "pressure:floor"),
     "stratified": ("collision_rate", "temperature", "density", "pressure:floor", "msd"),
     "slit": ("pressure", "collision_rate", "density", "vacf"),
-    "few": ("collision_rate", "Z", "speeds"),
+    "few": ("collision_rate", "Z"),
     "few in a box": ("collision_rate", "pressure"),
     "gradient": ("collision_rate", "pressure", "temperature", "density"),
     "granular column": ("collision_rate", "temperature", "density"),
 }
 """Those of each kind of scene, in turn."""
-COARSE = {"density": 3.0, "temperature": 2.0, "vacf": 2.0, "msd": 2.0}
+COARSE = {"density": 4.0, "temperature": 3.0, "vacf": 2.0, "msd": 2.0}
 
 
 def scene(number):

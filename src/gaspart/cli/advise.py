@@ -120,6 +120,17 @@ def _lines(advice: Advice, file: str) -> list[str]:
     return lines
 
 
+def _rarely_visited(plan: Plan) -> list[str]:
+    """What part of a curve the accuracy is of."""
+    known, places = plan.places
+    if known == places:
+        return []
+    text = (
+        f"{known} of {places}, to which particles come in every part of the pilot: the accuracy is of these"
+    )
+    return [f"places            {text}"]
+
+
 def _drawn(observable: str, scatter: Scatter) -> list[str]:
     """What differences of the energy at the start add to the error."""
     if not scatter.value:
@@ -177,6 +188,7 @@ def _plan_lines(plan: Plan, file: str) -> list[str]:
         if asked := recipe.correlations:
             lags = f"{asked.interval:g} apart, up to {asked.lags * asked.interval:.4g}"
             lines.append(f"lags              {lags}, the time of about 10 collisions of a particle")
+    lines += _rarely_visited(plan)
     lines += _drawn(plan.target.name, plan.scatter)
     lines.append(_pays(plan.target.scene, best.candidate.engine, plan.target.observable))
     if not plan.affordable:

@@ -24,8 +24,8 @@ from gaspart.tradeoff.steady import face_temperatures
 
 _LAYERS = 12
 """Of a measured profile, in each axis, with as many particles in each."""
-_CERTAIN = 3.0
-"""Standard errors by which two layers differ if there is a gradient."""
+_CERTAIN = 4.0
+"""Standard errors by which two of all layers differ if there is a gradient."""
 _HELD = 0.02
 """Part of the particles beyond which a layer counts in the shortest scale."""
 _FREE = 0.02
@@ -224,7 +224,9 @@ def _along(scene: Scene, axis: int, places: np.ndarray, thermal: np.ndarray) -> 
     temperature = np.array([float(thermal.ravel()[one].mean()) for one in layers])
     # Particles of one frame are independent, roughly; frames are taken as not.
     error = math.sqrt(2.0 * _LAYERS / max(1, places.shape[1]) / max(1.0, len(places) / 8.0))
-    changes = [np.abs(np.diff(np.log(np.maximum(of, 1e-300)))) for of in (crowding, temperature)]
-    certain = np.maximum(np.maximum(*changes) - _CERTAIN * error, 0.0) / np.diff(middle)
+    logarithms = [np.log(np.maximum(of, 1e-300)) for of in (crowding, temperature)]
+    one, other = np.triu_indices(_LAYERS, 1)
+    change = np.maximum(*(np.abs(of[other] - of[one]) for of in logarithms))
+    certain = np.maximum(change - _CERTAIN * error, 0.0) / (middle[other] - middle[one])
     scale = 1.0 / float(certain.max()) if certain.max() > 0.0 else math.inf
     return Conditions(scene, middle, share, crowding, temperature, axis, scale)

@@ -59,7 +59,7 @@ class Plan:
     """The advice for a scene. options: of each engine, the best first; refused: why others cannot run it;
     value: of the observable by the pilots; pilots: their results; affordable: whether the best reaches the
     accuracy within the budget; differing: pilots that differ from that of the exact engine by more than their
-    bounds."""
+    bounds; places: of a curve, how many the pilots know, of which the accuracy is, and how many there are."""
 
     target: Target
     accuracy: float
@@ -69,6 +69,7 @@ class Plan:
     pilots: tuple[Pilot, ...]
     affordable: bool
     differing: tuple[Pilot, ...] = ()
+    places: tuple[int, int] = (1, 1)
 
     @property
     def best(self) -> Option:
@@ -154,7 +155,9 @@ def plan(
         options = _options(trials, budget)
     reached = options[0].half_width <= accuracy * (1.0 + 1e-6)
     pilots = tuple(trials.pilots)
-    shown = trials.refused, trials.reference.value, pilots, reached, trials.differing
+    reference = trials.reference
+    places = reference.component.places if reference.component else (1, 1)
+    shown = trials.refused, reference.value, pilots, reached, trials.differing, places
     return Plan(target, accuracy, tuple(options), *shown)
 
 
