@@ -233,7 +233,7 @@ def _advice(gas, observable, accuracy):
     stated = {"stated": made.best.half_width, "promised": made.affordable}
     longer = float(np.clip(MOST_SECONDS / made.best.seconds, 3.0, LONGER))
     costs = {"ratio": ratio, "predicted": made.best.duration, "replicas": 1, "longer": longer}
-    if made.places[0] < made.places[1]:
+    if observable == "temperature" and made.places[0] < made.places[1]:
         pilot = max((one for one in made.pilots if one.measured), key=lambda one: one.component.places)
         costs["places"] = np.isfinite(measure(observable, pilot.path).estimate.values)
     return made.recipe, costs | stated

@@ -25,7 +25,6 @@ from gaspart.tradeoff import PILOT_SECONDS
 if TYPE_CHECKING:
     from gaspart.tradeoff.advice import Advice, Setting
     from gaspart.tradeoff.plan import Option, Plan
-    from gaspart.tradeoff.scatter import Scatter
     from gaspart.trajectory.recipe import Recipe
 
 _EXAMPLES = """examples:
@@ -92,7 +91,6 @@ def _advise(given: argparse.Namespace) -> None:
 def _lines(advice: Advice, file: str) -> list[str]:
     """The advice as text. file: of the scene, for the command."""
     from gaspart.tradeoff.advice import EQUILIBRATION
-    from gaspart.tradeoff.scatter import Scatter
 
     best, gas = advice.setting, advice.gas
     length = f"{advice.collisions_per_particle:.3g} collisions per particle, duration {advice.duration:.4g}"
@@ -107,7 +105,7 @@ def _lines(advice: Advice, file: str) -> list[str]:
         f"95 % half-width   {best.half_width:.2g} of {advice.observable} (bias: at most {best.bias:.1g})",
     ]
     if advice.observable in ("D", "collision_rate"):
-        lines += _drawn(advice.observable, Scatter(advice.scatter, drawn=True))
+        lines += _drawn(advice.observable, advice.scatter, True, False)
     lines.append(_pays(advice.scene, best.engine, advice.observable))
     if not advice.within_budget:
         lines.append(f"the budget does not suffice for {advice.accuracy:g}")
@@ -131,14 +129,14 @@ def _rarely_visited(plan: Plan) -> list[str]:
     return [f"places            {text}"]
 
 
-def _drawn(observable: str, scatter: Scatter) -> list[str]:
-    """What differences of the energy at the start add to the error."""
-    if not scatter.value:
+def _drawn(observable: str, scatter: float, velocities: bool, places: bool) -> list[str]:
+    """What differences of the energy at the start add to the error, of drawn velocities and places."""
+    if not scatter:
         return []
-    lines = [f"energy at start   {scatter.value:.2g} of {observable} from run to run, beyond this"]
-    if scatter.drawn:
+    lines = [f"energy at start   {scatter:.2g} of {observable} from run to run, beyond this"]
+    if velocities:
         lines.append("                  velocities are drawn: exact_temperature: true removes their part")
-    if scatter.placed:
+    if places:
         lines.append(
             "                  heights are random: the mean of runs with several seeds, or of runs from "
             "one state (--from), which have one energy"
@@ -189,7 +187,8 @@ def _plan_lines(plan: Plan, file: str) -> list[str]:
             lags = f"{asked.interval:g} apart, up to {asked.lags * asked.interval:.4g}"
             lines.append(f"lags              {lags}, the time of about 10 collisions of a particle")
     lines += _rarely_visited(plan)
-    lines += _drawn(plan.target.name, plan.scatter)
+    scatter = plan.scatter
+    lines += _drawn(plan.target.name, scatter.value, scatter.drawn, scatter.placed)
     lines.append(_pays(plan.target.scene, best.candidate.engine, plan.target.observable))
     if not plan.affordable:
         lines.append(_shortfall(plan))
