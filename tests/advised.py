@@ -197,7 +197,7 @@ def _kept(number, gas, observable, accuracy, made, folder):
     return result | {
         "engine": recipe.engine.name,
         "off": off,
-        "reached": off <= accuracy,
+        "reached": bool(off <= accuracy),
         "cost": costs["ratio"],
     }
 

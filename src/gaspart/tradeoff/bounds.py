@@ -48,12 +48,12 @@ def boltzmann_error(conditions: Conditions, observable: str, face: str | None = 
         error += _NORMAL[scene.dimension] * conditions.surfaces
     few = float((conditions.contact_of_few / conditions.contact).max()) - 1.0
     if conditions.columns:
-        return error + few + _between(*conditions.columns, observable, _top(conditions, face))
+        return float(error + few + _between(*conditions.columns, observable, _top(conditions, face)))
     virial = float(conditions.virial.max())
     if math.isinf(virial):
         return math.inf
     excess = float(conditions.contact_of_few.max()) - 1.0
-    return error + max(excess, virial if scene.gravity else virial / (1.0 + virial))
+    return float(error + max(excess, virial if scene.gravity else virial / (1.0 + virial)))
 
 
 def enskog_error(conditions: Conditions, observable: str, cells: tuple[int, ...] | None = None) -> float:
@@ -68,7 +68,7 @@ def enskog_error(conditions: Conditions, observable: str, cells: tuple[int, ...]
         virial = float(conditions.virial.max())
         walled = [n for n, around in zip(cells, scene.container.periodic, strict=True) if not around]
         error += sum(virial / (1.0 + virial) / n for n in walled)
-    return error
+    return float(error)
 
 
 def cell_error(engine: DSMC, conditions: Conditions, observable: str) -> float:
@@ -84,7 +84,7 @@ def cell_error(engine: DSMC, conditions: Conditions, observable: str) -> float:
         half = 0.5 * widths[conditions.axis] / conditions.scale
         averaged = 1.0 - math.tanh(half) / half if half > 1e-6 else 0.0
         error += averaged * (_ON_PROFILES if dense else 1.0)
-    return error + (_lost(engine, conditions) if dense else 0.0)
+    return float(error + (_lost(engine, conditions) if dense else 0.0))
 
 
 def require_resolved(engine: DSMC, conditions: Conditions) -> None:

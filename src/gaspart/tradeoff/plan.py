@@ -130,8 +130,9 @@ def plan(
     measure`; of the pressure on one wall as `pressure:x low`.
 
     budget: processor time in seconds of the run; if it does not suffice, the most accurate run within it is
-    advised. pilot_seconds: of all pilots together; up to half of it goes to what comes before them, if that
-    takes more than 5 s, as to compress particles.
+    advised. pilot_seconds: of the two pilots that most scenes have, or of the only one; up to half of it goes
+    to what comes before them, if that takes more than 5 s, as to compress particles. More is needed where a
+    third engine turns out to be the best, and by a pilot in a transient, which is continued.
     announce(text): is called before each pilot.
 
     Raises SceneError for a scene without a steady state, and for an observable that it does not have, or of

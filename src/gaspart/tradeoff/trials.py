@@ -68,12 +68,12 @@ class Trials:
         self._ask_another()
 
     def make(self, candidate: Candidate, part: float = 0.5) -> Pilot:
-        """One more pilot, with a part of the processor time."""
+        """One more pilot, with a part of the processor time; a third one, and a fourth, with less."""
         if candidate not in self.speeds:
             raise self._no_engine()
         spent = 0.0 if self.pilots else time.process_time() - self._begun
         left = min(1.0, max(0.5, 1.0 - (spent - _PREPARED) / self.seconds))
-        seconds, engine = part * self.seconds, candidate.engine
+        seconds, engine = part * self.seconds / max(1, len(self.pilots)), candidate.engine
         self.announce(f"a pilot run, {engine.title} engine, {left * seconds:.2g} s")
         found = run_pilot(self.target, engine, seconds, self.speeds[candidate], left)
         self.pilots.append(found)
