@@ -45,7 +45,8 @@ def boltzmann_error(conditions: Conditions, observable: str, face: str | None = 
     memory = _memory(conditions) if _transported(scene, observable) else 0.0
     error = memory + _layers(conditions, observable)
     if observable != "pressure":
-        error += _NORMAL[scene.dimension] * conditions.surfaces
+        lost = _NORMAL[scene.dimension] * conditions.surfaces
+        error += lost / (1.0 - lost) if lost < 1.0 else math.inf
     few = float((conditions.contact_of_few / conditions.contact).max()) - 1.0
     if conditions.columns:
         return float(error + few + _between(*conditions.columns, observable, _top(conditions, face)))
