@@ -15,7 +15,7 @@ from gaspart.tradeoff.candidates import Candidate, candidates, exact_candidate, 
 from gaspart.tradeoff.conditions import Conditions, measured_conditions
 from gaspart.tradeoff.pilot import Pilot, require_defined, run_pilot, speed_of
 from gaspart.tradeoff.table import QUANTILE
-from gaspart.tradeoff.target import Target
+from gaspart.tradeoff.target import STRUCTURE, Target
 from gaspart.trajectory.last_state import last_state
 
 DIFFERS = 2.5
@@ -57,7 +57,8 @@ class Trials:
             self._ask_another()
             return
         self._time([exact_candidate()])
-        pilot = self.make(exact_candidate(), 0.5 if len(names) > 1 else 1.0)
+        rivals = len(names) > 1 and self.target.observable not in STRUCTURE
+        pilot = self.make(exact_candidate(), 0.5 if rivals else 1.0)
         if pilot.path is None:
             rule = f"the pilot of the event-driven engine failed: {pilot.rule}"
             raise SceneError("observable", self.target.name, rule)
