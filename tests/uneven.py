@@ -44,7 +44,7 @@ def _pulled(rng, d, count, height, filled, pull, start):
     area = count * gp.theory.particle_volume(d) / (filled * start)
     side = max(3.0, area ** (1.0 / (d - 1)))
     low = float(rng.choice([0.0, 0.5, 1.0])) * (height - start)
-    region = ((0.0,) * (d - 1) + (low,), (side,) * (d - 1) + (low + start,))
+    region = ((0.0,) * (d - 1) + (low,), (side,) * (d - 1) + (min(low + start, height),))
     species = gp.Species(count, 0.5, temperature=1.0, exact_temperature=True, region=region)
     container = gp.Container((side,) * (d - 1) + (height,), ("periodic",) * (d - 1) + ("wall",))
     return {"container": container, "species": [species], "gravity": (0.0,) * (d - 1) + (-pull,)}
