@@ -95,7 +95,7 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
         expected: dict[str, Any] = {}
         if gas := run.fluid:
             factor = theory.compressibility_factor(gas.packing_fraction, d)
-            pressure = gas.count / volume * _temperature(run) * factor * np.eye(d).ravel()
+            pressure = gas.count / volume * run.temperature * factor * np.eye(d).ravel()
             expected = {"theory": (pressure, math.nan), "source": "equation of state"}
         return observable(
             "pressure_tensor",
@@ -138,18 +138,6 @@ def _initial(run: Run) -> State:
     return state
 
 
-def _temperature(run: Run) -> float:
-    """k_B T, from the energy of all particles about their centre of mass, whichever are in the file."""
-    d = run.dimension
-    freedom = d * (run.count - 1) + run.scene.rough * run.count * (d * (d - 1) // 2)
-    if freedom < 1:
-        raise SceneError("count", run.count, "too few moving particles for a temperature")
-    energy = float(run.data["kinetic_energy"].mean())
-    if "flux_velocity" in run.data:
-        energy -= 0.5 * float(run.masses.sum() * (run.data["flux_velocity"].values[-1] ** 2).sum())
-    return 2.0 * energy / freedom
-
-
 def _response(run: Run, lag: float | None) -> Observable:
     """The shear viscosity of a sheared gas, from the momentum that it carries across the flow."""
     _stored(run)
@@ -182,7 +170,7 @@ def _coefficient(run: Run, name: str, lag: float | None, enskog: Callable[..., A
     )
     expected: dict[str, Any] = {}
     if gas := run.fluid:
-        value = enskog(**replace(gas, temperature=_temperature(run)).parameters)
+        value = enskog(**replace(gas, temperature=run.temperature).parameters)
         expected = {"theory": (float(value), math.nan), "source": "Enskog"}
     d = run.dimension
     units = f"1 / (length^{d - 2} time)" if name == "heat" else f"mass length^{2 - d} / time"
@@ -240,7 +228,7 @@ def helfand(run: Run, name: str) -> np.ndarray:
 
 def _scale(run: Run, name: str) -> float:
     """1 / (V x)."""
-    return 1.0 / (math.prod(run.scene.container.lengths) * _temperature(run) ** (2 if name == "heat" else 1))
+    return 1.0 / (math.prod(run.scene.container.lengths) * run.temperature ** (2 if name == "heat" else 1))
 
 
 def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
