@@ -98,3 +98,19 @@ def test_a_gas_blown_past_an_obstacle_has_the_temperature_about_the_wind(tmp_pat
     assert expected < 2.0 and (velocities**2).mean() > 5.0
     assert float(found.estimate.mean()) == pytest.approx(expected, rel=0.05)
     assert float(A.by_species(path, start=2.0)["temperature"][0]) == pytest.approx(expected, rel=0.05)
+
+
+def test_a_force_along_a_channel_drives_a_flow_however_weak(tmp_path):
+    faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(1.0))
+    container = gp.Container((20.0, 20.0), ("wall", "periodic"))
+    species = [gp.Species(200, 0.5, temperature=1.0)]
+    for force in (0.001, 0.05):
+        scene = gp.Scene(container, species, faces=faces, gravity=(0.0, force))
+        path = gp.run(scene, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / f"{force}.nc")
+        with measured(path, None) as run:
+            assert run.flow_axes == [0]
+            energy, temperature = float((run.velocities**2).mean()), run.temperature
+        if force > 0.01:  # 1.2 about a flow of 1.1
+            assert temperature < 0.75 * energy
+            found = A.profile(path, "temperature", "y", bins=4)
+            assert (abs(found.estimate - temperature) < 4.0 * found.error).all()

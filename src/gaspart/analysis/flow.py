@@ -5,7 +5,8 @@ component has <m (v - u)^2> = (1 - m / M) k_B T, exactly, whatever u is: the par
 is spent on u. What is taken as a group depends on how the gas can move:
 
 - as a whole: all particles of a frame, along axes on which their momentum is conserved;
-- between faces that slide, or in a wind (`wind`): the particles of a cell in all frames, a steady flow;
+- between faces that slide, under a force along a periodic axis, or in a `wind`: the particles of a cell in
+  all frames, a steady flow;
 - before faces that move along their normal: those of a cell in one frame, since the flow changes.
 
 A flow that is known, between sheared faces (`LeesEdwards`), is taken off before.
@@ -79,7 +80,9 @@ def flow_axes(run: Run) -> list[int]:
     if moving := moving_axes(run):
         return moving
     across = {number // 2 for number, _ in sliding_faces(run.scene)}
-    if not across and any(wind(run)):
+    pulls = run.scene.gravity or (0.0,) * run.dimension
+    driven = any(pull and periodic for pull, periodic in zip(pulls, run.periodic, strict=True))
+    if not across and (driven or any(wind(run))):
         across = set(np.flatnonzero(~run.periodic).tolist()) or {0}
     if across and (run.scene.walls or not run.moving.all()):  # obstacles
         across = set(range(run.dimension))

@@ -163,8 +163,10 @@ class Run:
     @cached_property
     def temperatures(self) -> np.ndarray:
         """(T,) k_B T of each frame: twice the kinetic energy of flight about the mean motion (see `motion`)
-        per degree of freedom; 0 if it is only rounding of the velocity of the centre of mass. Raises
-        SceneError as `freedoms`."""
+        per degree of freedom; 0 if it is only rounding of the velocity of the centre of mass. Of a file that
+        lacks particles, see `_of_all`. Raises SceneError as `freedoms`."""
+        if self.followed and "stress_sum" in self.data:
+            return self._of_all
         masses, scene = self.masses[self.moving], self.scene
         if self.flow_axes or scene.rough or scene.thermostat or scene.shear_rate is not None:
             energies = self.motion.energies(masses).sum(axis=1)
@@ -176,6 +178,18 @@ class Run:
             energies = whole - (momentum @ momentum) / (masses.sum() or 1.0)
         moves = energies.mean() > _AT_REST * whole.mean()
         return np.asarray(energies / self.freedoms) if moves else np.zeros(len(self.time))
+
+    @property
+    def _of_all(self) -> np.ndarray:
+        """(T,) k_B T of each frame of a run with the tally of the stress, whichever particles are in the
+        file: from the energy of all, of flight and spin, about the centre of mass."""
+        d, count = self.dimension, self.count
+        freedom = d * (count - 1) + self.scene.rough * count * (d * (d - 1) // 2)
+        if freedom < 1:
+            raise SceneError("count", count, "too few moving particles for a temperature")
+        drift = self.data["flux_velocity"].values[-1] if "flux_velocity" in self.data else np.zeros(d)
+        whole = self.masses.sum() * (drift @ drift)
+        return np.asarray((2.0 * self.data["kinetic_energy"].values - whole) / freedom)
 
     @cached_property
     def temperature(self) -> float:

@@ -73,14 +73,14 @@ def profile(
 
     of: "density", moving particles per volume within the container of the moment (faces may move), without
     that from which fixed particles keep their centres (NaN where nothing is left); or "temperature" of the
-    moving particles (NaN where there are none): about the local flow between faces that slide, in a wind and
-    before faces that move, otherwise about the velocity of the centre of mass where that is conserved (see
-    `gaspart.analysis.flow`). axis: "x", "y" or "z", by default the last one. Errors are those of correlated
-    series, of each bin for itself; the variable with the suffix _freedom has their degrees of freedom. They
-    are NaN where these are fewer than two, of a run that is too short for the correlation there, and 0 where
-    nothing moves. Theory: the density of equal particles under gravity along this axis, by hydrostatics with
-    the fluid's equation of state; a uniform temperature in equilibrium. Raises SceneError for an unknown
-    property or axis, and for too few frames.
+    moving particles (NaN where there are none): about the local flow between faces that slide, under a force
+    along a periodic axis, in a wind and before faces that move, otherwise about the velocity of the centre of
+    mass where that is conserved (see `gaspart.analysis.flow`). axis: "x", "y" or "z", by default the last
+    one. Errors are those of correlated series, of each bin for itself; the variable with the suffix _freedom
+    has their degrees of freedom. They are NaN where these are fewer than two, of a run that is too short for
+    the correlation there, and 0 where nothing moves. Theory: the density of equal particles under gravity
+    along this axis, by hydrostatics with the fluid's equation of state; a uniform temperature in equilibrium.
+    Raises SceneError for an unknown property or axis, and for too few frames.
     """
     choice("of", of, having(function="profile"))
     bins = count_of("bins", bins, least=2)
