@@ -35,8 +35,9 @@ def belonging(
 def _digest(state: State | None) -> str:
     if state is None:
         return "of the seed"
-    parts = state.positions, state.velocities, state.spins
-    return hashlib.sha256(b"".join(np.ascontiguousarray(part).tobytes() for part in parts)).hexdigest()
+    parts = state.positions, state.velocities, state.spins, state.piston, state.displaced
+    there = (np.ascontiguousarray(part).tobytes() for part in parts if part is not None)
+    return hashlib.sha256(b"".join(there)).hexdigest()
 
 
 def _text(value: object) -> str:

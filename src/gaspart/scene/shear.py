@@ -15,10 +15,14 @@ if TYPE_CHECKING:
 
 def flow(scene: Scene, positions: np.ndarray) -> np.ndarray:
     """(..., d) the velocity of the flow at positions (..., d); 0 without sheared faces."""
+    return flow_of_rate(scene.shear_rate, scene.container.lengths[GRADIENT], positions)
+
+
+def flow_of_rate(rate: float | None, height: float, positions: np.ndarray) -> np.ndarray:
+    """(..., d) the same of a shear rate, in a container of this height; 0 if the rate is None."""
     velocities = np.zeros_like(positions, dtype=float)
-    if scene.shear_rate is not None:
-        middle = 0.5 * scene.container.lengths[GRADIENT]
-        velocities[..., FLOW] = scene.shear_rate * (positions[..., GRADIENT] - middle)
+    if rate is not None:
+        velocities[..., FLOW] = rate * (positions[..., GRADIENT] - 0.5 * height)
     return velocities
 
 

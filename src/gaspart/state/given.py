@@ -1,56 +1,83 @@
-"""Initial states that are given instead of drawn: the positions, velocities and spins of another run."""
+"""Initial states that are given instead of drawn: what the particles, the piston and the sheared images of
+another run are and do."""
 
 from __future__ import annotations
+
+import math
+from dataclasses import replace
 
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.scene.faces import FACES, FLOW, GRADIENT, pistons
 from gaspart.scene.features import FEATURES, features
 from gaspart.scene.scene import Scene
-from gaspart.state.initial import assembled, masses_of
+from gaspart.scene.shear import fixed_images, flow_of_rate
+from gaspart.state.initial import assembled, in_flow, masses_of
 from gaspart.state.insertion import per_particle
 from gaspart.state.overlaps import deepest_overlap
 from gaspart.state.state import State
 
-_REMEMBER = ("piston", "vibrating", "sticky", "lees_edwards", "vibrations")
-"""Features that keep more than the positions, velocities and spins of particles, or depend on the time."""
+_UNKNOWN = {
+    "sticky": "which particles stick, and with what energy",
+    "vibrations": "the energies of vibrations",
+}
+"""Features of which a run remembers what a given state does not say."""
 _SINGLE = 2.0**-24
 """Largest relative error of a number in single precision, as in the frames of a trajectory."""
 
 
 def given_state(
-    scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins: np.ndarray | None = None
+    scene: Scene,
+    positions: np.ndarray,
+    velocities: np.ndarray,
+    spins: np.ndarray | None = None,
+    piston: np.ndarray | None = None,
+    displaced: float | np.ndarray | None = None,
 ) -> State:
-    """The state at time 0 of a scene whose particles have these positions and velocities (N, d).
+    """The state at time 0 of a scene whose particles have these positions and velocities (N, d), of a sheared
+    gas with the flow.
 
-    spins: (N,) in 2D, (N, 3) in 3D, of rough particles; None: none. Positions beyond a wall by no more than
-    the rounding of single precision are put at it. Raises SceneError for a scene that keeps more than these,
-    numbers that are not finite or too few, and particles outside the container or in an interior wall.
+    spins: (N,) in 2D, (N, 3) in 3D, of rough particles; None: none. piston (2,), its place along its axis and
+    its velocity; None: at rest at its side. displaced: by how much images above are displaced in a sheared
+    gas; None: not at all. Positions beyond a wall or the piston by no more than the rounding of single
+    precision are put at it. Raises SceneError for a scene that remembers more than these, numbers that are
+    not finite or too few, and particles outside the container, beyond the piston or in an interior wall.
     """
     for name in features(scene):
-        if name in _REMEMBER:
-            rule = "excludes a given initial state, which has only positions, velocities and spins"
+        if name in _UNKNOWN:
+            rule = f"excludes a given initial state, which does not say {_UNKNOWN[name]}"
             raise FEATURES[name].refuse(scene, rule)
+    turning = (scene.count,) if scene.dimension == 2 else (scene.count, 3)
+    spins = np.zeros(turning) if spins is None or not scene.rough else np.array(spins, dtype=float)
     shape = scene.count, scene.dimension
-    for name, values in (("positions", positions), ("velocities", velocities)):
-        if np.shape(values) != shape:
-            raise SceneError("initial", np.shape(values), f"must have {name} of the scene's shape, {shape}")
+    for name, values, wanted in (
+        ("positions", positions, shape),
+        ("velocities", velocities, shape),
+        ("spins", spins, turning),
+    ):
+        if np.shape(values) != wanted:
+            raise SceneError("initial", np.shape(values), f"must have {name} of the scene's shape, {wanted}")
         if not np.isfinite(values).all():
             raise SceneError("initial", name, "must be finite numbers")
     velocities = np.where(np.isinf(masses_of(scene))[:, None], 0.0, velocities)
-    turning = (scene.count,) if scene.dimension == 2 else (scene.count, 3)
-    spins = np.zeros(turning) if spins is None or not scene.rough else np.array(spins, dtype=float)
-    if spins.shape != turning or not np.isfinite(spins).all():
-        raise SceneError("initial", spins.shape, f"must have finite spins of the scene's shape, {turning}")
     radii = per_particle(scene, "radius").astype(float)
-    return assembled(scene, _inside(scene, np.array(positions, dtype=float), radii), velocities, spins)
+    places = _inside(scene, np.array(positions, dtype=float), radii, _checked_piston(scene, piston))
+    state = assembled(scene, places, velocities, spins)
+    if piston is not None:
+        state = replace(state, piston=np.array(piston, dtype=float))
+    return state if displaced is None else replace(state, displaced=float(displaced))
 
 
 def taken_state(scene: Scene, other: State) -> State:
     """The state at time 0 of a scene, with the positions, velocities and spins of `other`, of the same
     particles in a container of the same size.
 
-    Raises SceneError, as `given_state`, and for other particles or another container.
+    A piston keeps its place and velocity, whatever its mass and load; without one in `other` it is at rest at
+    its side. Between sheared faces the images keep their displacement, and velocities are kept at one shear
+    rate; from another rate, or none, those about the flow and the mean are, and the flow of the scene is
+    added. Faces that vibrate begin anew. Raises SceneError, as `given_state`, for other particles, another
+    container, a piston that is another face, and displaced images in a container that has none.
     """
     if not isinstance(other, State):
         raise SceneError("initial", type(other).__name__, "must be a State, as of Simulation.state")
@@ -68,14 +95,66 @@ def taken_state(scene: Scene, other: State) -> State:
             n = differ[0]
             rule = f"particle {n} has this {name}, and {mine[n]:.17g} in the scene: species must be the same"
             raise SceneError("initial", float(its[n]), rule)
-    return given_state(scene, other.positions, other.velocities, other.spins)
+    places, velocities = _in_flow(scene, other)
+    return given_state(
+        scene, places, velocities, other.spins, _taken_piston(scene, other), _displaced(scene, other)
+    )
+
+
+def _in_flow(scene: Scene, other: State) -> tuple[np.ndarray, np.ndarray]:
+    """(N, d) positions and (N, d) velocities of a state, which are about the flow of the scene."""
+    places, height = np.array(other.positions, dtype=float), scene.container.lengths[GRADIENT]
+    if scene.shear_rate is not None and other.shear_rate is None:  # whose faces are places as any other
+        places[:, GRADIENT] = _wrapped(places[:, GRADIENT], height)
+    if (scene.shear_rate or 0.0) == (other.shear_rate or 0.0):
+        return places, other.velocities
+    peculiar = other.velocities - flow_of_rate(other.shear_rate, height, places)
+    return places, in_flow(scene, other.masses, places, peculiar)
+
+
+def _displaced(scene: Scene, other: State) -> float | None:
+    """By how much images are displaced, but for whole lengths of the container, which is exact. Raises
+    SceneError."""
+    here = math.fmod(other.displaced or 0.0, scene.container.lengths[FLOW])
+    if scene.shear_rate is not None:
+        return here
+    if here != 0.0:
+        rule = (
+            "is by how much the images above are displaced, which those of the scene are not: "
+            "give it the face y_high of kind lees_edwards, to stop the flow with shear_rate: 0"
+        )
+        raise SceneError("initial", here, rule)
+    return None
+
+
+def _taken_piston(scene: Scene, other: State) -> np.ndarray | None:
+    """The piston's place and velocity in a state; None if that or the scene has none. Raises SceneError."""
+    for n, _ in pistons(scene) if other.piston is not None else ():
+        if other.piston_face != FACES[n]:
+            rule = f"is the face that is the piston, {FACES[n]} in the scene: they must be the same"
+            raise SceneError("initial", other.piston_face, rule)
+        return other.piston
+    return None
+
+
+def _checked_piston(scene: Scene, piston: np.ndarray | None) -> np.ndarray | None:
+    """The given place and velocity of a piston. Raises SceneError."""
+    for n, _ in pistons(scene) if piston is not None else ():
+        values, length = np.asarray(piston), scene.container.lengths[n // 2]
+        if values.shape != (2,) or not np.isfinite(values).all() or not 0.0 <= values[0] <= length:
+            rule = f"must be a place from 0 to {length:g} and a velocity of the piston"
+            raise SceneError("initial", values.tolist(), rule)
+    return piston
 
 
 def check_apart(scene: Scene, state: State) -> None:
     """Raise SceneError if particles overlap by more than the rounding of positions in single precision."""
     if state.count == 0:
         return
-    depth = deepest_overlap(state.positions, state.radii, state.lengths, scene.container.periodic)
+    places, radii = state.positions, state.radii
+    if state.displaced is not None:
+        places, radii = _with_images(state)
+    depth = deepest_overlap(places, radii, state.lengths, fixed_images(scene))
     allowed = 2.0 * np.sqrt(state.dimension) * _SINGLE * max(scene.container.lengths)  # of two particles
     if depth * 2.0 * state.radii.min() > allowed:
         rule = (
@@ -85,18 +164,50 @@ def check_apart(scene: Scene, state: State) -> None:
         raise SceneError("initial", float(f"{depth:.3g}"), rule)
 
 
-def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """(N, d) positions in [0, L) on periodic axes and between the walls on others."""
-    lengths, periodic = np.array(scene.container.lengths), np.array(scene.container.periodic)
-    margins = np.where(periodic | scene.centres_to_walls, 0.0, radii[:, None])
+def _with_images(state: State) -> tuple[np.ndarray, np.ndarray]:
+    """(M, d) positions and (M,) radii of a sheared gas, with those images below it that it may touch."""
+    near = state.lengths[GRADIENT] - state.positions[:, GRADIENT] <= 2.0 * state.radii.max()
+    images = state.positions[near]
+    images[:, GRADIENT] -= state.lengths[GRADIENT]
+    images[:, FLOW] = _wrapped(images[:, FLOW] - state.displaced, state.lengths[FLOW])
+    return np.concatenate([state.positions, images]), np.concatenate([state.radii, state.radii[near]])
+
+
+def _wrapped(values: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
+    """Coordinates in [0, L) of the same places among periodic images."""
+    placed = values - lengths * np.floor(values / lengths)
+    return np.where(placed >= lengths, 0.0, placed)  # rounded up
+
+
+def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.ndarray | None) -> np.ndarray:
+    """(N, d) positions in [0, L) on axes with fixed images, between the walls and the piston on others."""
+    lengths, periodic = np.array(scene.container.lengths), np.array(fixed_images(scene))
     slack = _SINGLE * lengths
-    placed = np.where(periodic, positions - lengths * np.floor(positions / lengths), positions)
-    placed = np.where(periodic & (placed >= lengths), 0.0, placed)  # rounded up
-    outside = ~periodic & ((placed < margins - slack) | (placed > lengths - margins + slack))
+    low, high = _bounds(scene, radii, piston)
+    placed = np.where(periodic, _wrapped(positions, lengths), positions)
+    outside = ~periodic & ((placed < low - slack) | (placed > high + slack))
     for n in np.flatnonzero(outside.any(axis=1)).tolist():
-        raise SceneError("initial", tuple(positions[n].tolist()), f"particle {n} is not inside the container")
-    placed = np.where(periodic, placed, np.clip(placed, margins, lengths - margins))
+        rule = f"particle {n} is not inside the container"
+        rule += "" if piston is None else f", or beyond the piston at {piston[0]:g}"
+        raise SceneError("initial", tuple(positions[n].tolist()), rule)
+    placed = np.where(periodic, placed, np.clip(placed, low, high))
     for n in range(len(radii)) if scene.walls else ():
         if wall := scene.wall_at(tuple(placed[n].tolist()), float(radii[n] - slack.max())):
             raise SceneError("initial", tuple(placed[n].tolist()), f"particle {n} overlaps {wall}")
     return placed
+
+
+def _bounds(scene: Scene, radii: np.ndarray, piston: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+    """(N, d), (N, d) the least and the greatest coordinates of particles between walls and before a piston; a
+    sheared face is crossed where it is reached."""
+    walled = ~np.array(scene.container.periodic)
+    margins = np.where(walled & (not scene.centres_to_walls), radii[:, None], 0.0)
+    low, high = margins.copy(), np.array(scene.container.lengths) - margins
+    if scene.shear_rate is not None:
+        high[:, GRADIENT] = np.nextafter(high[:, GRADIENT], 0.0)
+    if piston is None:
+        return low, high
+    for n, _ in pistons(scene):
+        bound, inwards = (high, -1.0) if n % 2 else (low, 1.0)
+        bound[:, n // 2] = piston[0] + inwards * margins[:, n // 2]
+    return low, high

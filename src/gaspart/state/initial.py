@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import pistons
+from gaspart.scene.faces import FACES, pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
 from gaspart.scene.species import LATTICES
@@ -53,7 +53,6 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
             spins[:, 2] if scene.dimension == 2 else spins,
         ),
         vibrations=_vibrations(scene, stream(seed, _VIBRATIONS)) if scene.vibrates else None,
-        piston=_piston(scene),
     )
 
 
@@ -65,13 +64,15 @@ def masses_of(scene: Scene) -> np.ndarray:
 
 
 def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins: np.ndarray) -> State:
-    """The state at time 0 with these positions and velocities (N, d), and spins (N,) or (N, 3)."""
+    """The state at time 0 with these positions and velocities (N, d), and spins (N,) or (N, 3); with a piston
+    at rest at its side, and images of a sheared gas that are not displaced yet."""
     radii, masses = per_particle(scene, "radius").astype(float), per_particle(scene, "mass").astype(float)
     shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # of a uniform disc or sphere
     inertia = per_particle(scene, "moment_of_inertia").astype(float)  # None becomes nan
     inertia = np.where(np.isnan(inertia), shape * masses * radii**2, inertia)
     groups = [len(scene.species), *range(len(scene.species))]
     counts = [len(scene.particles), *(kind.count for kind in scene.species)]
+    sides = [(FACES[n], scene.container.lengths[n // 2] if n % 2 else 0.0) for n, _ in pistons(scene)]
     return State(
         time=0.0,
         positions=positions,
@@ -85,6 +86,10 @@ def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins
         moments_of_inertia=np.where(per_particle(scene, "fixed").astype(bool), np.inf, inertia),
         gravity=None if scene.gravity is None else np.array(scene.gravity),
         well_energies=well_energies(scene, places_in_wells(scene, positions, radii)) if scene.faces else None,
+        piston=np.array([sides[0][1], 0.0]) if sides else None,
+        piston_face=sides[0][0] if sides else None,
+        displaced=None if scene.shear_rate is None else 0.0,
+        shear_rate=scene.shear_rate,
     )
 
 
@@ -108,13 +113,6 @@ def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
     except SceneError:
         return "use fewer or smaller particles, or a larger container"
     return "use arrangement: lattice"
-
-
-def _piston(scene: Scene) -> np.ndarray | None:
-    """(2,) where the piston is along its axis and its velocity, if there is one: at rest at its side."""
-    for n, _ in pistons(scene):
-        return np.array([scene.container.lengths[n // 2] if n % 2 else 0.0, 0.0])
-    return None
 
 
 def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
@@ -150,15 +148,19 @@ def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 
 
 def _add_flow(scene: Scene, positions: np.ndarray, velocities: np.ndarray) -> None:
-    """Let drawn velocities (N, d) be about the flow of a sheared gas, without a mean: a gas that moves across
-    the flow would be dragged along by it, ever faster."""
+    """Let drawn velocities (N, d) be about the flow of a sheared gas."""
     drawn = slice(len(scene.particles), None)
-    if scene.shear_rate is None or not len(positions[drawn]):
-        return
-    masses = masses_of(scene)[drawn]
+    if scene.shear_rate is not None and len(positions[drawn]):
+        velocities[drawn] = in_flow(scene, masses_of(scene)[drawn], positions[drawn], velocities[drawn])
+
+
+def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
+    """(N, d) velocities (N, d) about the flow of a sheared gas, without a mean: a gas that moves across the
+    flow would be dragged along by it, ever faster. masses (N,): finite."""
+    peculiar = velocities.copy()
     for k in range(scene.dimension):
-        velocities[drawn, k] -= math.fsum(masses * velocities[drawn, k]) / math.fsum(masses)
-    velocities[drawn] += flow(scene, positions[drawn])
+        peculiar[:, k] -= math.fsum(masses * velocities[:, k]) / math.fsum(masses)
+    return peculiar + flow(scene, positions)
 
 
 def _make_exact(scene: Scene, velocities: np.ndarray) -> None:

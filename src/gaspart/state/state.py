@@ -19,9 +19,10 @@ class State:
     the particle's species, explicit particles being one more species after the others; lengths (d,); spins,
     angular velocities, (N,) in 2D and (N, 3) in 3D; moments_of_inertia (N,); gravity (d,) or None;
     well_energies (N,), the potential energy in the wells of the faces, and vibrations (N,), the energy of
-    each particle's vibration, or None; piston (2,), its place along its axis and its velocity, or None;
-    displaced, how far images above the container are displaced along x in a sheared gas, or None. The mass
-    and moment of inertia of a fixed particle are infinite; they count in no sum.
+    each particle's vibration, or None; piston (2,), its place along its axis and its velocity, and
+    piston_face, the face of the container that it is, or None; of a sheared gas displaced, how far images
+    above the container are displaced along x, and shear_rate, du_x / dy of the flow that the velocities
+    include, or None. The mass and moment of inertia of a fixed particle are infinite; they count in no sum.
     """
 
     time: float
@@ -38,7 +39,9 @@ class State:
     well_energies: np.ndarray | None = None
     vibrations: np.ndarray | None = None
     piston: np.ndarray | None = None
+    piston_face: str | None = None
     displaced: float | None = None
+    shear_rate: float | None = None
 
     def __repr__(self) -> str:
         kind = "discs" if self.dimension == 2 else "spheres"

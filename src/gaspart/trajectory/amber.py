@@ -44,8 +44,10 @@ _EXTRA: dict[str, tuple[str, tuple[str, ...], dict[str, str]]] = {
     "piston": (">f8", ("motion",), {"long_name": "place along its axis, and velocity, of the piston"}),
 }
 """The variables that only some files have, as in `Layout`, in their order."""
-INITIAL: tuple[str, ...] = ("initial_positions", "initial_velocities", "initial_spins")
-"""The variables of a run whose initial state was given, of all particles of the scene."""
+INITIAL: tuple[str, ...] = tuple(
+    f"initial_{name}" for name in ("positions", "velocities", "spins", "piston", "displaced")
+)
+"""The variables of a run whose initial state was given, of all particles of the scene: parts of a State."""
 _OF_INITIAL = ("particle", "component")
 BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
 """Attributes by which a file is checked: sizes of the header and of a frame, and the header's checksum."""
@@ -168,7 +170,7 @@ class Layout:
             "cell_angular": ("S1", ("cell_angular", "label"), [list("alpha"), list("beta "), list("gamma")]),
             "radius": ("f8", ("atom",), radii),
             "type": ("i4", ("atom",), types),
-            **{name: ("f8", _OF_INITIAL[: values.ndim], values) for name, values in initial.items()},
+            **{name: ("f8", _initial_axes(name, values), values) for name, values in initial.items()},
         }
         if initial:
             for name, size in zip(_OF_INITIAL, initial[INITIAL[0]].shape, strict=True):
@@ -182,6 +184,11 @@ class Layout:
             file[name][:] = np.array(values, dtype=kind)
         written = bytes(file.close())
         return written[: _frames_begin(written)]  # the library may return more memory than it has used
+
+
+def _initial_axes(name: str, values: np.ndarray) -> tuple[str, ...]:
+    """The axes of a variable of `INITIAL`."""
+    return ("motion",) if name == "initial_piston" else _OF_INITIAL[: values.ndim]
 
 
 def _frames_begin(header: bytes) -> int:

@@ -4,24 +4,32 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.scene.faces import GRADIENT, pistons
 from gaspart.state.given import given_state
 from gaspart.state.state import State
 from gaspart.trajectory.checkpoint import kept_beside
 from gaspart.trajectory.opening import checked
 from gaspart.trajectory.reading import open_trajectory
-from gaspart.trajectory.recipe import read_recipe
+from gaspart.trajectory.recipe import Recipe, read_recipe
 from gaspart.trajectory.run import simulation_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def last_state(path: str | Path) -> State:
     """The state of all particles at the end of a trajectory, to look at or to start another run from.
 
     It is exact if the run had `keep_checkpoint`; otherwise positions, velocities and spins are those of the
-    last frame, in single precision. Raises SceneError for a file that `open_trajectory` refuses, for a kept
-    checkpoint that is damaged or of another run, and, of a last frame, one that lacks particles (`follow`)
-    or does not hold the state: of a scene with a piston, vibrating or sticky faces, or vibrations.
+    last frame, in single precision; the motion of a piston and the displacement of sheared images are exact.
+    Raises SceneError for a file that `open_trajectory` refuses, for a kept checkpoint that is damaged or of
+    another run, and, of a last frame, one that lacks particles (`follow`) or does not hold the state: of a
+    scene with sticky faces or vibrations.
     """
     path = Path(path)
     recipe = read_recipe(path)
@@ -37,7 +45,18 @@ def last_state(path: str | Path) -> State:
     with open_trajectory(path) as data:
         if data.sizes["frame"] == 0:
             raise SceneError("frame", 0, "the trajectory has no frame yet")
-        last = data.isel(frame=-1)
-        names = ("coordinates", "velocities", "spins")
-        parts = [last[name].values.astype(float) for name in names if name in last]
-        return replace(given_state(recipe.scene, *parts), time=float(last["time"]))
+        return _of_frame(recipe, data.isel(frame=-1))
+
+
+def _of_frame(recipe: Recipe, frame: xr.Dataset) -> State:
+    """The state of a frame that has all particles."""
+    scene, time = recipe.scene, float(frame["time"])
+    places, velocities = (frame[name].values.astype(float) for name in ("coordinates", "velocities"))
+    spins = frame["spins"].values.astype(float) if "spins" in frame else None
+    piston, displaced = None, None
+    if pistons(scene):
+        piston = np.array([float(frame[f"piston_{name}"]) for name in ("position", "velocity")])
+    if scene.shear_rate is not None:
+        begun = recipe.initial.displaced if recipe.initial else None
+        displaced = (begun or 0.0) + scene.shear_rate * scene.container.lengths[GRADIENT] * time
+    return replace(given_state(scene, places, velocities, spins, piston, displaced), time=time)

@@ -194,11 +194,11 @@ class Recipe:
 
     def _initial(self) -> dict[str, np.ndarray]:
         """The variables of the given initial state, if there is one."""
-        state = self.initial
-        if state is None:
+        if self.initial is None:
             return {}
-        parts = [state.positions, state.velocities, *([state.spins] if self.scene.rough else [])]
-        return dict(zip(amber.INITIAL, parts, strict=False))
+        absent = set() if self.scene.rough else {"initial_spins"}
+        parts = {name: getattr(self.initial, _part(name)) for name in amber.INITIAL if name not in absent}
+        return {name: np.array(part) for name, part in parts.items() if part is not None}
 
     def header(self, revision: str) -> bytes:
         """The file before its first frame, as made by the present program at a git revision ("": none)."""
@@ -260,8 +260,13 @@ def _stored_initial(file: netCDF4.Dataset, scene: Scene) -> State | None:
     """The initial state of an open trajectory to which it was given."""
     if amber.INITIAL[0] not in file.variables:
         return None
-    parts = (np.array(file[name][:].data) for name in amber.INITIAL if name in file.variables)
-    return given_state(scene, *parts)
+    parts = {_part(name): np.array(file[name][:]) for name in amber.INITIAL if name in file.variables}
+    return given_state(scene, **parts)
+
+
+def _part(name: str) -> str:
+    """The part of a State that a variable of `amber.INITIAL` is."""
+    return name.removeprefix("initial_")
 
 
 def stored_revision(path: Path) -> str:

@@ -67,7 +67,7 @@ def event_parts(
     parts = (
         GravityPart(gravity, scene.container.lengths) if gravity else None,
         FacesPart(scene, faces, unit_mass, float(state.masses.min(initial=np.inf))) if faces else None,
-        ShearPart(scene, model.shear) if model.shear else None,
+        ShearPart(scene, state, model.shear) if model.shear else None,
         VibratingPart(scene, faces.motion) if faces and faces.motion else None,
         PistonPart(faces.piston, scene) if faces and faces.piston else None,
         LawPart(law) if law else None,

@@ -23,12 +23,13 @@ def shear_of(scene: Scene) -> Shear | None:
 
 
 class ShearPart(Part):
-    """How far the images are displaced: what follows from the time alone, so that no checkpoint has it. At
-    each crossing a particle may gain their velocity."""
+    """How far the images are displaced: what follows from the time and the start, a state at time 0, so that
+    no checkpoint has it. At each crossing a particle may gain their velocity."""
 
-    def __init__(self, scene: Scene, shear: Shear) -> None:
+    def __init__(self, scene: Scene, state: State, shear: Shear) -> None:
         super().__init__({})
         self._shear, self._length = shear, scene.container.lengths[FLOW]
+        self._start = state.displaced or 0.0
         self.gained = shear.velocity**2
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
@@ -37,7 +38,7 @@ class ShearPart(Part):
         shear = self._shear
         period = self._length / abs(shear.velocity) if shear.velocity else math.inf
         phase = math.fmod(start, period)
-        shear.origin[0] = shear.velocity * phase
+        shear.origin[0] = self._start + shear.velocity * phase
         shear.turns[0] = round(math.copysign((start - phase) / period, shear.velocity))
         return model
 
