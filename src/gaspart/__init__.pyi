@@ -9,6 +9,7 @@ from gaspart.engines import engine_from_dict as engine_from_dict
 from gaspart.engines import engine_to_dict as engine_to_dict
 from gaspart.errors import SceneError as SceneError
 from gaspart.errors import SimulationError as SimulationError
+from gaspart.inspection.start import read_state as read_state
 from gaspart.rendering.films import film as film
 from gaspart.rendering.frames import render as render
 from gaspart.rendering.view import view as view

@@ -53,7 +53,8 @@ class Simulation:
     `seed`: a whole number, or a tuple of them, that fixes the initial state and the random
     numbers of thermal walls. stress: whether `tally` has the stress tensor and the heat flux, of a periodic
     scene without gravity. initial: a state whose positions, velocities and spins are those at time 0, instead
-    of what the scene states; its particles and the size of its container must be the scene's.
+    of what the scene states; its particles and the size of its container must be the scene's. Velocities are
+    about the flow of a sheared scene, and a piston keeps its place, as in `gaspart.run`.
 
     Raises SceneError if the scene cannot be set up, the engine cannot model it, or particles of `initial`
     overlap or are not inside the container.

@@ -66,9 +66,8 @@ def test_correlations_of_the_motion_are_refused(tmp_path):
         )
 
 
-def test_a_last_frame_is_no_start_but_a_checkpoint_is_a_state(path, tmp_path):
-    with pytest.raises(gp.SceneError, match="excludes a given initial state"):
-        gp.last_state(path)
+def test_the_last_state_knows_the_displacement(path, tmp_path):
+    assert gp.last_state(path).displaced == pytest.approx(0.2 * 10.0 * 30.0)
     kept = gp.run(SCENE, gp.EventDriven(), 3, 5.0, 1.0, tmp_path / "run.nc", keep_checkpoint=True)
     assert gp.last_state(kept).displaced == pytest.approx(0.2 * 10.0 * 5.0)
 

@@ -30,9 +30,9 @@ LAYERS = [  # a module imports only from the packages above its own
     {"trajectory"},
     {"theory"},
     {"analysis"},
+    {"inspection"},
     {"tradeoff"},
     {"rendering"},
-    {"inspection"},
     {"cli"},
     {"reproduction"},
 ]

@@ -64,7 +64,9 @@ def _info(given: argparse.Namespace) -> None:
     print_line("reproduced, to the same bits, by")
     print_lines(f"    {line}" for line in remake)
     if recipe.initial is not None:
-        print_line("where OTHER.nc is the run whose last state this one was started from; this file holds it")
+        print_line(
+            "where OTHER.nc is the file whose last state this run was started from; this file holds it"
+        )
     print_line("scene:")
     print_lines(f"    {line}" for line in _lines_of(stored["scene"]))
 

@@ -55,12 +55,14 @@ class Contents:
 
 @dataclass(frozen=True)
 class Given:
-    """The user's statements about a file, which take precedence over it; see `readers.read_frames`."""
+    """The user's statements about a file, which take precedence over it; see `readers.read_frames`. last: of
+    a file of GSD or XYZ only the last frame is read, and must have all that it states by itself."""
 
     radius: float | None = None
     lengths: tuple[float, ...] | None = None
     boundary: str | tuple[str, ...] | None = None
     time_step: float | None = None
+    last: bool = False
 
 
 def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
@@ -74,7 +76,7 @@ def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
     _require_finite("positions", contents.positions, path)
     if contents.velocities is not None:
         _require_finite("velocities", contents.velocities, path)
-    _sort_by_id(contents, path)
+    sort_by_id(contents, path)
     if contents.lengths is None and given.lengths is None:
         raise SceneError("lengths", None, "is not stated: give --lengths X,Y[,Z]", path)
     radii = _per_frame(_radii(contents, given, path))
@@ -118,7 +120,7 @@ def _require_finite(name: str, values: np.ndarray, path: str) -> None:
         raise SceneError("file", path, f"has {name} that are not finite or absent, in frame {wrong.argmax()}")
 
 
-def _sort_by_id(contents: Contents, path: str) -> None:
+def sort_by_id(contents: Contents, path: str) -> None:
     """Bring the particles of every frame into the order of their ids. Refused: frames of other particles."""
     if contents.ids is None:
         species = contents.species

@@ -17,15 +17,17 @@ _SPHERE_RADIUS = "state/hpmc/sphere/radius"
 
 
 def read_gsd(path: Path, given: Given) -> Contents:
-    """All frames. A field that no frame states is unknown, although the schema gives it a default value.
+    """All frames, or the last. A field that no frame states is unknown, although the schema has a default.
 
     The origin is the middle of the box. Raises SceneError for contents that cannot be checked, and what the
     library raises for a file that cannot be read.
     """
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with open_regular(path) as opened_file, hoomd.open(descriptor_path(opened_file), "r") as file:
-        frames = list(file)
+        first = max(len(file) - 1, 0) if given.last else 0
+        frames = list(file[first:])
         chunks = set(file.file.find_matching_chunk_names(""))
+        moving = first == 0 or file.file.chunk_exists(frame=first, name="particles/velocity")
         old = _old_radii(file.file, chunks, path)
     if not frames:
         raise SceneError("file", str(path), "has no frames")
@@ -42,6 +44,7 @@ def read_gsd(path: Path, given: Given) -> Contents:
     positions = np.array([frame.particles.position for frame in frames])
     extent = max(float(np.abs(positions).max(initial=0.0)), float(boxes.max()))
     stated = {name: f"particles/{name}" in chunks for name in ("velocity", "mass", "diameter")}
+    stated["velocity"] &= moving  # else they are those of the first frame
     return Contents(
         positions=positions,
         velocities=np.array([frame.particles.velocity for frame in frames]) if stated["velocity"] else None,

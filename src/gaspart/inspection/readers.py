@@ -6,13 +6,15 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.inspection.contents import Given, complete_frames
+from gaspart.inspection.contents import Contents, Given, complete_frames
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.gsd_contents import read_gsd
 from gaspart.inspection.netcdf_contents import read_netcdf
@@ -42,15 +44,31 @@ def read_frames(
     where a file counts steps (GSD), or between frames. Raises SceneError for a file that cannot be read, or
     for missing data.
     """
-    path = Path(path)
+    path, given = Path(path), Given(radius, lengths, boundary, time_step)
+    with _reading(path):
+        return complete_frames(_contents(path, given), given, str(path))
+
+
+def read_contents(path: Path, given: Given) -> Contents:
+    """What a trajectory states, as `read_frames` reads it. Raises SceneError."""
+    with _reading(path):
+        return _contents(path, given)
+
+
+def _contents(path: Path, given: Given) -> Contents:
     reader = _READERS.get(path.suffix)
     if reader is None:
         raise SceneError("file", str(path), f"must end in {', '.join(KINDS)}")
-    given = Given(radius, lengths, boundary, time_step)
+    _require_memory(path)
+    return reader(path, given)
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
+    """Raises SceneError for whatever is wrong with a file. Values that are not finite are refused later."""
     try:
-        _require_memory(path)
-        with np.errstate(all="ignore"):  # values that are not finite are refused
-            return complete_frames(reader(path, given), given, str(path))
+        with np.errstate(all="ignore"):
+            yield
     except SceneError:
         raise
     except (OSError, RuntimeError, ValueError, LookupError, TypeError, MemoryError) as error:

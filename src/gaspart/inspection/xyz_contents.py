@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import deque
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -34,8 +35,10 @@ _TRUE, _FALSE = ("t", "true", "1"), ("f", "false", "0")
 
 
 def read_xyz(path: Path, given: Given) -> Contents:
-    """All frames. Raises SceneError for contents that cannot be checked, ValueError for other text."""
-    parts = [_read_frame(n, *frame, path) for n, frame in enumerate(_frames(path))]
+    """All frames, or the last. Raises SceneError for contents that cannot be checked, ValueError for other
+    text."""
+    frames = deque(enumerate(_frames(path)), maxlen=1 if given.last else None)
+    parts = [_read_frame(n, *frame, path) for n, frame in frames]
     if not parts:
         raise SceneError("file", str(path), "cannot be read: it has no frame")
     counts = [len(part["pos"]) for part in parts]

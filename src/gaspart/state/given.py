@@ -44,10 +44,9 @@ def given_state(
     precision are put at it. Raises SceneError for a scene that remembers more than these, numbers that are
     not finite or too few, and particles outside the container, beyond the piston or in an interior wall.
     """
-    for name in features(scene):
-        if name in _UNKNOWN:
-            rule = f"excludes a given initial state, which does not say {_UNKNOWN[name]}"
-            raise FEATURES[name].refuse(scene, rule)
+    for name in filter(features(scene).__contains__, _UNKNOWN):
+        rule = f"excludes a given initial state, which does not say {_UNKNOWN[name]}"
+        raise FEATURES[name].refuse(scene, rule)
     turning = (scene.count,) if scene.dimension == 2 else (scene.count, 3)
     spins = np.zeros(turning) if spins is None or not scene.rough else np.array(spins, dtype=float)
     shape = scene.count, scene.dimension

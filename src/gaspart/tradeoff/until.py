@@ -62,8 +62,10 @@ def run(
     or unfinished next to it, is replaced only with `overwrite`; a file of another kind never. With
     `keep_checkpoint` the state at the end stays in `path.checkpoint.npz`, and `resume` goes on from it.
 
-    With `initial`, a `State` or a trajectory whose `last_state` is meant, the run starts from its positions,
-    velocities and spins. Particles and the size of the container must be the scene's; the rest may differ.
+    With `initial`, a `State`, a trajectory whose `last_state` is meant, or a GSD or XYZ file (`read_state`),
+    the run starts from its positions, velocities and spins. Particles and the size of the container must be
+    the scene's; the rest may differ: between sheared faces velocities are about the flow, a piston goes on
+    where it is, or starts at its side, and faces that vibrate begin anew.
     Defaults of engines follow from the scene's `speed` or `temperature` all the same.
 
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
@@ -83,24 +85,26 @@ def run(
         displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    start = _start(initial, _required(path))
+    start = _start(initial, scene, _required(path))
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
     recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
     manner = trajectory.Manner(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return trajectory.record(recipe, _required(path), manner)
 
 
-def _start(initial: State | str | Path | None, path: str | Path) -> State | None:
-    """What a run at `path` starts from: of another run its last state. Raises SceneError if that is the same
-    file, by whatever name: it would be lost."""
+def _start(initial: State | str | Path | None, scene: Scene, path: str | Path) -> State | None:
+    """What a run at `path` starts from: of a file its last state. Raises SceneError if that is the same file,
+    by whatever name: it would be lost."""
     if not isinstance(initial, str | Path):
         return initial
+    from gaspart.inspection.start import STARTS, read_state  # which few runs need
+
     output = output_path(path)
     for place in (output, partial_path(output), checkpoint_path(output)):
         if is_same_file(initial, place):
             rule = f"is the file that is to be written, {path}: choose another name for the new run"
             raise SceneError("initial", str(initial), rule)
-    return last_state(initial)
+    return read_state(initial, scene) if Path(initial).suffix in STARTS else last_state(initial)
 
 
 def _required(path: str | Path | None) -> str | Path:
