@@ -54,7 +54,9 @@ class Simulation:
     numbers of thermal walls. stress: whether `tally` has the stress tensor and the heat flux, of a periodic
     scene without gravity. initial: a state whose positions, velocities and spins are those at time 0, instead
     of what the scene states; its particles and the size of its container must be the scene's. Velocities are
-    about the flow of a sheared scene, and a piston keeps its place, as in `gaspart.run`.
+    about the flow of a sheared scene: kept at the shear rate of the state, else peculiar ones with the flow
+    added. Its images keep their displacement and a piston its motion, which is at rest at its side if the
+    state has none; faces that vibrate begin anew.
 
     Raises SceneError if the scene cannot be set up, the engine cannot model it, or particles of `initial`
     overlap or are not inside the container.

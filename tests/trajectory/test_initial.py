@@ -148,7 +148,7 @@ def test_what_does_not_match_is_refused_in_one_line(tmp_path):
     walled = replace(PLAIN, container=gp.Container(PLAIN.container.lengths, "wall"))
     assert "is not inside the container" in refusal(walled, state)
     sticky = replace(walled, faces={"x_low": gp.Sticky(1.0)})
-    assert "does not say which particles stick, and with what energy" in refusal(sticky, state)
+    assert "does not say which particles stick" in refusal(sticky, state)
 
 
 def test_a_file_that_lacks_the_state_is_refused(tmp_path):

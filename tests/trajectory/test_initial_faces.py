@@ -214,3 +214,26 @@ def test_vibrating_faces_begin_anew_under_a_gas_that_has_settled():
     later = after(1.0, shaken, sim.state)
     assert np.array_equal(later.initial_state.positions, sim.state.positions)
     assert later.tally.wall_energy[2] != 0.0
+
+
+def test_energies_of_vibrations_are_taken_over(tmp_path):
+    kinds = [gp.Species(12, 0.5, temperature=1.0), gp.Species(6, 0.5, fixed=True, temperature=2.0)]
+    scene = gp.Scene(gp.Container(LENGTHS, "periodic"), kinds)
+    state = after(2.0, scene).state
+    whole = after(2.0, scene, state)
+    assert state.vibrations.any() and not np.array_equal(whole.state.vibrations, state.vibrations)
+    assert np.array_equal(whole.initial_state.vibrations, state.vibrations)
+    path = gp.run(scene, EVENT, 5, 2.0, 1.0, tmp_path / "run.nc", initial=state)
+    assert np.array_equal(read_recipe(path).initial.vibrations, state.vibrations)
+    assert gp.last_state(path).vibrations == pytest.approx(whole.state.vibrations, rel=1e-5, abs=1e-6)
+    rule = "vibrates = True: needs an initial state that has energies of vibrations"
+    assert rule in refusal(scene, replace(state, vibrations=None))
+
+
+def test_walls_have_no_images_that_could_be_displaced():
+    state = after(3.3, sheared(0.2)).state
+    low, high = state.positions[:, 1].min(), state.positions[:, 1].max()
+    squeezed = replace(
+        state, positions=(state.positions - [0.0, low - 0.5]) * [1.0, 9.0 / (high - low + 1.0)]
+    )
+    assert taken_state(replace(WALLS, species=PLAIN.species), squeezed).displaced is None

@@ -35,7 +35,8 @@ def belonging(
 def _digest(state: State | None) -> str:
     if state is None:
         return "of the seed"
-    parts = state.positions, state.velocities, state.spins, state.piston, state.displaced
+    moving = state.piston, state.displaced, state.vibrations
+    parts = state.positions, state.velocities, state.spins, *moving
     there = (np.ascontiguousarray(part).tobytes() for part in parts if part is not None)
     return hashlib.sha256(b"".join(there)).hexdigest()
 

@@ -18,11 +18,6 @@ from gaspart.state.insertion import per_particle
 from gaspart.state.overlaps import deepest_overlap
 from gaspart.state.state import State
 
-_UNKNOWN = {
-    "sticky": "which particles stick, and with what energy",
-    "vibrations": "the energies of vibrations",
-}
-"""Features of which a run remembers what a given state does not say."""
 _SINGLE = 2.0**-24
 """Largest relative error of a number in single precision, as in the frames of a trajectory."""
 
@@ -34,19 +29,24 @@ def given_state(
     spins: np.ndarray | None = None,
     piston: np.ndarray | None = None,
     displaced: float | np.ndarray | None = None,
+    vibrations: np.ndarray | None = None,
 ) -> State:
     """The state at time 0 of a scene whose particles have these positions and velocities (N, d), of a sheared
     gas with the flow.
 
     spins: (N,) in 2D, (N, 3) in 3D, of rough particles; None: none. piston (2,), its place along its axis and
     its velocity; None: at rest at its side. displaced: by how much images above are displaced in a sheared
-    gas; None: not at all. Positions beyond a wall or the piston by no more than the rounding of single
-    precision are put at it. Raises SceneError for a scene that remembers more than these, numbers that are
-    not finite or too few, and particles outside the container, beyond the piston or in an interior wall.
+    gas; None: not at all. vibrations (N,): energies, of a scene whose particles store them. Positions beyond
+    a wall or the piston by no more than the rounding of single precision are put at it. Raises SceneError for
+    a scene that remembers more than these, numbers that are not finite or too few, and particles outside the
+    container, beyond the piston or in an interior wall.
     """
-    for name in filter(features(scene).__contains__, _UNKNOWN):
-        rule = f"excludes a given initial state, which does not say {_UNKNOWN[name]}"
-        raise FEATURES[name].refuse(scene, rule)
+    if "sticky" in features(scene):
+        rule = "excludes a given initial state, which does not say which particles stick"
+        raise FEATURES["sticky"].refuse(scene, rule)
+    if scene.vibrates and vibrations is None:
+        raise FEATURES["vibrations"].refuse(scene, "needs an initial state that has energies of vibrations")
+    vibrations = np.array(vibrations, dtype=float) if scene.vibrates else np.zeros(scene.count)
     turning = (scene.count,) if scene.dimension == 2 else (scene.count, 3)
     spins = np.zeros(turning) if spins is None or not scene.rough else np.array(spins, dtype=float)
     shape = scene.count, scene.dimension
@@ -54,6 +54,7 @@ def given_state(
         ("positions", positions, shape),
         ("velocities", velocities, shape),
         ("spins", spins, turning),
+        ("vibrations", vibrations, shape[:1]),
     ):
         if np.shape(values) != wanted:
             raise SceneError("initial", np.shape(values), f"must have {name} of the scene's shape, {wanted}")
@@ -63,9 +64,12 @@ def given_state(
     radii = per_particle(scene, "radius").astype(float)
     places = _inside(scene, np.array(positions, dtype=float), radii, _checked_piston(scene, piston))
     state = assembled(scene, places, velocities, spins)
-    if piston is not None:
-        state = replace(state, piston=np.array(piston, dtype=float))
-    return state if displaced is None else replace(state, displaced=float(displaced))
+    return replace(
+        state,
+        piston=state.piston if piston is None else np.array(piston, dtype=float),
+        displaced=state.displaced if displaced is None else float(displaced),
+        vibrations=vibrations if scene.vibrates else None,
+    )
 
 
 def taken_state(scene: Scene, other: State) -> State:
@@ -95,9 +99,8 @@ def taken_state(scene: Scene, other: State) -> State:
             rule = f"particle {n} has this {name}, and {mine[n]:.17g} in the scene: species must be the same"
             raise SceneError("initial", float(its[n]), rule)
     places, velocities = _in_flow(scene, other)
-    return given_state(
-        scene, places, velocities, other.spins, _taken_piston(scene, other), _displaced(scene, other)
-    )
+    piston, displaced = _taken_piston(scene, other), _displaced(scene, other)
+    return given_state(scene, places, velocities, other.spins, piston, displaced, other.vibrations)
 
 
 def _in_flow(scene: Scene, other: State) -> tuple[np.ndarray, np.ndarray]:
@@ -117,7 +120,7 @@ def _displaced(scene: Scene, other: State) -> float | None:
     here = math.fmod(other.displaced or 0.0, scene.container.lengths[FLOW])
     if scene.shear_rate is not None:
         return here
-    if here != 0.0:
+    if here != 0.0 and scene.container.periodic[GRADIENT]:
         rule = (
             "is by how much the images above are displaced, which those of the scene are not: "
             "give it the face y_high of kind lees_edwards, to stop the flow with shear_rate: 0"

@@ -62,11 +62,9 @@ def run(
     or unfinished next to it, is replaced only with `overwrite`; a file of another kind never. With
     `keep_checkpoint` the state at the end stays in `path.checkpoint.npz`, and `resume` goes on from it.
 
-    With `initial`, a `State`, a trajectory whose `last_state` is meant, or a GSD or XYZ file (`read_state`),
-    the run starts from its positions, velocities and spins. Particles and the size of the container must be
-    the scene's; the rest may differ: between sheared faces velocities are about the flow, a piston goes on
-    where it is, or starts at its side, and faces that vibrate begin anew.
-    Defaults of engines follow from the scene's `speed` or `temperature` all the same.
+    With `initial`, a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`), the run
+    starts from it (`Simulation`). Particles and the size of the container must be the scene's; the rest may
+    differ. Defaults of engines follow from the scene's `speed` or `temperature` all the same.
 
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
     examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames

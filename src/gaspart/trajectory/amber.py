@@ -45,7 +45,7 @@ _EXTRA: dict[str, tuple[str, tuple[str, ...], dict[str, str]]] = {
 }
 """The variables that only some files have, as in `Layout`, in their order."""
 INITIAL: tuple[str, ...] = tuple(
-    f"initial_{name}" for name in ("positions", "velocities", "spins", "piston", "displaced")
+    f"initial_{name}" for name in ("positions", "velocities", "spins", "piston", "displaced", "vibrations")
 )
 """The variables of a run whose initial state was given, of all particles of the scene: parts of a State."""
 _OF_INITIAL = ("particle", "component")

@@ -29,7 +29,7 @@ def last_state(path: str | Path) -> State:
     last frame, in single precision; the motion of a piston and the displacement of sheared images are exact.
     Raises SceneError for a file that `open_trajectory` refuses, for a kept checkpoint that is damaged or of
     another run, and, of a last frame, one that lacks particles (`follow`) or does not hold the state: of a
-    scene with sticky faces or vibrations.
+    scene with sticky faces.
     """
     path = Path(path)
     recipe = read_recipe(path)
@@ -52,11 +52,13 @@ def _of_frame(recipe: Recipe, frame: xr.Dataset) -> State:
     """The state of a frame that has all particles."""
     scene, time = recipe.scene, float(frame["time"])
     places, velocities = (frame[name].values.astype(float) for name in ("coordinates", "velocities"))
-    spins = frame["spins"].values.astype(float) if "spins" in frame else None
+    spins, vibrations = (
+        frame[name].values.astype(float) if name in frame else None for name in ("spins", "vibrations")
+    )
     piston, displaced = None, None
     if pistons(scene):
         piston = np.array([float(frame[f"piston_{name}"]) for name in ("position", "velocity")])
     if scene.shear_rate is not None:
         begun = recipe.initial.displaced if recipe.initial else None
         displaced = (begun or 0.0) + scene.shear_rate * scene.container.lengths[GRADIENT] * time
-    return replace(given_state(scene, places, velocities, spins, piston, displaced), time=time)
+    return replace(given_state(scene, places, velocities, spins, piston, displaced, vibrations), time=time)
