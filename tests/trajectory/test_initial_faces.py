@@ -233,7 +233,6 @@ def test_energies_of_vibrations_are_taken_over(tmp_path):
 def test_walls_have_no_images_that_could_be_displaced():
     state = after(3.3, sheared(0.2)).state
     low, high = state.positions[:, 1].min(), state.positions[:, 1].max()
-    squeezed = replace(
-        state, positions=(state.positions - [0.0, low - 0.5]) * [1.0, 9.0 / (high - low + 1.0)]
-    )
-    assert taken_state(replace(WALLS, species=PLAIN.species), squeezed).displaced is None
+    squeezed = state.copy()
+    squeezed.positions[:, 1] = 0.5 + (state.positions[:, 1] - low) * 9.0 / (high - low)
+    assert taken_state(WALLS, squeezed).displaced is None
