@@ -101,6 +101,8 @@ def test_images_that_are_displaced_have_no_place_in_a_plain_container():
     state = after(3.3, sheared(0.2)).state
     rule = "initial = 6.6: is by how much the images above are displaced, which those of the scene are not"
     assert rule in refusal(PLAIN, replace(state, displaced=6.6))
+    for name in ("displaced", "shear_rate"):
+        assert f"initial = inf: must have a finite {name}" in refusal(PLAIN, replace(state, **{name: np.inf}))
     at_rest = taken_state(PLAIN, replace(state, displaced=24.0))
     assert at_rest.velocities == pytest.approx(peculiar(sheared(0.2), state), abs=1e-12)
     assert at_rest.displaced is at_rest.shear_rate is None

@@ -87,6 +87,9 @@ def taken_state(scene: Scene, other: State) -> State:
     if other.positions.shape != (scene.count, scene.dimension):
         has = f"{other.count} particles in {other.dimension} dimensions"
         raise SceneError("initial", has, f"the scene has {scene.count} in {scene.dimension}")
+    for name in ("displaced", "shear_rate"):
+        if not math.isfinite(getattr(other, name) or 0.0):
+            raise SceneError("initial", getattr(other, name), f"must have a finite {name}")
     lengths = scene.container.lengths
     if tuple(other.lengths) != lengths:
         raise SceneError("initial", tuple(other.lengths.tolist()), f"the container of the scene is {lengths}")
