@@ -175,8 +175,10 @@ class Correlator(_Correlator):
         from gaspart.kernels.correlation import add_displacement_products, add_velocity_products
 
         state = simulation.state
-        values = [state.velocities - self._frame]
-        values += [state.unwrapped - self._frame * state.time] if self._positioned else []
+        values = [state.velocities, state.unwrapped] if self._positioned else [state.velocities]
+        if self._frame.any():
+            drifts = self._frame, self._frame * state.time
+            values = [value - drift for value, drift in zip(values, drifts, strict=False)]
         now = np.array([self._relative(each) for each in values])
         products = add_displacement_products if self._positioned else add_velocity_products
         self._add(now, products, self._moving.sum())
