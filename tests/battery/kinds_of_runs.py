@@ -107,7 +107,7 @@ KINDS = {
     ),
     "halves": Kind(_scene(_CUBE, PERIODIC, _gas(16), _gas(16))),
     "polydisperse": Kind(_scene(_CUBE, PERIODIC, _gas(radius=0.45, polydispersity=0.2))),
-    "two": Kind(_scene((2.5, 2.5, 2.5), PERIODIC, _gas(2))),
+    "two": Kind(_scene((2.5, 2.5, 2.5), PERIODIC, _gas(2)), steady="two particles pass a cell too rarely"),
     "ten": Kind(_scene((3.0, 3.0, 3.0), PERIODIC, _gas(10))),
 }
 """Name -> kind of scene. All are of three dimensions, so that their kernels are few."""
