@@ -338,7 +338,7 @@ ALONE = gp.Scene(PERIODIC, [gp.Species(1, 0.5, temperature=1.0)])
 @pytest.mark.parametrize(
     ("scene", "name", "rule"),
     [
-        (ALONE, "Z", "a single particle meets no other"),
+        (ALONE, "Z", "too few moving particles for a temperature"),
         (ALONE, "collision_rate", "a single particle meets no other"),
         (gp.Scene(PERIODIC, [gp.Species(60, 0.5)]), "Z", "nothing moves"),
         (gp.Scene(gp.Container((8.0, 8.0)), [gp.Species(9, 0.5)]), "pressure", "nothing moves"),

@@ -16,6 +16,7 @@ from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import TOO_SHORT
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
+from gaspart.state.insertion import per_particle
 from gaspart.state.tally import Tally
 from gaspart.trajectory.correlator import Correlations, stress_sums, sums_of
 from gaspart.trajectory.pairs import pairs_of
@@ -82,5 +83,6 @@ def _unrun(scene: Scene, correlations: Correlations | None, displacements: bool,
     particles = ("frame", "atom", "spatial")
     data["coordinates"] = particles, random.uniform(size=(2, count, dimension)) * scene.container.lengths
     data["velocities"] = particles, random.standard_normal(size=(2, count, dimension))
-    data["kinetic_energy"] = "frame", np.ones(2)
+    squares = (data["velocities"][1] ** 2).sum(axis=2)
+    data["kinetic_energy"] = "frame", 0.5 * squares @ per_particle(scene, "mass").astype(float)
     return xr.Dataset({"time": ("frame", [0.0, 1.0]), **data}, lags, attributes)
