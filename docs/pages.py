@@ -1,7 +1,7 @@
 """The pages of the site that follow from the code, written into docs/generated: a Sphinx extension.
 
-The public names, the commands, the gallery of scenes, the referees, and a page for each family of figures,
-with its captions and, if the workflow has run, its figures and claims.
+The public names, the commands, the gallery of scenes, the referees, the symmetries, and a page for each
+family of figures, with its captions and, if the workflow has run, its figures and claims.
 """
 
 import argparse
@@ -13,6 +13,7 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import indexes
+import symmetries
 
 import gaspart
 from gaspart import analysis, theory
@@ -233,7 +234,9 @@ def write(folder):
     """Write all pages; those that are up to date are not touched, so that Sphinx reads only what is new."""
     for part in ("api", "figures"):
         (folder / part).mkdir(parents=True, exist_ok=True)
-    for path, text in {**api(), **command_line(), **gallery(folder), **figures(folder), **referees()}.items():
+    pages = {**api(), **command_line(), **gallery(folder), **figures(folder), **referees()}
+    pages["symmetries.rst"] = symmetries.page(heading, table)
+    for path, text in pages.items():
         target = folder / path
         if not target.exists() or target.read_text(encoding="utf-8") != text:
             target.write_text(text, encoding="utf-8")

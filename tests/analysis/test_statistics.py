@@ -285,3 +285,18 @@ def test_the_mean_of_a_current_through_a_store_is_as_certain_as_it_is():
     assert np.mean(np.square(plain)) < 0.2
     nothing = np.zeros(20)
     assert statistics.steady_mean(current, nothing).freedom == 19.0
+
+
+def test_means_of_groups_count_what_is_in_them_alike():
+    """However things are divided, their mean is the same; the error is theirs, on average."""
+    generator = np.random.default_rng(4)
+    sizes = [1, 1, 1, 5, 2, 2, 7, 1]
+    ends = np.cumsum(sizes)[:-1]
+    ratios = []
+    for _ in range(4000):
+        things = generator.normal(size=sum(sizes))
+        value, error = statistics.means_of([part.mean() for part in np.split(things, ends)], sizes)
+        assert value == pytest.approx(things.mean())
+        ratios.append(error**2 * sum(sizes))
+    assert np.mean(ratios) == pytest.approx(1.0, abs=3.0 * np.std(ratios) / math.sqrt(len(ratios)))
+    assert statistics.means_of([1.0, 3.0], [4, 4])[1] == statistics.means_of([1.0, 3.0])[1]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scenes import mixtures
 
 import gaspart as gp
-from gaspart.scene.faces import thermal_face
+from gaspart.scene.faces import mean_velocity, thermal_face
 
 GOOD = {
     "container": {"lengths": [10.0, 10.0], "boundary": "wall"},
@@ -256,3 +256,16 @@ def test_what_cannot_be_sheared_is_refused_in_one_line(make, complaint):
 def test_every_field_of_a_scene_has_a_rule_and_a_meaning(kind):
     for item in dataclasses.fields(kind):
         assert item.metadata["rule"].kind and item.metadata["meaning"], item.name
+
+
+def test_the_mean_velocity_of_faces_is_that_of_all_that_drag():
+    container = gp.Container((4.0, 4.0), ("wall", "periodic"))
+
+    def mean(low, high):
+        faces = {"x_low": low, "x_high": high}
+        return mean_velocity(gp.Scene(container, faces=faces))
+
+    still, sliding = gp.Thermal(1.0), gp.Thermal(1.0, velocity=(0.0, 3.0))
+    assert mean(still, sliding) == (0.0, 1.5)
+    assert mean(gp.Thermal(1.0, "normal"), sliding) == (0.0, 3.0)
+    assert mean(still, still) == (0.0, 0.0)

@@ -113,7 +113,7 @@ def test_open_trajectory_gives_every_number_its_name(written):
         assert np.array_equal(data["displacements"], displacements)
         assert data.attrs["packing_fraction"] == scene.packing_fraction
         assert data["velocities"].attrs["units"] == "length/time"
-        assert data["virial_sum"].attrs["units"] == "mass length^2/time^2"
+        assert data["virial_sum"].attrs["units"] == "mass length^2/time"
         assert data["collisions"].attrs["units"] == "1" and data["time"].attrs["units"] == "time"
         assert all("units" in data[name].attrs for name in data.data_vars)
         hit = data["wall_hits"].isel(frame=-1).sel(face=["y low", "y high"])

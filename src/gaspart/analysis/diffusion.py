@@ -17,6 +17,7 @@ from gaspart.analysis.observables import require_defined
 from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
+from gaspart.scene.faces import mean_velocity
 
 LINEAR_FROM = 12.0
 """Collisions per particle, from which on the mean-squared displacement grows evenly, if there is a D."""
@@ -46,12 +47,13 @@ def diffusion_coefficient(
         lags = lags_of_slopes(run, stride)
         lasting = _lasting_momentum(run, lags[1] * stride)
         require_spheres(run, lasting)
-        slopes = _slopes(groups_of(run, about=lasting, chosen=chosen), lags)[..., run.periodic]
+        groups = groups_of(run, about=lasting, chosen=chosen)
+        slopes = _slopes(groups, lags)[..., run.periodic]
         along = axes_of(run, run.periodic)
         if run.periodic.all() and not per_axis:
             slopes, along = slopes.mean(axis=2), {}
-        _require_constant(slopes)
-        values, errors = means_of(slopes[:, 1])
+        _require_constant(slopes, groups.sizes)
+        values, errors = means_of(slopes[:, 1], groups.sizes)
         return observable("diffusion_coefficient", along, values, errors, **described("D", run))
 
 
@@ -91,7 +93,8 @@ def lags_of_slopes(run: Run, stride: int = 1) -> tuple[int, int, int]:
 def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
     """(d,) along which axes the total momentum of the moving particles is kept for so many frames: where it
     is conserved, and where more than half of it is left, as with a few obstacles among many particles."""
-    momentum = np.einsum("tnd,n->td", run.velocities[:, run.moving], run.masses[run.moving])
+    velocities = run.velocities[:, run.moving] - np.array(mean_velocity(run.scene))
+    momentum = np.einsum("tnd,n->td", velocities, run.masses[run.moving])
     left = (momentum[lag:] * momentum[:-lag]).mean(axis=0)
     return run.conserved | (run.periodic & (left > 0.5 * (momentum**2).mean(axis=0)))
 
@@ -104,11 +107,11 @@ def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
     return 0.5 * np.diff(squares, axis=1) / (groups.interval * np.diff(lags))[:, None]
 
 
-def _require_constant(slopes: np.ndarray) -> None:
+def _require_constant(slopes: np.ndarray, sizes: list[int]) -> None:
     """Raise SceneError if the slope of the second stretch differs from that of the first, (G, 2, ...), by
-    more than `_CONSTANT` of it, beyond its error."""
-    early, late = np.atleast_2d(slopes.mean(axis=0).T).T
-    change, error = means_of(slopes[:, 1] - slopes[:, 0])
+    more than `_CONSTANT` of it, beyond its error. sizes (G,): numbers of particles."""
+    early, late = np.atleast_2d(means_of(slopes, sizes)[0].T).T
+    change, error = means_of(slopes[:, 1] - slopes[:, 0], sizes)
     beyond = np.abs(change) - _CONSTANT * np.abs(early) - _SIGNIFICANT * error
     if (beyond > 0.0).any():
         n = int(np.argmax(beyond))

@@ -61,12 +61,12 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     ]
     group = (flights["particles"].values % GROUPS)[chosen]
     members = [(times[chosen][group == n], paths[chosen][group == n]) for n in range(GROUPS)]
+    sizes = [len(time) for time, _ in members]
     grid = Grid.line(0.0, _LONGEST * mean, count_of("bins", bins, least=2))
     (edges,), (middle,) = grid.edges, grid.middles
-    values, errors = means_of(
-        [grid.sums(grid.cells(time[:, None])) / grid.volume / len(time) for time, _ in members]
-    )
-    means, scatter = means_of([(time.mean(), path.mean()) for time, path in members])
+    found = [grid.sums(grid.cells(time[:, None])) / grid.volume / len(time) for time, _ in members]
+    values, errors = means_of(found, sizes)
+    means, scatter = means_of([(time.mean(), path.mean()) for time, path in members], sizes)
     about: dict[str, Any] = {"units": "1 / time", "long_name": "probability density of free times"}
     along = {"free_time": (middle, {"units": "time", "long_name": "time between collisions"})}
     expected = _theory(simulation, edges)

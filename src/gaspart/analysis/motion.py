@@ -21,6 +21,7 @@ from gaspart.analysis.observables import require_defined
 from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
+from gaspart.scene.faces import mean_velocity
 from gaspart.scene.validation import count_of
 
 MOST_FRAMES = 1000
@@ -37,6 +38,11 @@ class Groups:
     velocities: list[np.ndarray]
     interval: float
 
+    @property
+    def sizes(self) -> list[int]:
+        """(G,) numbers of particles."""
+        return [velocity.shape[1] for velocity in self.velocities]
+
 
 def mean_squared_displacement(
     source: Source,
@@ -50,7 +56,8 @@ def mean_squared_displacement(
 
     source: a trajectory, by its path or open, or a simulation; lags: their number, in frames (by default half
     of them); start: the time from which frames count (by default a quarter of the run). Along axes on which
-    the total momentum is conserved it is that about the centre of mass, times N / (N - 1). species,
+    the total momentum is conserved it is that about the centre of mass, times N / (N - 1), between faces that
+    slide about their mean velocity. species,
     particles: of one species, by its number in the scene (single particles have the number after the last),
     or of these particles only; of fewer than 16 the error is the scatter of as many stretches of the run.
     per_axis: that along each axis instead of their sum, (axis, lag).
@@ -76,7 +83,7 @@ def mean_squared_displacement(
             ]
         )
         time = groups.interval * np.arange(number)
-        values, errors = means_of(found if per_axis else found[:, 0])
+        values, errors = means_of(found if per_axis else found[:, 0], groups.sizes)
         return _displacement(run, time, values, errors)
 
 
@@ -101,7 +108,7 @@ def velocity_autocorrelation(
         groups = groups_of(run, paths=False, chosen=selected(run, species, particles))
         number = _lags(groups, lags)
         found = np.array([autocorrelation(velocity, number) for velocity in groups.velocities])
-        return _autocorrelation(run, groups.interval * np.arange(number), *means_of(found))
+        return _autocorrelation(run, groups.interval * np.arange(number), *means_of(found, groups.sizes))
 
 
 def _accumulates(
@@ -149,6 +156,7 @@ def groups_of(
     conserved.
 
     There its square for a particle of mass m is 1 - m / M of that without this condition, M the mass of all.
+    Between faces that slide motion is about their mean velocity (`faces.mean_velocity`).
     """
     moving, stride = run.moving, stride_of(run)
     steps = np.diff(run.time)
@@ -162,7 +170,10 @@ def groups_of(
         raise SceneError("count", len(masses), "a single particle keeps its velocity")
     free = np.where(about, np.sqrt(masses.sum() / np.where(others > 0.0, others, 1.0))[:, None], 1.0)
 
-    def parts(values: np.ndarray) -> list[np.ndarray]:
+    frame, time = np.array(mean_velocity(run.scene)), run.time[::stride, None, None]
+
+    def parts(values: np.ndarray, drift: np.ndarray) -> list[np.ndarray]:
+        values = values - drift
         centre = np.einsum("tnd,n->td", values, masses) / masses.sum()
         motion = free * (values[:, chosen] - np.where(about, centre, 0.0)[:, None])
         if len(chosen) >= GROUPS:
@@ -174,8 +185,8 @@ def groups_of(
         return [motion[first : first + length] for first in range(0, GROUPS * length, length)]
 
     return Groups(
-        paths=parts(unwrapped(run)[::stride, moving]) if paths else [],
-        velocities=parts(run.velocities[::stride, moving]),
+        paths=parts(unwrapped(run)[::stride, moving], frame * time) if paths else [],
+        velocities=parts(run.velocities[::stride, moving], frame),
         interval=float(steps.mean()) * stride,
     )
 

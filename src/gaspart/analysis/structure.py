@@ -49,8 +49,9 @@ def speed_distribution(source: Source, bins: int = 40, start: float | None = Non
         cells = np.where(known, grid.cells(speeds[..., None]), -1)
         # every group has a share of each species, which come one after the other
         groups = [slice(first, None, STRETCHES) for first in range(STRETCHES)]
-        found = [grid.sums(cells[:, group]) / known[:, group].sum() / grid.volume for group in groups]
-        values, errors = means_of(found)
+        sizes = [int(known[:, group].sum()) for group in groups]
+        found = [grid.sums(cells[:, group]) / n / grid.volume for group, n in zip(groups, sizes, strict=True)]
+        values, errors = means_of(found, sizes)
         energy = squares.sum(axis=(1, 2))
         fixed = np.ptp(energy) <= _CONSTANT * energy.mean()
         alike = np.ptp(masses) == 0.0 and not run.flow_axes

@@ -276,6 +276,16 @@ def sliding_faces(scene: Scene) -> list[tuple[int, Thermal]]:
     return [(n, face) for n, face in faces_of(scene, Thermal) if face.slides]
 
 
+def mean_velocity(scene: Scene) -> tuple[float, ...]:
+    """(d,) the mean velocity of the faces that drag particles along: 0 unless one slides. Motion along such
+    faces is about it, the same in every frame."""
+    dragging = [face.velocity for _, face in faces_of(scene, Thermal) if not face.smooth]
+    if not any(any(velocity or ()) for velocity in dragging):
+        return (0.0,) * scene.dimension
+    parts = [velocity or (0.0,) * scene.dimension for velocity in dragging]
+    return tuple(math.fsum(component) / len(parts) for component in zip(*parts, strict=True))
+
+
 def thermal_face(scene: Scene, name: str) -> Thermal:
     """The face of this name, which must be at a temperature. Raises SceneError."""
     face = scene.faces.get(name)

@@ -56,7 +56,7 @@ class Tally:
     wall_hits: np.ndarray = field(metadata={"along": ("face",)})
     wall_impulse: np.ndarray = field(metadata={"along": ("face",), "units": IMPULSE})
     wall_energy: np.ndarray = field(metadata={"along": ("face",), "units": ENERGY})
-    virial_sum: float = field(metadata={"units": ENERGY})
+    virial_sum: float = field(metadata={"units": ACTION})
     pair_tests: int
     box_visits: int
     crossings: int = 0

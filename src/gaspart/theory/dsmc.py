@@ -49,13 +49,13 @@ def step_factor(quantity: str, step: Numbers) -> Values:
 def diffusion_by_modes(
     side: float, count: int, dimension: int, cells: int, path: float, spreading: float
 ) -> float:
-    """What the fluctuating flow in a periodic cube or square adds to D of a kinetic equation.
+    """What the fluctuating flow in a periodic cube or square adds to D of a kinetic equation, over k_B T / m.
 
-    (1 / d N) sum over k of (d - 1) / [(nu + D) k^2]: the time integral of the shear modes in `modes`, which
-    carry particles along (Donev, Bell, de la Fuente and Garcia, Phys. Rev. Lett. 106, 204501 (2011)). Wave
-    vectors k are those that `cells` along each side resolve, up to half of their number, and that are longer
-    waves than 2 pi mean free paths, `path`. With one cell there is none: partners are drawn wherever they
-    are. spreading: nu + D (length^2 / time). Hydrodynamics: an estimate, of which a half is uncertain.
+    (1 / d N) sum over k of (d - 1) / [(nu + D) k^2], a time: the integral of the shear modes in `modes`,
+    which carry particles along (Donev, Bell, de la Fuente and Garcia, Phys. Rev. Lett. 106, 204501 (2011)).
+    Wave vectors k are those that `cells` along each side resolve, up to half of their number, and that are
+    longer waves than 2 pi mean free paths, `path`. With one cell there is none: partners are drawn wherever
+    they are. spreading: nu + D (length^2 / time). Hydrodynamics: an estimate, of which a half is uncertain.
     """
     squares, numbers = wave_vectors(dimension, int(min(0.5 * cells, 0.5 * side / (math.pi * path))))
     waves = (2.0 * math.pi / side) ** 2 * squares

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.scene.faces import mean_velocity
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
@@ -146,7 +147,8 @@ class Correlator(_Correlator):
     """Correlations of the motion of the particles.
 
     Velocities and positions of the moving particles count, relative to those of the centre of mass along
-    axes where its velocity is conserved (`Scene.conserved_axes`). This makes the mean square of a particle of
+    axes where its velocity is conserved (`Scene.conserved_axes`), and to the mean velocity of faces that
+    slide. This makes the mean square of a particle of
     mass m lower by the factor 1 - m / M, M the mass of all; if masses differ, or if not all axes are such
     ones, components are multiplied so that the sums are lower by 1 - 1 / N.
 
@@ -161,6 +163,7 @@ class Correlator(_Correlator):
         weights = masses[self._moving]
         self._weights = (weights / weights.sum())[:, None]
         self._conserved = np.array(scene.conserved_axes)
+        self._frame = np.array(mean_velocity(scene))
         self._scale = _scale(self._weights, self._conserved)
         self._positioned = displacements
         components = self._moving.sum() * scene.dimension
@@ -172,7 +175,10 @@ class Correlator(_Correlator):
         from gaspart.kernels.correlation import add_displacement_products, add_velocity_products
 
         state = simulation.state
-        values = (state.velocities, state.unwrapped) if self._positioned else (state.velocities,)
+        values = [state.velocities, state.unwrapped] if self._positioned else [state.velocities]
+        if self._frame.any():
+            drifts = self._frame, self._frame * state.time
+            values = [value - drift for value, drift in zip(values, drifts, strict=False)]
         now = np.array([self._relative(each) for each in values])
         products = add_displacement_products if self._positioned else add_velocity_products
         self._add(now, products, self._moving.sum())

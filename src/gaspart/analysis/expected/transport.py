@@ -73,7 +73,11 @@ def diffusion_in_cube(gas: Gas, side: float, engine: Engine | None, scene: Scene
     density = float(theory.number_density(gas.packing_fraction, 3, gas.diameter))
     spreading = bulk.shear_viscosity(gas, engine.equation) / (gas.mass * density) + value
     path = float(theory.mean_speed(3, gas.temperature, gas.mass)) / bulk.collision_rate(gas, engine.equation)
-    added = diffusion_by_modes(side, gas.count, 3, engine.cells_along(scene), path, spreading)
+    added = (
+        gas.temperature
+        / gas.mass
+        * diffusion_by_modes(side, gas.count, 3, engine.cells_along(scene), path, spreading)
+    )
     error = math.hypot(0.5 * added, engine.bias(scene, "paths") * value)
     return value + added, error, f"{SOURCES[engine.equation]}, with the flow that its cells resolve"
 

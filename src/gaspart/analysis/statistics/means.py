@@ -44,10 +44,19 @@ def average(estimates: Sequence[Estimate]) -> Estimate:
     return sum(estimates, Estimate(0.0)) / len(estimates)
 
 
-def means_of(samples: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Means over axis 0 of N independent samples (N, ...), and their standard errors from the scatter."""
+def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Means over axis 0 of N independent samples (N, ...), and their standard errors from the scatter.
+
+    sizes (N,): how many alike things each sample is the mean of. The means are then those over all of them,
+    however they are divided, and the variance of a sample is in inverse proportion to its size.
+    """
     values = np.asarray(samples)
-    return values.mean(axis=0), values.std(axis=0, ddof=1) / math.sqrt(len(values))
+    if sizes is None or np.ptp(sizes) == 0.0:
+        return values.mean(axis=0), values.std(axis=0, ddof=1) / math.sqrt(len(values))
+    weights = np.asarray(sizes, dtype=float)
+    mean = np.average(values, axis=0, weights=weights)
+    variance = np.average((values - mean) ** 2, axis=0, weights=weights) / (len(values) - 1.0)
+    return mean, np.sqrt(variance)
 
 
 def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:

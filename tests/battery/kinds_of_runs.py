@@ -1,0 +1,206 @@
+"""The runs that the battery looks at: a small one of each kind of scene under each engine that models it."""
+
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+import gaspart as gp
+from gaspart.analysis.run import repeated
+from gaspart.engines import Engine
+from gaspart.errors import SceneError
+from gaspart.state.state import State
+from gaspart.trajectory.correlator import Correlations
+from gaspart.trajectory.reading import open_trajectory
+
+FRAMES = 128
+"""Intervals of a run, as those of a simulation that is run again; three quarters are measured."""
+FEW = 8
+"""Intervals of the runs that are compared with one another, before chaos takes over."""
+SEED = 5
+LAGS = 4
+PERIODIC = "periodic"
+STEPS = 4
+"""Of a time step, in an interval between frames."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of scene. interval: between frames, a power of two, in which a particle collides once at most;
+    drift: of the initial state, added to what is drawn. moving: the axis along which a moving frame is the
+    same scene; mirror: the axis that is mirrored; exchange: the order of the axes in which they are
+    exchanged; each is the reason instead where the scene has no such symmetry. steady: why parts of the run
+    may differ, "" if they may not."""
+
+    scene: gp.Scene
+    interval: float = 0.125
+    drift: tuple[float, ...] | None = None
+    moving: int | str = 0
+    mirror: int | str = 2
+    exchange: tuple[int, ...] | str = (2, 0, 1)
+    steady: str = ""
+
+
+def _scene(lengths, boundary, *species, **rest):
+    return gp.Scene(gp.Container(lengths, boundary), list(species), **rest)
+
+
+def _gas(count=32, **properties):
+    return gp.Species(count, **({"radius": 0.5, "temperature": 1.0} | properties))
+
+
+_SLIT = (PERIODIC, PERIODIC, "wall")
+_CUBE = (4.0, 4.0, 4.0)
+_PLATES = {
+    f"x_{side}": gp.Thermal(1.0, velocity=(0.0, sign * 1.5, 0.0)) for side, sign in (("low", -1), ("high", 1))
+}
+_AT_REST = "the walls are at rest"
+KINDS = {
+    "periodic": Kind(_scene(_CUBE, PERIODIC, _gas())),
+    "walls": Kind(_scene((5.0, 5.0, 5.0), "wall", _gas(24)), moving=_AT_REST),
+    "slit": Kind(_scene((4.0, 5.0, 6.0), _SLIT, _gas(24)), interval=0.25),
+    "gravity": Kind(_scene((4.0, 4.0, 8.0), _SLIT, _gas(24), gravity=(0.0, 0.0, -0.25)), interval=0.25),
+    "lees_edwards": Kind(
+        _scene(
+            _CUBE,
+            PERIODIC,
+            _gas(),
+            restitution=gp.Restitution(0.9),
+            faces={"y_high": gp.LeesEdwards(0.75)},
+        ),
+        moving=2,
+        exchange="sheared faces are those across y, which slide along x",
+        mirror=0,
+    ),
+    "plates": Kind(
+        _scene((6.0, 4.0, 4.0), ("wall", PERIODIC, PERIODIC), _gas(24), faces=_PLATES),
+        interval=0.25,
+        moving=1,
+        mirror=0,
+    ),
+    "wind": Kind(_scene((4.0, 5.0, 4.0), PERIODIC, _gas()), drift=(1.5, -0.75, 0.5)),
+    "piston": Kind(
+        _scene((4.0, 4.0, 8.0), _SLIT, _gas(24), faces={"z_high": gp.Piston(16.0, 0.5)}),
+        interval=0.25,
+        steady="the piston oscillates",
+    ),
+    "vibrating": Kind(
+        _scene(
+            (4.0, 4.0, 8.0),
+            _SLIT,
+            _gas(24),
+            restitution=gp.Restitution(0.95),
+            faces={"z_low": gp.Vibrating(0.125, 1.0)},
+        ),
+        interval=0.25,
+        steady="the energy changes slowly",
+    ),
+    "thermostat": Kind(
+        _scene(
+            _CUBE, PERIODIC, _gas(), restitution=gp.Restitution(0.8), thermostat=gp.Thermostat(1.0, 0.0625)
+        )
+    ),
+    "mixture": Kind(
+        _scene((4.0, 5.0, 4.0), PERIODIC, _gas(20), _gas(12, radius=0.375, mass=4.0)),
+    ),
+    "halves": Kind(_scene(_CUBE, PERIODIC, _gas(16), _gas(16))),
+    "polydisperse": Kind(_scene(_CUBE, PERIODIC, _gas(radius=0.45, polydispersity=0.2))),
+    "two": Kind(_scene((2.5, 2.5, 2.5), PERIODIC, _gas(2)), steady="two particles pass a cell too rarely"),
+    "ten": Kind(_scene((3.0, 3.0, 3.0), PERIODIC, _gas(10))),
+}
+"""Name -> kind of scene. All are of three dimensions, so that their kernels are few."""
+
+
+def engines(interval):
+    """Name -> engine: the three engines, and the two models of DSMC, with steps that are powers of two."""
+    step = interval / STEPS
+    return {
+        "event": gp.EventDriven(),
+        "step": gp.TimeStepped(step),
+        **{f"dsmc {model}": gp.DSMC(step, (2, 2, 2), model) for model in ("boltzmann", "enskog")},
+    }
+
+
+def runs():
+    """(engine, kind) of all runs, and why the other engines do not model the other kinds."""
+    found, refused = [], {}
+    for name, kind in KINDS.items():
+        for engine, settings in engines(kind.interval).items():
+            try:
+                settings.check_features(kind.scene)
+            except SceneError as error:
+                refused[engine, name] = error.rule
+            else:
+                found.append((engine, name))
+    return found, refused
+
+
+@dataclass(frozen=True)
+class Start:
+    """What a run is made from. initial: its state at time 0, None: that of the scene and the seed."""
+
+    scene: gp.Scene
+    engine: Engine
+    interval: float
+    initial: State | None = None
+    seed: int = SEED
+
+    @property
+    def forms(self):
+        """Form of the file -> arguments of `gaspart.run`: with paths and pairs, with correlations of the
+        motion, and with those of the fluxes, where the engine has them."""
+        half = self.interval / 2.0
+        found = {
+            "frames": {"displacements": True, "pairs": self.engine.records_events},
+            "correlations": {"displacements": True, "correlations": Correlations(half, LAGS)},
+            "fluxes": {"correlations": Correlations(half, LAGS, stress=True)},
+        }
+        if self.scene.shear_rate is not None:  # correlations of the motion have no meaning
+            del found["correlations"]
+        try:
+            self.engine.check_stress(self.scene)
+        except SceneError:
+            del found["fluxes"]
+        return found
+
+    def record(self, form, intervals):
+        """The trajectory of so many intervals, in memory and in double precision."""
+        duration = intervals * self.interval
+        with TemporaryDirectory() as folder:
+            path = Path(folder) / "run.nc"
+            settings = self.forms[form] | {"initial": self.initial}
+            gp.run(self.scene, self.engine, self.seed, duration, self.interval, path, **settings)
+            with open_trajectory(path) as data:
+                loaded = data.load()
+        vectors = ("coordinates", "velocities")
+        return loaded.assign({name: loaded[name].astype(float) for name in vectors})
+
+
+def start_of(engine, name, seed=SEED):
+    """What the run of a kind of scene is made from."""
+    kind = KINDS[name]
+    settings = engines(kind.interval)[engine]
+    initial = None
+    if kind.drift:
+        drawn = gp.Simulation(kind.scene, settings, seed).initial_state
+        initial = replace(drawn, velocities=drawn.velocities + np.array(kind.drift))
+    return Start(kind.scene, settings, kind.interval, initial, seed)
+
+
+@cache
+def recorded(engine, name):
+    """Form -> the trajectory of a run."""
+    start = start_of(engine, name)
+    return {form: start.record(form, FRAMES) for form in start.forms}
+
+
+@cache
+def repeated_simulation(engine, name):
+    """The frames of the same run as a simulation, which gives them by being run again."""
+    start = start_of(engine, name)
+    simulation = gp.Simulation(start.scene, start.engine, start.seed, initial=start.initial)
+    quantum = start.engine.quantum or 0.0
+    simulation.advance(until=FRAMES * start.interval + 0.5 * quantum)
+    return repeated(simulation, pairs=start.engine.records_events)

@@ -1,0 +1,87 @@
+"""Each observable, under each engine, in each kind of scene, seen otherwise: the same, or as it declares.
+
+`kinds_of_runs` has the runs, `symmetries` what is done with their files, `twins` what is done with their
+start, `table` the page of the site."""
+
+from collections import Counter
+from itertools import product
+
+import pytest
+from battery import table
+from battery.kinds_of_runs import KINDS, engines, runs
+from battery.observed import MEANS, SAMPLED, SINGLE, WITHOUT_NAME, names
+
+from gaspart.engines import ENGINES
+from gaspart.scene.features import FEATURES, features
+
+RUNS, NOT_MODELLED = runs()
+ELSEWHERE = {
+    "roughness": "tests/engines/test_metamorphic.py",
+    "viscoelasticity": "tests/engines/test_viscoelastic.py",
+    "contact_duration": "tests/engines/test_contact_duration.py",
+    "walls": "tests/engines/test_metamorphic.py",
+    "fixed": "tests/engines/test_metamorphic.py",
+    "centres_to_walls": "tests/engines/test_event_driven.py",
+    "well": "tests/engines/test_event_driven.py",
+    "sticky": "tests/engines/test_event_driven.py",
+    "vibrations": "tests/engines/test_vibration.py",
+}
+"""Features of scenes that the battery has not, and the tests of their symmetries."""
+
+
+@pytest.mark.parametrize(("engine", "name"), RUNS, ids=[f"{engine} {name}" for engine, name in RUNS])
+def test_observables_change_as_they_state(engine, name):
+    broken = [cell for cell in table.cells(engine, name) if cell.state == "broken"]
+    assert not broken, "\n".join(
+        f"{cell.observable}, {cell.symmetry}: {cell.text or f'{cell.deviation:.2g} {cell.unit}'}"
+        for cell in broken
+    )
+
+
+@pytest.mark.parametrize(("engine", "name"), RUNS, ids=[f"{engine} {name}" for engine, name in RUNS])
+def test_runs_from_the_same_state_are_the_same(engine, name):
+    broken = [pair for pair in table.pairs(engine, name) if pair.state == "broken"]
+    assert not broken, "\n".join(f"{pair.symmetry}: {pair.text} {pair.deviation:.2g}" for pair in broken)
+
+
+def test_nothing_is_left_out():
+    """Neither an observable, nor an engine, nor a feature of scenes, nor a symmetry."""
+    assert {settings.name for settings in engines(1.0).values()} == set(ENGINES)
+    present = {feature for kind in KINDS.values() for feature in features(kind.scene)}
+    assert present | set(ELSEWHERE) == set(FEATURES)
+    assert set(RUNS) | set(NOT_MODELLED) == set(product(engines(1.0), KINDS))
+    everything = set(product(names(), table.SYMMETRIES))
+    for engine, name in RUNS:
+        counted = Counter((cell.observable, cell.symmetry) for cell in table.cells(engine, name))
+        assert set(counted) == everything and set(counted.values()) == {1}, (engine, name)
+
+
+def test_every_observable_is_tested_by_every_symmetry_somewhere():
+    """A reason that holds everywhere would hide that a cell is never looked at."""
+    tested = {
+        (cell.observable, cell.symmetry)
+        for run in RUNS
+        for cell in table.cells(*run)
+        if cell.state == "tested"
+    }
+    never = set(product(names(), table.SYMMETRIES)) - tested
+    split = {
+        (name, "one species") for name in ("pair_rates", "contact_values", "mutual_diffusion", "by_species")
+    }
+    kept = [name for name in names() if name.startswith("accumulated") or name in table.FLUXES]
+    short = {("mutual_diffusion", "parts")}  # of so short a run there is none
+    assert never == split | short | {(name, "simulation") for name in kept}
+
+
+def test_exceptions_are_of_observables_that_exist():
+    known = set(names())
+    assert {name for name, _ in SAMPLED} | set(SINGLE) | set(MEANS) | set(WITHOUT_NAME) <= known
+
+
+def test_the_page_is_up_to_date():
+    """`PYTHONPATH=tests python -m battery.table` renews it."""
+    kept = [column for column in table.COLUMNS if column != "deviation"]
+    stated, found = (
+        [{key: row[key] for key in kept} for row in rows] for rows in (table.stated(), table.rows())
+    )
+    assert stated == found
