@@ -135,6 +135,7 @@ def test_neighbour_lists_and_oversized_particles_are_not_used():
 MIXED = [gp.Species(40, 0.5, mass=1.0, temperature=1.0), gp.Species(20, 0.25, mass=0.2, temperature=1.0)]
 
 
+SIZES = [gp.Species(60, 0.5, polydispersity=0.3, temperature=1.0)]
 LAWS = {
     "elastic": None,
     "inelastic": gp.Restitution(normal=0.95),
@@ -143,7 +144,7 @@ LAWS = {
 
 
 @pytest.mark.parametrize("rate", [0.6, -0.6])
-@pytest.mark.parametrize("species", [None, MIXED], ids=["alike", "mixture"])
+@pytest.mark.parametrize("species", [None, MIXED, SIZES], ids=["alike", "mixture", "sizes"])
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_the_energy_gained_is_the_work_of_the_stress(rate, species, law):
     """d(thermal energy) / dt = -shear rate V P_yx - losses, exactly; the faces' work, of all energy."""
@@ -159,6 +160,31 @@ def test_the_energy_gained_is_the_work_of_the_stress(rate, species, law):
     taken = tally.wall_energy.sum() + tally.dissipated_energy
     assert state.kinetic_energy - whole == pytest.approx(-taken, abs=1e-11 * state.kinetic_energy)
     sim.check_invariants()
+
+
+@pytest.mark.parametrize("drift", [(0.7, 0.0), (0.0, -0.9), (0.5, 1.1)])
+def test_a_sheared_gas_that_moves_as_a_whole_has_the_stress_of_one_at_rest(drift):
+    """A drift across the flow carries the gas to where the flow is faster."""
+    rate, sums = 0.4, []
+    rng = np.random.default_rng(1)
+    places = [(1.5 + 2.5 * (n % 4), 1.0 + 2.0 * (n // 4)) for n in range(16)]
+    velocities = rng.normal(size=(16, 2))
+    velocities -= velocities.mean(axis=0)
+    for more in ((0.0, 0.0), drift):
+        discs = [
+            gp.Particle(place, (v[0] + more[0] + rate * (place[1] - 5.0), v[1] + more[1]), 0.5)
+            for place, v in zip(places, velocities, strict=True)
+        ]
+        sim = gp.Simulation(square(discs, rate), gp.EventDriven(), stress=True)
+        sim.advance(until=0.7)
+        sim.reset_tally()
+        sim.advance(until=4.0)
+        assert sim.tally.collisions > 15
+        assert sim.tally.flux_velocity == pytest.approx(more, abs=1e-12)
+        sums.append(sim.tally)
+    for name in ("stress_sum", "collisional_stress_sum", "heat_sum"):
+        one, two = (getattr(tally, name) for tally in sums)
+        assert one == pytest.approx(two, abs=1e-8 * abs(one).max())
 
 
 def test_momentum_about_the_flow_is_conserved():

@@ -13,15 +13,21 @@ from scenes import gas
 import gaspart as gp
 
 
-def driven(dimension=2, count=20, law=None, power=0.3, interval=0.37, boundary="periodic"):
-    scene = gas(dimension, count, 0.1, boundary)
+def driven(dimension=2, count=20, law=None, power=0.3, interval=0.37, boundary="periodic", temperature=1.0):
+    scene = gas(dimension, count, 0.1, boundary, temperature=temperature)
     return replace(scene, restitution=law, thermostat=gp.Thermostat(power, interval))
 
 
-@given(st.integers(1, 12), st.sampled_from([None, 0.5]), st.floats(0.01, 2.0), st.integers(0, 2**32))
-def test_all_searches_give_the_same_events_bit_for_bit(count, normal, interval, seed):
+@given(
+    st.integers(1, 12),
+    st.sampled_from([None, 0.5]),
+    st.floats(0.01, 2.0),
+    st.sampled_from([None, 1e-24, 1.0]),
+    st.integers(0, 2**32),
+)
+def test_all_searches_give_the_same_events_bit_for_bit(count, normal, interval, temperature, seed):
     law = None if normal is None else gp.Restitution(normal)
-    scene = driven(2, count, law, interval=interval)
+    scene = driven(2, count, law, interval=interval, temperature=temperature)
     if count > 1:
         check_searches(scene, 100, seed, "tally.thermostat_energy")
 

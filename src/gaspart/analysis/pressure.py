@@ -91,7 +91,9 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
         refuse_rest(run, "obstacles may carry particles at rest, whose contacts give no impulse")
         return carried
     momentum = np.einsum("tnd,n->td", run.velocities[ends], run.masses)
-    weight = run.masses.sum() * np.array(run.scene.gravity)
+    weight = run.masses.sum() * np.where(run.periodic, 0.0, np.array(run.scene.gravity))
+    if not weight.any():  # it drives a flow along walls, and presses nothing
+        return carried
     gain = weight * np.diff(run.time[ends])[:, None]
     impulse = np.abs(np.diff(run.data["wall_impulse"].values[ends, : 2 * run.dimension], axis=0))
     missing = np.diff(momentum, axis=0) - gain - impulse[:, ::2] + impulse[:, 1::2]

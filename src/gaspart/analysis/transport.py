@@ -1,8 +1,9 @@
 """Viscosities, conductivity of heat and pressure tensor, from the tally of the stress and the heat flux.
 
-A run with `Correlations(stress=True)` has summed products of these fluxes, J, each the mean over an interval
-h between two samples, and squared differences of their time integrals, G = V int J dt (Helfand, Phys. Rev.
-119, 1 (1960)). A transport coefficient is the limit at long times of
+A run with `Correlations(stress=True)` has summed products of these fluxes about the velocity of the centre of
+mass, J, each the mean over an interval h between two samples, and squared differences of their time
+integrals, G = V int J dt (Helfand, Phys. Rev. 119, 1 (1960)). A transport coefficient is the limit at long
+times of
 
     <(G(t) - G(0))^2> / (2 V t x)  and of its derivative  h [C(0)/2 + C(h) + C(2h) + ... ] / (V x),
 
@@ -13,6 +14,7 @@ values the second holds exactly, with the impulses at collisions, at the times b
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
@@ -24,7 +26,15 @@ from gaspart.analysis.observables import KEPT, require_defined
 from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene
+from gaspart.scene.shear import flow
+from gaspart.state.drift import drift_of
+from gaspart.state.initial import initial_state
+from gaspart.state.state import State
+from gaspart.trajectory.amber import INITIAL
 from gaspart.trajectory.correlator import Correlations
+
+_SLIGHT = 1e-6  # of k_B T: an energy of the motion as a whole that changes no coefficient
 
 
 def shear_viscosity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
@@ -90,22 +100,45 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
 
 
 def _stored(run: Run) -> Correlations:
-    """The settings of a run's correlations of the stress. Raises SceneError for a run without them."""
+    """The settings of a run's correlations of the stress. Raises SceneError for a run without them, and for
+    one of an older version, which kept fluxes of absolute velocities, if the gas moves as a whole."""
     text = run.data.attrs.get("correlations")
     settings = Correlations.from_json(text) if text else None
     if settings is None or not settings.stress:
         key, _, rule = KEPT["fluxes"]
         raise SceneError(key, text, rule)
+    if "flux_velocity" not in run.data and _moves(run.scene, _initial(run)):
+        rule = "has fluxes of absolute velocities, as of an older version, and the gas moves: run it again"
+        raise SceneError("correlations", text, rule)
     return settings
 
 
+def _moves(scene: Scene, state: State) -> bool:
+    """Whether a gas moves as a whole, with more energy than changes no coefficient."""
+    squares = (state.velocities - flow(scene, state.positions)) ** 2
+    thermal = float((state.masses[:, None] * squares).mean())
+    return float(state.masses.sum() * (drift_of(scene, state) ** 2).sum()) > _SLIGHT * thermal
+
+
+def _initial(run: Run) -> State:
+    """The state at the start of a trajectory."""
+    seed = json.loads(run.data.attrs["seed"])
+    state = initial_state(run.scene, tuple(seed) if isinstance(seed, list) else seed)
+    if INITIAL[0] in run.data:
+        state.positions, state.velocities = (run.data[name].values for name in INITIAL[:2])
+    return state
+
+
 def _temperature(run: Run) -> float:
-    """k_B T, from the energy of all particles, whichever are in the file."""
+    """k_B T, from the energy of all particles about their centre of mass, whichever are in the file."""
     d = run.dimension
     freedom = d * (run.count - 1) + run.scene.rough * run.count * (d * (d - 1) // 2)
     if freedom < 1:
         raise SceneError("count", run.count, "too few moving particles for a temperature")
-    return float(2.0 * run.data["kinetic_energy"].mean() / freedom)
+    energy = float(run.data["kinetic_energy"].mean())
+    if "flux_velocity" in run.data:
+        energy -= 0.5 * float(run.masses.sum() * (run.data["flux_velocity"].values[-1] ** 2).sum())
+    return 2.0 * energy / freedom
 
 
 def _response(run: Run, lag: float | None) -> Observable:

@@ -84,7 +84,8 @@ class Engine:
     name: by which files, configs and the command line know it; title: in messages and captions;
     records_events: whether its events can be recorded and counted; counters: fields of `Tally` that only
     such an engine fills; same_bits: settings that change no bit of its results; keeps_apart: whether
-    particles never overlap; tallies_stress: whether it can tally the stress tensor; models: names of the
+    particles never overlap; tallies_stress: whether it can tally the stress tensor; tallies_shear: whether
+    it counts the momentum along thermal faces; models: names of the
     `scene.features` that it models, and excludes: pairs of them that it does not model together;
     first_stretch: the work, in events or steps, that a run begins with between two looks at the clock.
     """
@@ -98,6 +99,7 @@ class Engine:
     same_bits: ClassVar[tuple[str, ...]] = ()
     keeps_apart: ClassVar[bool] = True
     tallies_stress: ClassVar[bool] = False
+    tallies_shear: ClassVar[bool] = False
     first_stretch: ClassVar[int] = 1
 
     def __post_init__(self) -> None:

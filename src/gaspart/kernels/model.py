@@ -165,8 +165,9 @@ class Piston(NamedTuple):
 
 
 class Sliding(NamedTuple):
-    """Thermal faces that move along themselves. velocity (2d, d), of the container's faces; shear (2d^2, 2):
-    the momentum along each axis that particles have given to each face, see `running_sum.add`."""
+    """Thermal faces that move along themselves, or along which a force drives the gas. velocity (2d, d), of
+    the container's faces; shear (2d^2, 2): the momentum along each axis that particles have given to each
+    face, see `running_sum.add`."""
 
     velocity: np.ndarray
     shear: np.ndarray

@@ -17,6 +17,7 @@ from typing import Any
 import gaspart
 from gaspart.errors import SceneError
 from gaspart.scene.container import Container
+from gaspart.scene.driving import check_driven
 from gaspart.scene.face_checks import check_faces
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
 from gaspart.scene.faces import LeesEdwards, Sticky, Surface, surface_from_dict, surface_to_dict
@@ -65,7 +66,8 @@ class Scene:
         metadata=declared(FLAG, "walls stop centres, not surfaces, of particles"),
     )
     gravity: tuple[float, ...] | None = field(
-        default=None, metadata=declared(VECTOR, "(d,) uniform acceleration, not along a periodic axis")
+        default=None,
+        metadata=declared(VECTOR, "(d,) uniform acceleration; along a periodic axis it drives a flow"),
     )
     restitution: Restitution | None = field(
         default=None,
@@ -95,6 +97,7 @@ class Scene:
         check_walls(self)
         check_faces(self)
         check_features(self)
+        check_driven(self)
         for n, kind in enumerate(self.species):
             if kind.count:
                 self._fits(f"species[{n}].radius", kind)
@@ -118,10 +121,6 @@ class Scene:
         if not any(self.gravity):  # absent everywhere, so that no other place has to ask
             set_fields(self, gravity=None)
             return
-        for component, periodic in zip(self.gravity, self.container.periodic, strict=True):
-            if component != 0.0 and periodic:
-                rule = "must not point along a periodic axis, where particles would gain energy without limit"
-                raise SceneError("gravity", self.gravity, rule)
 
     def wall_at(self, position: tuple[float, ...], radius: float) -> str | None:
         """The key of an interior wall that a particle at this position overlaps, if any."""

@@ -10,7 +10,9 @@ from gaspart.scene.features import FEATURES, features
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
-_ALLOWED = frozenset(("restitution", "roughness", "viscoelasticity", "contact_duration", "lees_edwards"))
+_ALLOWED = frozenset(
+    ("restitution", "roughness", "viscoelasticity", "contact_duration", "polydispersity", "lees_edwards")
+)
 
 
 def require_tallied(scene: Scene) -> None:

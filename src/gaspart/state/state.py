@@ -106,10 +106,11 @@ class State:
 
     @property
     def potential_energy(self) -> float:
-        """The energy of all particles in wells and under gravity, 0 where their centres are at the origin."""
+        """The energy of all particles in wells and under gravity, 0 where their centres are at the origin; on
+        periodic axes it goes on falling from image to image."""
         energy = 0.0 if self.well_energies is None else float(self.well_energies.sum())
         if self.gravity is not None:
-            energy -= float((_finite(self.masses)[:, None] * self.positions * self.gravity).sum())
+            energy -= float((_finite(self.masses)[:, None] * self.unwrapped * self.gravity).sum())
         return energy
 
     @property

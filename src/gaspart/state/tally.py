@@ -8,15 +8,18 @@ import numpy as np
 
 ENERGY, IMPULSE = "mass length^2/time^2", "mass length/time"
 ACTION, HEAT = "mass length^2/time", "mass length^3/time^2"
-"""Units of sums."""
+SPEED = "length/time"
+"""Units of sums, and of the velocity that goes with them."""
 
 
-def tallied_fluxes(sums: np.ndarray, dimension: int) -> dict[str, np.ndarray]:
+def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]:
     """The fields of `Tally` from the sums of the stress tensor, of its collisional part, each by rows, and of
-    the heat flux, (2 d^2 + d,)."""
+    the heat flux, (2 d^2 + d,), and from the velocity (d,) about which they are."""
+    dimension = len(drift)
     stress = sums[: 2 * dimension**2].reshape(2, dimension, dimension)
     heat = sums[2 * dimension**2 :]
-    return {"stress_sum": stress[0], "collisional_stress_sum": stress[1], "heat_sum": heat}
+    fluxes = {"stress_sum": stress[0], "collisional_stress_sum": stress[1], "heat_sum": heat}
+    return {**fluxes, "flux_velocity": drift.copy()}
 
 
 @dataclass
@@ -32,15 +35,16 @@ class Tally:
     the same particle had not ended (`Restitution.contact_duration`), and retained_energy, what they would
     have dissipated; thermostat_energy: energy given by kicks.
 
-    If a thermal face moves, otherwise None: wall_shear (2d + interior walls, d), the momentum along each axis
-    given to each thermal face by particles that leave it with all components drawn; wall_energy then includes
-    the work that the face does.
+    If a thermal face moves, or a force drives the gas along it, otherwise None: wall_shear (2d + interior
+    walls, d), the momentum along each axis given to each thermal face by particles that leave it with all
+    components drawn; wall_energy then includes the work that the face does.
 
     If they were asked for, otherwise None: stress_sum (d, d), the time integral of the stress tensor times
     the volume, of m v v and, at a collision, of r dp, with r the vector from the second particle to the
     first and dp the momentum that this gains; collisional_stress_sum (d, d), the latter alone; heat_sum
     (d,), that of the heat flux times the volume, likewise of E v and r dE (Helfand, Phys. Rev. 119, 1
-    (1960)).
+    (1960)); flux_velocity (d,), that of the centre of mass, about which all these velocities are; of a
+    sheared gas about the flow, at time 0.
 
     The time-stepped engine also reports its errors: steps; overlaps_left, pairs that still overlap and
     approach when a step ends; deepest_overlap met, as a fraction of the contact distance;
@@ -67,7 +71,7 @@ class Tally:
     multiple_contacts: int = 0
     rebuilds: int = 0
     wall_shear: np.ndarray | None = field(
-        default=None, metadata={"along": ("face", "axis"), "units": IMPULSE, "only": "sliding"}
+        default=None, metadata={"along": ("face", "axis"), "units": IMPULSE, "only": "dragged"}
     )
     stress_sum: np.ndarray | None = field(
         default=None, metadata={"along": ("axis", "direction"), "units": ACTION, "only": "stress"}
@@ -77,4 +81,7 @@ class Tally:
     )
     heat_sum: np.ndarray | None = field(
         default=None, metadata={"along": ("axis",), "units": HEAT, "only": "stress"}
+    )
+    flux_velocity: np.ndarray | None = field(
+        default=None, metadata={"along": ("axis",), "units": SPEED, "only": "stress"}
     )

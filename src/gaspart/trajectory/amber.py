@@ -58,7 +58,7 @@ _FIRST_NAME = struct.pack(">I", 5) + b"frame"
 
 def counters(engine: Engine, also: Collection[str] = ()) -> tuple[str, ...]:
     """Sums since time 0 that a file of this engine has, one variable each; those of other engines alone would
-    be zero. also: what some sums belong to that are not of every run, "stress" or "sliding"."""
+    be zero. also: what some sums belong to that are not of every run, "stress" or "dragged"."""
     absent = {name for kind in ENGINES.values() for name in kind.counters} - set(engine.counters)
     absent |= {field.name for field in fields(Tally) if field.metadata.get("only") not in {None, *also}}
     return tuple(field.name for field in fields(Tally) if field.name not in {"time", *absent})

@@ -12,7 +12,8 @@ import numpy as np
 from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.scene.faces import pistons, sliding_faces
+from gaspart.scene.driving import has_dragged_faces
+from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.validation import count_of, number
@@ -143,7 +144,8 @@ class Recipe:
     @property
     def tallied(self) -> set[str]:
         """What is tallied that is not of every run, see `amber.counters`."""
-        present = {"stress": self.stress, "sliding": bool(sliding_faces(self.scene))}
+        dragged = self.engine.tallies_shear and has_dragged_faces(self.scene)
+        present = {"stress": self.stress, "dragged": dragged}
         return {name for name, there in present.items() if there}
 
     @property

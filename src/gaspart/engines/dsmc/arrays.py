@@ -15,6 +15,7 @@ from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Tool
 from gaspart.kernels.dsmc.stress import Stress
 from gaspart.kernels.model import ContactLaw, flight_dtype
 from gaspart.scene.scene import Scene
+from gaspart.state.drift import drift_of
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 
@@ -104,7 +105,7 @@ def stress_for(scene: Scene, state: State, threads: int) -> Stress:
     number = 2 * d * d + d
     sums, cell = np.zeros((threads, number, 2), np.int64), np.zeros((threads, number))
     scales = np.array([momentum * length, energy * length])
-    return Stress(sums, cell, np.zeros((threads, 2, d + 1)), scales)
+    return Stress(sums, cell, np.zeros((threads, 2, d + 1)), scales, drift_of(scene, state))
 
 
 TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")

@@ -212,7 +212,7 @@ class DsmcDynamics:
         tools, layout = self._tools, self._layout
         more: dict[str, Any] = {}
         if self._stress is not None:
-            more = tallied_fluxes(self.flux_sums, self._scene.dimension)
+            more = tallied_fluxes(self.flux_sums, self._stress.drift)
         if (shear := self._optional.get("shear")) is not None:
             parts = self._sums.whole_parts(shear.sum(axis=0), tools.scales[layout.MOMENTUM])
             more["wall_shear"] = parts.sum(axis=-1)

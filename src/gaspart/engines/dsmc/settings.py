@@ -54,6 +54,7 @@ class DSMC(Engine):
     same_bits: ClassVar[tuple[str, ...]] = ("threads",)
     keeps_apart: ClassVar[bool] = False
     tallies_stress: ClassVar[bool] = True
+    tallies_shear: ClassVar[bool] = True
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
     ) | {"centres_to_walls", "thermal", "sliding"}

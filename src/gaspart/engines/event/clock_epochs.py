@@ -19,19 +19,37 @@ QUIET = 64
 class Epochs:
     """How long the epochs of a scene are.
 
-    The speed for times of flight is the rms speed, with the largest gain by gravity and faces. gained: the
-    square of the largest speed that the scene itself gives a particle.
+    The speed for times of flight is the rms speed, with the largest gain by gravity and faces. masses (N,),
+    infinite for fixed particles; gained: the square of the largest speed that the scene itself gives a
+    particle.
     """
 
-    def __init__(self, scene: Scene, gained: float) -> None:
-        self._gained = gained
+    def __init__(self, scene: Scene, masses: np.ndarray, gained: float) -> None:
+        self._gained = gained if len(masses) else 0.0
         self._diameter = 2 * scene.smallest_radius
         self._across = max(scene.container.lengths)
+        self._moving = np.isfinite(masses)
+        self._masses = masses[self._moving]
 
     def speed(self, velocities: np.ndarray) -> float:
         """The speed for times of flight, with velocities (N, d)."""
         square = float((velocities**2).sum(axis=1).mean()) if len(velocities) else 0.0
         return math.sqrt(square + self._gained)
+
+    def _shared(self, velocities: np.ndarray, stored: float) -> float:
+        """The rms speed of particles that share their energy equally: the few heavy or spinning ones of a gas
+        at rest give it to the others within an epoch. stored: their energy besides that of flight."""
+        if not len(self._masses):
+            return 0.0
+        squares = (velocities[self._moving] ** 2).sum(axis=1)
+        energy = 0.5 * float((self._masses * squares).sum()) + stored  # not @: BLAS differs by machine
+        return math.sqrt(2.0 * energy / len(self._masses) * float((1.0 / self._masses).mean()))
+
+    def base(self, velocities: np.ndarray, stored: float, present: float = 0.0) -> float:
+        """The length of an epoch of particles with velocities (N, d) and a `stored` energy besides; a
+        `present` one is kept as by `length`."""
+        length = self.length(self.speed(velocities), present)
+        return min(length, self.length(self._shared(velocities, stored), length))
 
     def flights(self, velocities: np.ndarray, length: float) -> float:
         """How many flights through the container particles with velocities (N, d) make in an epoch of this

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from operator import attrgetter
 
@@ -9,9 +10,9 @@ import numpy as np
 
 from gaspart.engines.belonging import check_parts
 from gaspart.engines.event.clock_epochs import Epochs
-from gaspart.engines.event.model import event_model, event_parts, particles_of
+from gaspart.engines.event.model import event_model, event_parts, particles_of, wrap
 from gaspart.engines.event.search import chosen_search, make_lists, neighbour_lists
-from gaspart.engines.event.stalling import MANY, CollapsePart, check_events, check_progress
+from gaspart.engines.event.stalling import MANY, CollapsePart, check_clocks, check_events, check_progress
 from gaspart.engines.event.tally import EventTally
 from gaspart.engines.event_log import EventLog
 from gaspart.engines.features.part import arrays_of, write_parts
@@ -22,7 +23,6 @@ from gaspart.kernels.event import neighbour_lists as lists
 from gaspart.kernels.event.box_lists import empty_lists
 from gaspart.kernels.event.monitors import Monitors, Record
 from gaspart.kernels.event.queue import EVENT_COUNT, empty_queue
-from gaspart.kernels.model import Space
 from gaspart.kernels.physics.flight import advance_all, restart_clocks
 from gaspart.scene.faces import GRADIENT
 from gaspart.scene.scene import Scene
@@ -61,10 +61,10 @@ class EventDynamics:
         self._model, unit_mass = event_model(scene, state, seed, self._grid, largest)
         self._collapse = CollapsePart(self._model, n)
         self._parts = [*event_parts(scene, state, seed, self._model, unit_mass), self._collapse]
-        self._stress = stress_part(self._flights, self._model, unit_mass) if stress else None
+        self._stress = stress_part(self._flights, self._model, unit_mass, scene, state) if stress else None
         self._parts += [self._stress] if self._stress else []
-        self._epochs = Epochs(scene, sum(part.gained for part in self._parts) if n else 0.0)
-        self._base, self._quiet = self._epochs.length(self._epochs.speed(state.velocities)), 0
+        self._epochs = Epochs(scene, state.masses, sum(part.gained for part in self._parts))
+        self._base, self._quiet = self._base_from(0.0), 0
         epochs, self._clock = divmod(state.time, self._base)
         self._start = epochs * self._base
         for part in self._parts:
@@ -139,6 +139,7 @@ class EventDynamics:
                 if scheduled:
                     self._clock = end
                     if part.happen(self._particles, self._model, self._tally.arrays, self._start):
+                        begun -= self._renew_epoch()
                         self._predict()
                     continue
                 if not ends_epoch:
@@ -177,6 +178,7 @@ class EventDynamics:
 
     def _next_epoch(self) -> None:
         """Start the clocks again from zero, and predict all events anew."""
+        check_clocks(self._start, self._epoch)
         for part in self._parts:
             part.close_epoch(self._epoch)
         restart_clocks(self._flights, self._epoch, self._model.space, self._model.gravity)
@@ -185,10 +187,33 @@ class EventDynamics:
         for part in self._parts:
             part.end_epoch(self._epoch, self._start)
         self._quiet += 1
+        self._base = self._base_from(self._base)
         speed = self._epochs.speed(self._flights["velocity"])
-        self._base = self._epochs.length(speed, self._base)
         self._begin_epoch(self._epochs.quiet(speed, self._base, self._quiet))
         self._predict()
+
+    def _base_from(self, present: float) -> float:
+        """The length of an epoch without the factor of `Epochs.quiet`; `present`: that of the last one."""
+        stored = sum(part.stored for part in self._parts)
+        return self._epochs.base(self._flights["velocity"], stored, present)
+
+    def _renew_epoch(self) -> float:
+        """Let shorter epochs begin if particles, all at the present time, have become so fast: a gas at rest
+        has one without end. Returns by how much later the clocks have been started."""
+        base, time = self._base_from(self._base), self.time
+        if base >= self._base:
+            return 0.0
+        start = math.floor(time / base) * base
+        later = start - self._start
+        for part in self._parts:
+            part.close_epoch(self._clock)
+        restart_clocks(self._flights, self._clock, self._model.space, self._model.gravity)
+        self._base, self._quiet, self._start, self._clock = base, 0, start, time - start
+        self._flights["clock"] = self._clock
+        for part in self._parts:
+            part.end_epoch(later, start)
+        self._begin_epoch(base)
+        return later
 
     def _begin_epoch(self, length: float) -> None:
         """Let the present epoch have this length, and with it all times that are too short for the clocks."""
@@ -236,7 +261,7 @@ class EventDynamics:
             images=self._particles.images.copy(),
         )
         write_parts(self._parts, state, self._clock)
-        _wrap(state.positions, state.images, self._model.space)
+        wrap(state.positions, state.images, self._model.space)
         return state
 
     def _arrays(self) -> dict[str, np.ndarray]:
@@ -279,17 +304,3 @@ class EventDynamics:
         if self._boxes.lists:
             self._make_lists()
         self._begin(anew=False)
-
-
-def _wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
-    """Put particles back that rounding shows beyond a periodic face, which they reach just now."""
-    lengths = np.array(space.lengths)
-    outside = ((positions < 0.0) | (positions >= lengths)) & space.periodic
-    if not outside.any():
-        return
-    beyond = np.nonzero(outside)
-    there, length = positions[beyond], lengths[beyond[1]]
-    crossed = np.where(there < 0.0, -1, 1)
-    there = there - crossed * length
-    positions[beyond] = np.where(there >= length, 0.0, there)
-    images[beyond] += crossed

@@ -76,3 +76,17 @@ def event_parts(
         rest_watch(scene, state),
     )
     return [part for part in parts if part]
+
+
+def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
+    """Put particles back that rounding shows beyond a periodic face, which they reach just now."""
+    lengths = np.array(space.lengths)
+    outside = ((positions < 0.0) | (positions >= lengths)) & space.periodic
+    if not outside.any():
+        return
+    beyond = np.nonzero(outside)
+    there, length = positions[beyond], lengths[beyond[1]]
+    crossed = np.where(there < 0.0, -1, 1)
+    there = there - crossed * length
+    positions[beyond] = np.where(there >= length, 0.0, there)
+    images[beyond] += crossed

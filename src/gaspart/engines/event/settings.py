@@ -47,6 +47,7 @@ class EventDriven(Engine):
     title: ClassVar[str] = "event-driven"
     records_events: ClassVar[bool] = True
     tallies_stress: ClassVar[bool] = True
+    tallies_shear: ClassVar[bool] = True
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     same_bits: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
     first_stretch: ClassVar[int] = 256  # events with crossings and predictions

@@ -39,6 +39,15 @@ def check_progress(time: float, spent: float, epoch: float) -> None:
         )
 
 
+def check_clocks(start: float, epoch: float) -> None:
+    """Raise SimulationError if an `epoch` is so short that the time `start` does not resolve it."""
+    if start + epoch == start:
+        raise SimulationError(
+            f"at time {start:g} particles are so fast that {epoch:g} of time holds a thousand flights over a "
+            "diameter: less than such a time resolves"
+        )
+
+
 def check_events(time: float, quiet: int, flights: float) -> None:
     """Raise SimulationError after too many `quiet` epochs in a row, up to `time`, without an event. flights:
     those through the container in each of them, see `Epochs.flights`."""

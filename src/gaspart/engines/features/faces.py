@@ -13,6 +13,7 @@ from gaspart.engines.features.vibrating import motion_of
 from gaspart.kernels.model import STICKY, Faces, Sliding
 from gaspart.kernels.obstacles.face import RULES
 from gaspart.kernels.physics.running_sum import values
+from gaspart.scene.driving import has_dragged_faces
 from gaspart.scene.faces import FACES, sliding_faces
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
@@ -31,11 +32,13 @@ def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def sliding_velocities(scene: Scene) -> np.ndarray | None:
-    """(2d, d) the velocities of the container's faces, None if none slides."""
+    """(2d, d) the velocities of the container's faces, None if it has no `has_dragged_faces`."""
+    if not has_dragged_faces(scene):
+        return None
     velocities = np.zeros((2 * scene.dimension, scene.dimension))
     for n, face in sliding_faces(scene):
         velocities[n] = face.velocity
-    return velocities if velocities.any() else None
+    return velocities
 
 
 def has_special_faces(scene: Scene) -> bool:
@@ -76,8 +79,8 @@ def face_energy(scene: Scene) -> float:
 
 class FacesPart(Part):
     """Faces with a kind, in units of `unit_mass`: which particles are in a well or stuck, with what energy,
-    how often random numbers were drawn, and what momentum sliding faces were given. lightest: the least mass
-    of a particle."""
+    how often random numbers were drawn, and what momentum faces were given along themselves. lightest: the
+    least mass of a particle."""
 
     def __init__(self, scene: Scene, faces: Faces, unit_mass: float, lightest: float = np.inf) -> None:
         self._shear = faces.sliding.shear if faces.sliding else None
@@ -85,6 +88,11 @@ class FacesPart(Part):
         super().__init__(arrays if self._shear is None else {**arrays, "shear": self._shear})
         self._scene, self._unit_mass = scene, unit_mass
         self.gained = face_energy(scene) / lightest
+
+    @property
+    def stored(self) -> float:
+        """The energy of particles that stick to a face."""
+        return float(self.arrays["held"].sum()) * self._unit_mass
 
     def write(self, state: State, clock: float) -> None:
         """Write the energies in wells, and add those of particles that stick to a face."""
@@ -98,7 +106,7 @@ class FacesPart(Part):
             self._shear[...] = 0.0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """The momentum that sliding faces were given, by the field of `Tally`."""
+        """The momentum that faces were given along themselves, by the field of `Tally`."""
         if self._shear is None:
             return {}
         shear = values(self._shear).reshape(-1, self._scene.dimension) * self._unit_mass

@@ -55,8 +55,18 @@ class LawPart(Part):
 
     def __init__(self, law: ContactLaw) -> None:
         super().__init__({"spins": law.spins})
+        self._inverse_inertia = law.inverse_inertia
         if law.vibrations is not None:
             self.arrays["vibrations"] = law.vibrations
+
+    @property
+    def stored(self) -> float:
+        """The energy of spins and of vibrations."""
+        squares = (self.arrays["spins"] ** 2).sum(axis=1)
+        turning = squares > 0.0  # and so not of smooth particles, whose moment of inertia may be infinite
+        spins = 0.5 * float((squares[turning] / self._inverse_inertia[turning]).sum())
+        vibrations = self.arrays.get("vibrations")
+        return spins + (0.0 if vibrations is None else float(np.maximum(vibrations, 0.0).sum()))
 
     def write(self, state: State, clock: float) -> None:
         """Write the spins, and add the energies of fixed particles that vibrate."""

@@ -47,6 +47,11 @@ class Part:
         return False
 
     @property
+    def stored(self) -> float:
+        """The energy that particles keep in it and that contacts may turn into motion."""
+        return 0.0
+
+    @property
     def given(self) -> float:
         """The energy that it has given by scheduled events since the last `reset`."""
         return 0.0
@@ -64,7 +69,8 @@ class Part:
         its end."""
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Let the clocks count from zero again after an epoch of this `length`, which is the time `start`."""
+        """Let the clocks count from zero again after an epoch of this `length`, which is the time `start`; or
+        from another start, so much later, within an epoch."""
         for times in self._times:
             times -= length
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from gaspart.engines.features.jams import FURTHEST, Jams
 from gaspart.engines.features.part import Part
+from gaspart.scene.driving import driven_axes
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
@@ -86,7 +87,7 @@ class RestWatch(Part):
 
 
 def rest_watch(scene: Scene, state: State) -> RestWatch | None:
-    """That of a scene in which all particles may come to rest: contacts that last, gravity, and no face that
-    gives energy."""
-    falls = scene.gravity is not None and any(scene.gravity)
+    """That of a scene in which all particles may come to rest: contacts that last, gravity that drives no
+    flow, and no face that gives energy."""
+    falls = scene.gravity is not None and not driven_axes(scene)
     return RestWatch(scene, state) if scene.contact_duration > 0.0 and falls and not scene.faces else None

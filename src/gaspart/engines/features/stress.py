@@ -11,6 +11,10 @@ from gaspart.kernels.event.sheared_stress import add_sheared_flights
 from gaspart.kernels.event.stress import Stress, add_flights
 from gaspart.kernels.model import Model
 from gaspart.kernels.physics.running_sum import values
+from gaspart.scene.faces import FLOW, GRADIENT
+from gaspart.scene.scene import Scene
+from gaspart.state.drift import drift_of
+from gaspart.state.state import State
 from gaspart.state.tally import tallied_fluxes
 
 
@@ -18,14 +22,14 @@ class StressPart(Part):
     """What is tallied of them.
 
     sums: those that the kernels add to; flights (N,): the particles, each with a velocity that holds at any
-    time until its next contact.
+    time until its next contact; drift (d,): the velocity of their centre of mass.
     """
 
-    def __init__(self, flights: np.ndarray, model: Model, unit_mass: float) -> None:
+    def __init__(self, flights: np.ndarray, model: Model, unit_mass: float, drift: np.ndarray) -> None:
         self._flights, self._unit_mass = flights, unit_mass
         self._masses = model.space, model.masses, model.law
-        self._dimension = d = len(model.space.lengths)
-        self.sums = Stress(np.zeros((2 * d * d + d, 2)), np.zeros((2, d + 1)))
+        self._drift, d = drift, len(drift)
+        self.sums = Stress(np.zeros((2 * d * d + d, 2)), np.zeros((2, d + 1)), drift.copy())
         super().__init__({"stress": self.sums.sums})
 
     def end_epoch(self, length: float, start: float) -> None:
@@ -45,16 +49,24 @@ class StressPart(Part):
 
     def counts(self, clock: float) -> dict[str, Any]:
         """The sums, by the fields of `Tally`."""
-        return tallied_fluxes(self.read(clock), self._dimension)
+        return tallied_fluxes(self.read(clock), self._drift)
 
 
 class ShearedStressPart(StressPart):
     """The same of a sheared gas, whose velocities relative to the flow change in flight, so that each flight
     counts from its clock on."""
 
-    def __init__(self, flights: np.ndarray, model: Model, unit_mass: float) -> None:
-        super().__init__(flights, model, unit_mass)
+    def __init__(self, flights: np.ndarray, model: Model, unit_mass: float, drift: np.ndarray) -> None:
+        super().__init__(flights, model, unit_mass, drift)
         self._model = model
+
+    def begin_epoch(self, length: float, start: float, model: Model) -> Model:
+        """Set how fast the centre of mass moves about the flow: across it at one speed, and so along it less
+        and less."""
+        assert model.shear is not None  # or there were no such part
+        across = self._drift[GRADIENT]
+        self.sums.drift[FLOW] = self._drift[FLOW] - model.shear.rate * across * start
+        return model
 
     def close_epoch(self, length: float) -> None:
         """Add what the particles have carried until the end of the epoch."""
@@ -75,7 +87,9 @@ class ShearedStressPart(StressPart):
         return values(total.sums) * self._unit_mass
 
 
-def stress_part(flights: np.ndarray, model: Model, unit_mass: float) -> StressPart:
-    """The part for a gas that is sheared or not."""
+def stress_part(
+    flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
+) -> StressPart:
+    """The part for a gas that is sheared or not, which is in this `state` at time 0."""
     kind = StressPart if model.shear is None else ShearedStressPart
-    return kind(flights, model, unit_mass)
+    return kind(flights, model, unit_mass, drift_of(scene, state))

@@ -90,7 +90,7 @@ def rules_for(
     other. space: that of the step engine's kernels."""
     if not needs_rules(scene):
         return None
-    special = special_faces(scene, state, seed, unit_mass=1.0)
+    special = special_faces(scene, state, seed, unit_mass=1.0)._replace(sliding=None)
     model = Model(
         space=space,
         masses=state.masses.astype(engine.precision),

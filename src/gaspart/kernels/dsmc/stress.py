@@ -3,8 +3,9 @@
 The stress sum S (d, d) grows by m v v dt while particles fly, and by r dp at a collision, with r the vector
 from the second particle to the first and dp what that gains. The heat sum Q (d,) grows by E v dt and by r
 times half of the difference of what the two particles gain in energy E, which with spins includes that of
-rotation. A particle's velocity is constant in a step without walls and pull, so nothing is approximated. The
-collisions' part of S is summed by itself too.
+rotation. Velocities v are about that of the centre of mass, which is conserved, so that a gas that moves as a
+whole has the sums of one at rest. A particle's velocity is constant in a step without walls and pull, so
+nothing is approximated. The collisions' part of S is summed by itself too.
 
 The sums of a cell are made by one thread and added as whole numbers, so that they do not depend on threads.
 """
@@ -21,22 +22,30 @@ from gaspart.kernels.physics.running_sum import add_whole
 class Stress(NamedTuple):
     """By thread: sums (threads, 2 d^2 + d, 2), those of S, by rows, of its part from collisions, and of Q;
     cell (threads, 2 d^2 + d), what the present cell adds; before (threads, 2, d + 1), velocity and energy of
-    two particles before they collide. scales (2,): the powers of two that few terms of S and Q exceed."""
+    two particles before they collide. scales (2,): the powers of two that few terms of S and Q exceed; drift
+    (d,): the velocity of the centre of mass."""
 
     sums: np.ndarray
     cell: np.ndarray
     before: np.ndarray
     scales: np.ndarray
+    drift: np.ndarray
 
 
 @inner_helper
-def energy_of(particles, slot, setting, law):
-    """The kinetic energy of the particle in a slot."""
+def velocity_about(particles, slot, axis, stress):
+    """A component of the velocity of the particle in a slot about that of the centre of mass."""
+    return particles.data[velocity_row(particles, axis), slot] - stress.drift[axis]
+
+
+@inner_helper
+def energy_of(particles, slot, setting, stress, law):
+    """The kinetic energy of the particle in a slot, likewise."""
     tools = setting.tools
     kind = kind_in(particles, slot, tools)
     square = 0.0
     for k in range(len(setting.space.lengths)):
-        v = particles.data[velocity_row(particles, k), slot]
+        v = velocity_about(particles, slot, k, stress)
         square += v * v
     energy = 0.5 * tools.mass[kind] * square
     if law is not None:
@@ -52,12 +61,13 @@ def energy_of(particles, slot, setting, law):
 def add_flight(particles, slot, setting, stress, law):
     """Add what the particle in a slot carries in a step."""
     d, tools, cell = len(setting.space.lengths), setting.tools, stress.cell[setting.part]
-    mass, energy = tools.mass[kind_in(particles, slot, tools)], energy_of(particles, slot, setting, law)
+    mass = tools.mass[kind_in(particles, slot, tools)]
+    energy = energy_of(particles, slot, setting, stress, law)
     for k in range(d):
-        way = particles.data[velocity_row(particles, k), slot] * tools.dt
+        way = velocity_about(particles, slot, k, stress) * tools.dt
         cell[2 * d * d + k] += energy * way
         for n in range(d):
-            cell[d * k + n] += way * mass * particles.data[velocity_row(particles, n), slot]
+            cell[d * k + n] += way * mass * velocity_about(particles, slot, n, stress)
 
 
 @inner_helper
@@ -84,8 +94,8 @@ def note_pair(particles, pair, setting, stress, law):
     before, d = stress.before[setting.part], len(setting.space.lengths)
     for n in range(2):
         for k in range(d):
-            before[n, k] = particles.data[velocity_row(particles, k), pair[n]]
-        before[n, d] = energy_of(particles, pair[n], setting, law)
+            before[n, k] = velocity_about(particles, pair[n], k, stress)
+        before[n, d] = energy_of(particles, pair[n], setting, stress, law)
 
 
 @inner_helper
@@ -95,10 +105,10 @@ def add_contact(particles, pair, apart, setting, stress, law):
     before, cell = stress.before[setting.part], stress.cell[setting.part]
     d, tools = len(setting.space.lengths), setting.tools
     mass = tools.mass[kind_in(particles, pair[0], tools)]
-    first = energy_of(particles, pair[0], setting, law) - before[0, d]
-    second = energy_of(particles, pair[1], setting, law) - before[1, d]
+    first = energy_of(particles, pair[0], setting, stress, law) - before[0, d]
+    second = energy_of(particles, pair[1], setting, stress, law) - before[1, d]
     for n in range(d):
-        gained = mass * (particles.data[velocity_row(particles, n), pair[0]] - before[0, n])
+        gained = mass * (velocity_about(particles, pair[0], n, stress) - before[0, n])
         cell[2 * d * d + n] += apart[n] * 0.5 * (first - second)
         for k in range(d):
             cell[d * k + n] += apart[k] * gained

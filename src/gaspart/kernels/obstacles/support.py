@@ -123,7 +123,7 @@ def add_plane(flights, i, normal, row, space, support):
 def lies_on_floor(flights, i, axis, space, gravity, longest):
     """Whether a particle lies on a face of the container along an axis, or bounces there no longer than the
     longest bounce that is taken for rest."""
-    if axis >= len(space.lengths):
+    if axis >= len(space.lengths) or space.periodic[axis]:
         return False
     pull, x = gravity.acceleration[axis], flights[i].position[axis]
     if pull == 0.0 or abs(flights[i].velocity[axis]) > abs(pull) * longest:

@@ -41,7 +41,7 @@ def acceleration_of(flights, i, axis, space, gravity):
     pull = gravity.acceleration[axis]
     if pull == 0.0 or gravity.fixed[i]:
         return 0.0
-    if flights[i].velocity[axis] == 0.0:
+    if flights[i].velocity[axis] == 0.0 and not space.periodic[axis]:
         x = flights[i].position[axis]
         if pull < 0.0 and x <= face_plane(flights, i, axis, False, space):
             return 0.0

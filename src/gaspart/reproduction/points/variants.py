@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.errors import SimulationError
 from gaspart.reproduction.points.point import Point
+from gaspart.scene.driving import driven_axes, has_dragged_faces
 from gaspart.scene.species import LATTICES
 
 if TYPE_CHECKING:
@@ -63,6 +64,8 @@ def features(scene: Scene) -> set[str]:
     names.discard("restitution.contact_duration")
     if scene.contact_duration > 0.0:  # by default under gravity
         names.add("contact_duration")
+    if driven_axes(scene) and has_dragged_faces(scene):
+        names.add("dragged")
     if scene.vibrates:  # by a temperature too
         names.add("vibrates")
     if scene.largest_radius > scene.smallest_radius:

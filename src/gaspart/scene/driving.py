@@ -1,0 +1,70 @@
+"""A uniform force along a periodic axis, which drives a flow: what must take what it gives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gaspart.errors import SceneError
+from gaspart.scene.faces import Thermal, Well, sliding_faces
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
+    from gaspart.scene.walls import Plate, Wall
+
+_MOMENTUM = "fixed particles, interior walls across it, rough contacts with walls, or faces at a temperature"
+_ENERGY = "inelastic contacts, or faces at a temperature"
+
+
+def driven_axes(scene: Scene) -> tuple[int, ...]:
+    """The periodic axes along which a force acts on all particles, and so drives a flow."""
+    pulls = zip(scene.gravity or (), scene.container.periodic, strict=False)
+    return tuple(axis for axis, (pull, periodic) in enumerate(pulls) if pull != 0.0 and periodic)
+
+
+def has_dragged_faces(scene: Scene) -> bool:
+    """Whether the momentum along faces is counted, of those that draw velocities along themselves: where one
+    of them slides, or a force drives the gas along them."""
+    rubs = any(not face.smooth for face in scene.faces.values())
+    return bool(sliding_faces(scene)) or (rubs and bool(driven_axes(scene)))
+
+
+def check_driven(scene: Scene) -> None:
+    """Raise SceneError for a force along a periodic axis if nothing takes the momentum or the energy that it
+    gives."""
+    for axis in driven_axes(scene):
+        for taken, what, by in (
+            (_takes_momentum(scene, axis), "momentum", _MOMENTUM),
+            (_takes_energy(scene), "energy", _ENERGY),
+        ):
+            if not taken:
+                rule = (
+                    f"gives energy without limit along {'xyz'[axis]}, a periodic axis, where nothing takes "
+                    f"the {what}: {by} would"
+                )
+                raise SceneError("gravity", scene.gravity, rule)
+
+
+def _takes_momentum(scene: Scene, axis: int) -> bool:
+    """Whether anything acts on particles along a periodic axis but they themselves."""
+    if any(kind.fixed and kind.count for kind in scene.kinds):
+        return True
+    length = scene.container.lengths[axis]
+    if any(not _spans(wall, axis, length) for wall in scene.walls):
+        return True
+    surfaces = bool(scene.walls) or not all(scene.container.periodic)
+    return (scene.rough and surfaces) or not all(face.smooth for face in scene.faces.values())
+
+
+def _takes_energy(scene: Scene) -> bool:
+    """Whether contacts lose energy, or faces at a temperature exchange it."""
+    if scene.restitution is not None and scene.restitution.dissipative:
+        return True
+    hot = (face for face in scene.faces.values() if isinstance(face, (Thermal, Well)))
+    return any(face.temperature is not None for face in hot)
+
+
+def _spans(wall: Wall | Plate, axis: int, length: float) -> bool:
+    """Whether a wall lies along an axis from end to end, so that no particle meets it across."""
+    first, *others = wall.corners.values()
+    edges = ([b - a for a, b in zip(first, corner, strict=True)] for corner in others)
+    return any(abs(edge[axis]) >= length and not any(edge[:axis] + edge[axis + 1 :]) for edge in edges)

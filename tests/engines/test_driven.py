@@ -1,0 +1,165 @@
+"""A force along a periodic axis: exact flights, bits of all searches, balances, the flow of Poiseuille."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from referee import check_restored, check_searches
+
+import gaspart as gp
+from gaspart import theory
+from gaspart.cli import main
+
+PLATES = {name: gp.Thermal(1.0) for name in ("x_low", "x_high")}
+CHANNEL = gp.Container((6.0, 7.0), ("wall", "periodic"))
+LAW = gp.Restitution(normal=0.9, tangential=0.3)
+
+
+def channel(force=(0.0, 0.3), **rest):
+    """Discs in a channel between plates at a temperature, or what the `rest` of a scene says."""
+    parts = {"container": CHANNEL, "species": [gp.Species(16, 0.5, temperature=1.0)], "faces": PLATES}
+    return gp.Scene(**{**parts, "gravity": force, **rest})
+
+
+ROUGH = channel(restitution=LAW, faces={})
+PERIODIC = gp.Container((8.0, 7.0), "periodic")
+FIXED = [gp.Particle((4.0, 3.5), (0.0, 0.0), 0.5, fixed=True)]
+SCENES = {
+    "plates": channel(),
+    "downwards": channel((0.0, -0.3)),
+    "spheres": channel(
+        (0.0, 0.2, -0.3),
+        container=gp.Container((5.0, 6.0, 4.0), ("wall", "periodic", "periodic")),
+        species=[gp.Species(20, 0.5, temperature=1.0)],
+    ),
+    "rough": ROUGH,
+    "slope": channel((0.2, 0.3), restitution=LAW, faces={}),
+    "from rest": replace(ROUGH, species=[gp.Species(16, 0.5)]),
+    "fixed": channel(container=PERIODIC, faces={}, particles=FIXED, restitution=gp.Restitution(0.8)),
+    "wall": channel(faces={}, walls=[gp.Wall((2.0, 3.0), (4.0, 3.5))], restitution=gp.Restitution(0.8)),
+    "one large": channel(
+        container=gp.Container((20.0, 20.0), ("wall", "periodic")),
+        species=[gp.Species(30, 0.2, temperature=1.0), gp.Species(1, 2.0, mass=9.0, temperature=1.0)],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_all_searches_give_the_same_bits(name):
+    check_searches(SCENES[name], 400, 3, "state.images", "tally.wall_energy")
+
+
+@pytest.mark.parametrize("name", ["plates", "rough"])
+def test_splits_and_checkpoints_change_no_bit(name):
+    kept = ("state.positions", "state.velocities", "state.images", "time")
+    sim = check_restored(SCENES[name], (0.1, 3.0, 40.0, 300.0), *kept)
+    assert sim.tally.collisions > 1000
+    sim.check_invariants()
+
+
+@pytest.mark.parametrize(
+    "engine",
+    [
+        gp.EventDriven(),
+        gp.EventDriven(boxes_per_side=(1, 5)),
+        gp.TimeStepped(time_step=0.125),
+        gp.DSMC(0.125, 1),
+    ],
+    ids=["event", "boxes", "step", "dsmc"],
+)
+@pytest.mark.parametrize("speed", [-4.0, 0.0, 2.0])
+def test_a_particle_falls_from_image_to_image(engine, speed):
+    """Against the force first, through periodic faces, and back; at rest, from a periodic face."""
+    start = 0.0 if speed == 0.0 else 1.0
+    disc = gp.Particle((3.0, start), (0.0, speed), 0.5)
+    sim = gp.Simulation(channel((0.0, 0.5), species=(), particles=[disc]), engine, seed=1)
+    for time in (0.5, 8.0, 16.0, 40.0):
+        sim.advance(until=time)
+        assert sim.state.unwrapped[0, 1] == pytest.approx(start + speed * time + 0.25 * time**2, rel=1e-12)
+        assert sim.state.velocities[0, 1] == pytest.approx(speed + 0.5 * time, rel=1e-12)
+        sim.check_invariants()
+
+
+@pytest.mark.parametrize("engine", [gp.EventDriven(), gp.DSMC(0.05, 2)], ids=["event", "dsmc"])
+def test_plates_take_the_momentum_that_the_force_gives(engine):
+    """Exactly, with what the gas keeps; and in the steady state all of it."""
+    sim = gp.Simulation(channel(), engine, seed=2)
+    before = sim.state.momentum[1]
+    sim.advance(until=400.0)
+    sim.check_invariants()
+    given, taken = 16 * 0.3 * sim.time, sim.tally.wall_shear[:2, 1]
+    assert taken.sum() + sim.state.momentum[1] - before == pytest.approx(given, rel=1e-6)
+    assert taken == pytest.approx([0.5 * given, 0.5 * given], rel=0.1)
+    assert not sim.tally.wall_shear[2:].any()
+
+
+def flow_in_blocks(sim, edges, blocks, samples, interval):
+    """Of discs in a channel (blocks, bins): their number, mean velocity along it, and temperature about
+    it."""
+    found = []
+    for _ in range(blocks):
+        sums = np.zeros((3, len(edges) - 1))
+        for _ in range(samples):
+            sim.advance(duration=interval)
+            state = sim.state
+            for n, weights in enumerate((None, state.velocities[:, 1], (state.velocities**2).sum(axis=1))):
+                sums[n] += np.histogram(state.positions[:, 0], edges, weights=weights)[0]
+        count, mean = sums[0], sums[1] / sums[0]
+        found.append((count / samples, mean, 0.5 * (sums[2] / count - mean**2)))
+    return (np.array(values) for values in zip(*found, strict=True))
+
+
+def test_the_flow_is_a_parabola_with_the_viscosity_of_enskog():
+    """Discs at a packing fraction of 0.27, a mean free path of 0.7 between plates 30 apart: the curvature
+    away from the plates is density times force over viscosity, known to 7 %."""
+    side, force = 30.0, 0.01
+    container = gp.Container((side, side), ("wall", "periodic"))
+    scene = channel((0.0, force), container=container, species=[gp.Species(300, 0.5, temperature=1.0)])
+    sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    sim.advance(until=300.0)
+    edges = np.linspace(0.5, side - 0.5, 13)
+    count, flow, temperature = (part[:, 2:-2] for part in flow_in_blocks(sim, edges, 16, 85, 2.0))
+    middle = 0.5 * (edges[3:-2] + edges[2:-3]) - 0.5 * side
+    bends = np.array([np.polyfit(middle, one, 2)[0] for one in flow])
+    mean, error = bends.mean(), bends.std(ddof=1) / 4.0
+    density = count.mean() / ((edges[1] - edges[0]) * side)
+    viscosity = -0.5 * density * force / mean
+    fraction = 0.25 * math.pi * density
+    expected = float(theory.enskog_viscosity(fraction, 2, temperature=temperature.mean()))
+    assert error < 0.08 * abs(mean)
+    assert abs(viscosity - expected) < 3.0 * viscosity * error / abs(mean)
+    rest = flow.mean(axis=0) - np.polyval(np.polyfit(middle, flow.mean(axis=0), 2), middle)
+    assert (abs(rest) < 3.0 * flow.std(axis=0, ddof=1) / 4.0).all()
+
+
+@pytest.mark.parametrize(
+    ("parts", "lacks"),
+    [
+        ({"faces": {}}, "momentum"),
+        ({"faces": {}, "restitution": gp.Restitution(0.9)}, "momentum"),
+        ({"faces": {"x_low": gp.Thermal(1.0, "normal")}}, "momentum"),
+        ({"faces": {}, "container": PERIODIC, "restitution": LAW}, "momentum"),
+        ({"faces": {}, "walls": [gp.Wall((3.0, 0.0), (3.0, 7.0))]}, "momentum"),
+        ({"faces": {}, "restitution": gp.Restitution(tangential=1.0)}, "energy"),
+        ({"faces": {}, "walls": [gp.Wall((3.0, 0.0), (3.0, 6.0))]}, "energy"),
+        ({"faces": {}, "container": PERIODIC, "particles": FIXED}, "energy"),
+    ],
+)
+def test_what_gains_energy_without_limit_is_refused(parts, lacks):
+    with pytest.raises(gp.SceneError, match=f"gives energy without limit along y.* takes the {lacks}"):
+        channel(**parts)
+
+
+def test_a_run_of_a_driven_gas_is_measured(tmp_path, capsys):
+    channel().to_file(tmp_path / "scene.yaml")
+    path = tmp_path / "run.nc"
+    run = ["run", str(tmp_path / "scene.yaml"), "-o", str(path), "--duration", "60", "--sample-interval", "2"]
+    assert main([*run, "--seed", "1"]) == 0
+    assert main(["check", str(path)]) == 0
+    with gp.open_trajectory(path) as data:
+        shear = data["wall_shear"].values[:, :2, 1]
+    assert (np.diff(shear.sum(axis=1)) != 0.0).all() and shear[-1].sum() > 0.5 * 16 * 0.3 * 60.0
+    pressure = gp.analysis.wall_pressure(path)
+    assert (pressure.estimate.values > 0.0).all()
+    capsys.readouterr()
