@@ -23,3 +23,5 @@ from gaspart.analysis.transport import bulk_viscosity as bulk_viscosity
 from gaspart.analysis.transport import pressure_tensor as pressure_tensor
 from gaspart.analysis.transport import shear_viscosity as shear_viscosity
 from gaspart.analysis.transport import thermal_conductivity as thermal_conductivity
+from gaspart.analysis.wall_fluxes import heat_flux as heat_flux
+from gaspart.analysis.wall_fluxes import wall_shear as wall_shear

@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from gaspart.errors import SceneError
+from gaspart.scene.driving import has_dragged_faces
+from gaspart.scene.faces import thermal_numbers
 from gaspart.scene.gas import plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
@@ -49,6 +51,19 @@ def walled(scene: Scene, selection: Selection) -> None:
     if not scene.container.walls:
         rule = "has no walls: measure compressibility_factor (Z)"
         raise SceneError("container.boundary", scene.container.boundary, rule)
+
+
+def thermal_walls(scene: Scene, selection: Selection) -> None:
+    """A face at a temperature."""
+    if not thermal_numbers(scene):
+        raise SceneError("faces", list(scene.faces), "none is at a temperature, and takes heat")
+
+
+def dragged_walls(scene: Scene, selection: Selection) -> None:
+    """Faces at a temperature that slide, or along which a force drives the gas."""
+    if not has_dragged_faces(scene):
+        rule = "none is at a temperature and slides, or has a force along it: nothing drags them"
+        raise SceneError("faces", list(scene.faces), rule)
 
 
 def elastic(scene: Scene, selection: Selection) -> None:
