@@ -1,6 +1,7 @@
 from gaspart.analysis.combination import replicas as replicas
 from gaspart.analysis.diffusion import diffusion_coefficient as diffusion_coefficient
 from gaspart.analysis.fields import field as field
+from gaspart.analysis.flow_profile import velocity_profile as velocity_profile
 from gaspart.analysis.free_flights import free_flight_times as free_flight_times
 from gaspart.analysis.insertion import chemical_potential as chemical_potential
 from gaspart.analysis.lyapunov import lyapunov_exponent as lyapunov_exponent

@@ -154,6 +154,14 @@ def _in_species(scene: Scene, species: Any) -> int:
     return sum(one.count for one in members if not one.fixed)
 
 
+def has_species(scene: Scene, selection: Selection) -> None:
+    """A particle that is not fixed, of a selected species too."""
+    some_move(scene, selection)
+    species = selection.get("species")
+    if species is not None and not _in_species(scene, species):
+        raise SceneError("species", species, "none of them moves")
+
+
 def free_axis(scene: Scene, selection: Selection) -> None:
     """A periodic axis."""
     if not any(scene.container.periodic):

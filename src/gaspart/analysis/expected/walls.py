@@ -181,8 +181,7 @@ def _sheared(plates: Plates, run: Run) -> tuple[float, float, str] | None:
     at = f"Knudsen number {plates.knudsen:.2g}"
     if plates.knudsen > FREE:
         return free, free * 2.0 * _FIRST / plates.knudsen, f"free flight between plates, {at}"
-    dilute = equation_of(run) == BOLTZMANN or plates.filled < _DILUTE
-    if plates.dimension == 2 or not dilute:
+    if plates.dimension == 2 or not dilute(plates, run):
         return None
     unit = math.sqrt(plates.mass * temperature)
     gap = (plates.length, plates.density, speed, plates.diameter)
@@ -190,8 +189,20 @@ def _sheared(plates: Plates, run: Run) -> tuple[float, float, str] | None:
         stress = unit * float(theory.interpolated_stress(*gap))
         return stress, stress * INTERPOLATED, f"{_between('stress')}, {at}"
     stress = unit * float(theory.slip_flow_stress(*gap))
-    heating = plates.mass * speed**2 / (30.0 * temperature)  # of the middle, by friction, over T
-    return stress, stress * (plates.knudsen**2 + heating), f"Enskog's viscosity with slip, {at}"
+    error = stress * (plates.knudsen**2 + heating_of(plates))
+    return stress, error, f"Enskog's viscosity with slip, {at}"
+
+
+def dilute(plates: Plates, run: Run) -> bool:
+    """Whether the coefficients of a dilute gas are those of the run."""
+    return equation_of(run) == BOLTZMANN or plates.filled < _DILUTE
+
+
+def heating_of(plates: Plates) -> float:
+    """By how much friction warms spheres in the middle between sliding plates, over the temperature: 2/15 m
+    u^2 in units of k_B T, u half the speed."""
+    square = float((plates.slide**2).sum())
+    return plates.mass * square / (30.0 * max(plates.temperatures))
 
 
 def _between(what: str) -> str:
