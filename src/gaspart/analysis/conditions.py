@@ -16,7 +16,7 @@ from gaspart.scene.gas import plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.stress import require_tallied
-from gaspart.scene.validation import choice, count_of
+from gaspart.scene.validation import choice, count_of, number
 
 Selection = Mapping[str, Any]
 GROUPS = 16
@@ -64,6 +64,30 @@ def dragged_walls(scene: Scene, selection: Selection) -> None:
     if not has_dragged_faces(scene):
         rule = "none is at a temperature and slides, or has a force along it: nothing drags them"
         raise SceneError("faces", list(scene.faces), rule)
+
+
+def walled_axis(scene: Scene, selection: Selection) -> None:
+    """A wall at both ends of the selected axis, by default of any, and a plane across it in the container."""
+    axis = walled_axis_of(scene, selection.get("axis"))
+    at = selection.get("at")
+    if at is not None:
+        length = scene.container.lengths[axis]
+        rule = f"must be within the container, from 0 to {length:g}"
+        number("at", at, rule, above=0.0)
+        if not at < length:
+            raise SceneError("at", at, rule)
+
+
+def walled_axis_of(scene: Scene, name: str | None) -> int:
+    """The number of the named axis, by default of the last one with walls. Raises SceneError for one without,
+    and for an unknown one."""
+    has_axis(scene, {"axis": name})
+    walled = [axis for axis, periodic in enumerate(scene.container.periodic) if not periodic]
+    axis = "xyz".index(name) if name is not None else max(walled, default=0)
+    if axis not in walled:
+        rule = "images pass a plane across a periodic axis; the velocity times the density is the flux"
+        raise SceneError("axis", "xyz"[axis], rule)
+    return axis
 
 
 def elastic(scene: Scene, selection: Selection) -> None:

@@ -267,6 +267,18 @@ OBSERVABLES: dict[str, Named] = {
         power=0.5,
         relative_to="norm",
     ),
+    "flux": Named(
+        title="net flux of particles",
+        definition="particles that pass a plane or an opening across an axis per time, net",
+        units="1 / time",
+        function="particle_flux",
+        along=("component",),
+        selections=("axis", "at", "species"),
+        conditions=(where.unsheared, where.walled_axis, where.has_species),
+        theory="flows.flux",
+        power=0.5,
+        relative_to="norm",
+    ),
     "temperature": Named(
         title="temperature",
         definition="temperature along an axis, by default the last",

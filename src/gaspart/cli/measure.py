@@ -73,6 +73,8 @@ def add_measure(parser: Parser) -> None:
     add("--axes", metavar="AXES", help="of the cells of a field, such as xz; default: xy")
     text = "number of cells of a field along each of its axes; default: 20"
     add("--cells", type=several(int), metavar="N[,N...]", help=text)
+    text = "through the plane at this place, by default in the middle: "
+    add("--at", type=real(), metavar="X", help=text + ", ".join(selecting("at")))
     add("-o", "--output", metavar="FILE", help="all rows of one observable as .csv, or a plot as .png")
     add("--force", action="store_true", help="replace a table or a picture")
     usage = parser.format_usage().partition(": ")[2]
