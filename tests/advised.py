@@ -1,9 +1,11 @@
 """Random scenes with an observable and an accuracy, and whether advice on them keeps its promise.
 
-    python tests/advised.py FOLDER FIRST LAST
+    python tests/advised.py FOLDER FIRST LAST [uneven]
 
 judges the scenes from FIRST to before LAST: each result is kept in FOLDER, and none that is there is judged
 again, so that several processes can share the scenes. Without FIRST and LAST it summarises what is there.
+With `uneven` they are those of `uneven`: columns, slits, few particles. The reference of one that keeps the
+energy of its start begins with the same start: by how much others differ, advice states apart.
 """
 
 import json
@@ -16,13 +18,16 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import uneven
 
 import gaspart as gp
 from gaspart.analysis.measuring import measure
 from gaspart.errors import SceneError
+from gaspart.state.initial import initial_state
 from gaspart.tradeoff.advice import advise, is_tabulated
 from gaspart.tradeoff.pilot import speed_of
 from gaspart.tradeoff.plan import plan
+from gaspart.tradeoff.steady import keeps_energy
 from gaspart.tradeoff.target import STRUCTURE, Target
 
 ANYWHERE = ("collision_rate", "speeds", "density", "temperature", "vacf", "msd")
@@ -49,6 +54,9 @@ COARSE |= {"contact_values": 2.0, "vacf": 2.0, "msd": 2.0, "chemical_potential":
 """By how much the accuracies of those that take longer are coarser."""
 PILOT_SECONDS = 1.0
 LONGER = 10
+MOST_SECONDS = 20.0
+"""How many times as long as the advised run the one that judges it is, and its processor time, above which it
+is shorter, down to three times as long."""
 MOST_FRAMES = 2560
 """Of the run that judges, where its frames need not be those of the other one."""
 LEAST_REACHED, COSTS_MORE = 0.93, 1.5
@@ -105,10 +113,13 @@ def scene(number):
     return kind, made, observable, min(accuracy, 0.5)
 
 
-def difference(found, truth):
-    """Relative difference, as the accuracy of a pilot is defined: of the worst face or component by its
-    error, or of the norms of a curve, at the places that both have."""
+def difference(found, truth, face="", places=True):
+    """Relative difference, as the accuracy of a pilot is defined: of a face, of the worst face or component
+    by its error, or of the norms of a curve, at the places that both have, and the pilot."""
     along = found.estimate.dims[-1] if found.estimate.ndim else None
+    if face:
+        mine, exact = (one.estimate.sel({along: face}) for one in (found, truth))
+        return float(abs(mine / exact - 1.0))
     if along == "lag":
         mine, its = found["lag"].values, truth["lag"].values
         near = np.clip(np.searchsorted(its, mine - 1e-6 * its[1]), 0, its.size - 1)
@@ -126,13 +137,13 @@ def difference(found, truth):
     if found[along].dtype.kind in "US":
         worst = int(np.argmax(np.asarray(found.error) / np.abs(value)))
         return float(abs(value.flat[worst] / exact.flat[worst] - 1.0))
-    known = np.isfinite(value) & np.isfinite(exact)
+    known = np.isfinite(value) & np.isfinite(exact) & places
     return float(np.sqrt(np.mean((value - exact)[known] ** 2) / np.mean(exact[known] ** 2)))
 
 
-def judged(number, folder):
+def judged(number, folder, make=scene):
     """What advice promised for a scene and what its run kept, or why there is no advice."""
-    kind, gas, observable, accuracy = scene(number)
+    kind, gas, observable, accuracy = make(number)
     result = {"number": number, "kind": kind, "dimension": gas.dimension, "observable": observable}
     result["accuracy"] = accuracy
     start = time.process_time()
@@ -153,11 +164,13 @@ def judged(number, folder):
 def _kept(number, gas, observable, accuracy, made, folder):
     """What the advised run kept, with its replicas, by one that is longer."""
     recipe, costs = made
-    result = {}
+    observable, _, face = observable.partition(":")
+    result = {"stated": costs["stated"], "promised": costs["promised"]}
     asked = {"duration": recipe.duration}
     if recipe.until:
         asked = {"until": recipe.until.accuracies, "at_most": recipe.until.at_most}
     more = {"correlations": recipe.correlations, "pairs": recipe.pairs}
+    same = {"initial": initial_state(gas, (7, number, 0))} if gas.gravity and keeps_energy(gas) else {}
     paths = [folder / f"advised_{replica}.nc" for replica in range(costs["replicas"])]
     for replica, path in enumerate(paths):
         seed, kept = (7, number, replica), recipe.displacements
@@ -171,19 +184,20 @@ def _kept(number, gas, observable, accuracy, made, folder):
     if len(paths) > 1:
         found = gp.analysis.replicas(observable, paths)
     if "lag" not in found.coords and observable not in STRUCTURE and not recipe.correlations:
-        interval *= math.ceil(LONGER * frames / MOST_FRAMES)
+        interval *= math.ceil(costs["longer"] * frames / MOST_FRAMES)
     path = folder / "longer.nc"
-    longest = round(LONGER * duration / interval) * interval
-    gp.run(gas, gp.EventDriven(), (8, number), longest, interval, path=path, displacements=True, **more)
+    longest = round(costs["longer"] * duration / interval) * interval
+    kept = {"displacements": True, **more, **same}
+    gp.run(gas, gp.EventDriven(), (8, number), longest, interval, path=path, **kept)
     with gp.open_trajectory(path) as data:
         truth = _of_longer(observable, data)
-    off = difference(found, truth)
+    off = difference(found, truth, face, costs.get("places", True))
     if recipe.until and costs["predicted"]:
         result["longer"] = duration / costs["predicted"]
     return result | {
         "engine": recipe.engine.name,
         "off": off,
-        "reached": off <= accuracy,
+        "reached": bool(off <= accuracy),
         "cost": costs["ratio"],
     }
 
@@ -207,7 +221,8 @@ def _advice(gas, observable, accuracy):
     if is_tabulated(gas, observable):
         found = advise(gas, observable, accuracy)
         costs = {"ratio": _table_ratio(gas, found, observable), "predicted": 0.0}
-        return found.recipe, costs | {"replicas": found.replicas}
+        stated = {"stated": found.setting.half_width, "promised": found.within_budget}
+        return found.recipe, costs | stated | {"replicas": found.replicas, "longer": LONGER}
     made = plan(gas, observable, accuracy, pilot_seconds=PILOT_SECONDS)
     near = [one for one in made.options if one.half_width <= accuracy * 1.001]
     near = [one for one in near if one.seconds < 4.0 * made.best.seconds] or [made.best]
@@ -215,7 +230,13 @@ def _advice(gas, observable, accuracy):
         _cost(gas, one.candidate.engine, observable, one.duration) if len(near) > 1 else 1.0 for one in near
     ]
     ratio = again[near.index(made.best)] / min(again)
-    return made.recipe, {"ratio": ratio, "predicted": made.best.duration, "replicas": 1}
+    stated = {"stated": made.best.half_width, "promised": made.affordable}
+    longer = float(np.clip(MOST_SECONDS / made.best.seconds, 3.0, LONGER))
+    costs = {"ratio": ratio, "predicted": made.best.duration, "replicas": 1, "longer": longer}
+    if observable == "temperature" and made.places[0] < made.places[1]:
+        pilot = max((one for one in made.pilots if one.measured), key=lambda one: one.component.places)
+        costs["places"] = np.isfinite(measure(observable, pilot.path).estimate.values)
+    return made.recipe, costs | stated
 
 
 def _table_ratio(gas, found, observable):
@@ -229,10 +250,10 @@ def _table_ratio(gas, found, observable):
 
 def _cost(gas, engine, observable, duration):
     """Processor seconds of a run, by the faster of two measurements of the speed."""
-    return duration * min(speed_of(Target(gas, observable), engine) for _ in range(2))
+    return duration * min(speed_of(Target.named(gas, observable), engine) for _ in range(2))
 
 
-def results(folder, numbers):
+def results(folder, numbers, make=scene):
     """Those of some scenes, kept in a folder or judged now."""
     found = []
     folder.mkdir(parents=True, exist_ok=True)
@@ -241,7 +262,7 @@ def results(folder, numbers):
         if not path.exists():
             with TemporaryDirectory() as place, warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                found_now = judged(number, Path(place))
+                found_now = judged(number, Path(place), make)
             path.write_text(json.dumps(found_now), encoding="utf-8")
         found.append(json.loads(path.read_text(encoding="utf-8")))
         print(found[-1], flush=True)
@@ -258,7 +279,7 @@ def interval(successes, trials):
 if __name__ == "__main__":
     place = Path(sys.argv[1])
     if len(sys.argv) > 2:
-        results(place, range(int(sys.argv[2]), int(sys.argv[3])))
+        results(place, range(int(sys.argv[2]), int(sys.argv[3])), uneven.scene if sys.argv[4:] else scene)
     else:
         found = [json.loads(one.read_text(encoding="utf-8")) for one in sorted(place.glob("*.json"))]
         made = [one for one in found if "reached" in one]

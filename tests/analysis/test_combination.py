@@ -56,7 +56,7 @@ def test_what_are_no_replicas_is_refused(paths, tmp_path):
     refused("must be a list of two runs or more", paths[0])
     with pytest.raises(gp.SceneError, match="must be a list of two runs or more"):
         gp.analysis.replicas("Z", str(paths[0]))
-    refused(r"0\.nc: seed = '0': is that of .*0\.nc too", paths[0], paths[1], paths[0])
+    refused(r"0\.nc: seed = '0': and the first state give .* as .*0\.nc", paths[0], paths[1], paths[0])
     other = gp.run(gas(3, 64, 0.1), gp.EventDriven(), 1, 20.0, 0.25, tmp_path / "other.nc")
     difference = (
         r"other\.nc: scene\.container\.lengths\[0\] = 6\.9.*: is 5\.5.* in .*0\.nc: replicas differ in"
@@ -72,3 +72,44 @@ def test_what_are_no_replicas_is_refused(paths, tmp_path):
     refused("have their values at different places", paths[0], shorter, name="msd")
     refused("unknown observable", *paths[:2], name="ZZ")
     refused("must be trajectories, their paths or simulations", paths[0], 3)
+
+
+def test_runs_of_one_state_are_one_run_whatever_their_seeds(paths, tmp_path):
+    """Nothing is drawn after the start: other seeds give the same bits, of any length."""
+    state = gp.last_state(paths[0])
+    options = {"initial": state}
+    same = [
+        gp.run(GAS, gp.EventDriven(), seed, 8.0 * seed, 0.25, tmp_path / f"same{seed}.nc", **options)
+        for seed in (1, 2)
+    ]
+    with pytest.raises(gp.SceneError, match=r"same2\.nc: seed = '2': .*same run, bit for bit, as .*same1"):
+        gp.analysis.replicas("Z", same)
+    simulations = [gp.Simulation(GAS, gp.EventDriven(), seed, **options) for seed in (1, 2)]
+    for sim in simulations:
+        sim.advance(duration=8.0 * sim.seed)
+    with pytest.raises(gp.SceneError, match=r"run 2: seed = '2': .*same run, bit for bit, as run 1"):
+        gp.analysis.replicas("Z", simulations)
+
+
+def test_runs_of_different_states_may_have_one_seed(paths, tmp_path):
+    starts = [gp.last_state(path) for path in paths[:2]]
+    runs = [
+        gp.run(GAS, gp.EventDriven(), 1, 8.0, 0.25, tmp_path / f"{n}.nc", initial=start)
+        for n, start in enumerate(starts)
+    ]
+    assert gp.analysis.replicas("Z", runs).attrs["freedom"] == 1
+
+
+def test_thermal_walls_make_runs_of_one_state_different(tmp_path):
+    faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(1.0))
+    scene = gp.Scene(
+        gp.Container((12.0, 12.0), ("wall", "periodic")), [gp.Species(40, 0.5, temperature=1.0)], faces=faces
+    )
+    first = gp.run(scene, gp.EventDriven(), 1, 10.0, 0.5, tmp_path / "first.nc")
+    runs = [
+        gp.run(
+            scene, gp.EventDriven(), seed, 20.0, 0.5, tmp_path / f"{seed}.nc", initial=gp.last_state(first)
+        )
+        for seed in (1, 2)
+    ]
+    assert gp.analysis.replicas("collision_rate", runs).attrs["freedom"] == 1

@@ -9,6 +9,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.analysis import bulk
 from gaspart.analysis.expected.equilibrium import compressibility_factor
+from gaspart.analysis.expected.transport import diffusion_in_cube
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.analysis.run import measured
@@ -57,7 +58,7 @@ def test_places_of_points_are_independent(made):
     assert float(waves.estimate.mean()) == pytest.approx(1.0, abs=0.018)
     lattice = -278.0 * math.log(1.0 - 8.0 * DENSE.packing_fraction / 278.0)
     assert float(inserted.theory) == pytest.approx(lattice)
-    assert abs(float(inserted.deviation)) < 3.0
+    assert float(inserted.estimate) == pytest.approx(lattice, abs=0.05)  # seeds scatter by 0.017
 
 
 def test_the_check_of_a_healthy_run_of_dsmc_is_passed(made):
@@ -154,3 +155,13 @@ def test_each_bulk_theory_is_that_of_its_contact_value():
         float(gp.theory.erpenbeck_wood_ratio(0.3)), rel=0.01
     )
     assert math.isnan(bulk.diffusion(Gas(2, 0.3, 100, 1.0, 1.0), bulk.EXACT))
+
+
+def test_d_is_what_its_window_gives():
+    """Until 24 collisions of a particle it does not feel that a container is long, while the limit of D still
+    grows with it: from 0.1940 to 0.1986."""
+    found = []
+    for count in (5000, 50000):
+        side = (count * math.pi / 6.0 / 0.3) ** (1.0 / 3.0)
+        found.append(diffusion_in_cube(Gas(3, 0.3, count, 1.0, 1.0), side, None, None)[0])
+    assert found[0] == pytest.approx(found[1], rel=2e-3) and found[0] < 0.19

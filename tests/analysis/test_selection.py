@@ -71,4 +71,4 @@ def test_the_command_line_selects(path, capsys):
     assert "D = " in capsys.readouterr().out
     assert main(["measure", str(path), "msd", "--particles", "0,1"]) == 0
     assert main(["measure", str(path), "Z", "--species", "1"]) == 2
-    assert "cannot be chosen for Z, only for msd, vacf, D" in capsys.readouterr().err
+    assert "cannot be chosen for Z, only for msd, D, vacf" in capsys.readouterr().err

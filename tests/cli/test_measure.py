@@ -68,8 +68,11 @@ def test_files_of_different_scenes_are_refused_with_the_first_difference(paths, 
     other = gp.run(gas(3, 64, 0.1), gp.EventDriven(), 9, 20.0, 0.25, tmp_path / "other.nc")
     line = refused(capsys, paths[0], str(other), "Z")
     assert line.startswith(f"gaspart: error: {other}: scene.container.lengths[0] = 6.9")
-    assert f" in {paths[0]}: replicas differ in nothing but their seed" in line
-    assert f"{paths[1]}: seed = '2': is that of {paths[1]} too" in refused(capsys, *paths, paths[1], "Z")
+    assert f" in {paths[0]}: replicas differ in nothing but seed and first state" in line
+    line = refused(capsys, *paths, paths[1], "Z")
+    assert (
+        f"{paths[1]}: seed = '2': and the first state give the same run, bit for bit, as {paths[1]}" in line
+    )
 
 
 def test_words_are_sorted_into_files_and_names(paths, capsys):

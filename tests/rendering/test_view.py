@@ -83,7 +83,7 @@ def test_a_wall_that_moves_is_in_every_frame(face):
     for time, wall in zip(data["time"], lines[:, -1], strict=True):
         again.advance(until=time)
         piston = again.state.piston
-        expected = 9.0 - face.place(time) if piston is None else piston[0]
+        expected = 9.0 - float(face.places(time)) if piston is None else piston[0]
         assert wall[:, 0] == pytest.approx([expected] * 2, rel=1e-6)
 
 

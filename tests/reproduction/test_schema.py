@@ -109,7 +109,7 @@ def test_the_schema_of_configs_is_the_one_that_is_checked():
 def test_the_tables_of_the_engines_follow_from_the_keys():
     assert set(keys.ENGINES["event"]) == {"search", "boxes_per_side", "boxes_per_particle"}
     assert {"time_step", "skin", "boxes_per_side"} <= set(keys.ENGINES["step"])
-    whole = {"dimension", "count", "samples", "steps", "attempts", "follow", "lags"}
+    whole = {"dimension", "count", "samples", "steps", "attempts", "follow", "lags", "frames"}
     assert whole | {"replicas", "passes", "threads"} == config_keys.WHOLE
 
 

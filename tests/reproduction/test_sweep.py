@@ -1,9 +1,13 @@
 """`gaspart.sweep`: a grid of runs without a workflow, by the points and jobs of the workflow."""
 
 import json
+import threading
+from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import gaspart as gp
 from gaspart.reproduction.points.points import points
@@ -128,7 +132,7 @@ def test_values_of_a_scene_file_and_of_the_engine_vary(tmp_path):
         ({"replicas": 0}, "replicas = 0"),
         ({"workers": 0}, "workers = 0"),
         ({"equilibration": -1.0}, "equilibration = -1.0: must not be negative"),
-        ({"observables": ["pressure"]}, "pressure of .*periodic"),
+        ({"observables": ["pressure"]}, "observables = 'pressure': cannot be measured: .*has no walls"),
         (
             {"scene": gp.Scene(gp.Container((8.0, 9.0, 8.0)), [gp.Species(60, 0.5)])},
             "over.packing_fraction = .*needs a container with equal sides",
@@ -144,3 +148,171 @@ def test_a_mistake_is_one_line(changed, line, made, tmp_path):
     more = {"replicas": 2} if folder == made[0] else {}
     with pytest.raises(gp.SceneError, match=line):
         swept(folder, **{**more, **changed})
+
+
+BETWEEN_WALLS = gp.Scene(
+    gp.Container((12.0, 12.0)), [gp.Species(20, 0.5, temperature=1.0)], gravity=(0.0, -1.0)
+)  # fmt: skip
+
+
+def test_two_sweeps_in_one_folder_each_run_their_own_scene(tmp_path):
+    """Also where the second one is begun, and complete, while the first runs."""
+    hot = gp.Scene(gp.Container((12.0, 12.0)), [gp.Species(5, 0.5, temperature=25.0)])
+    others = []
+
+    def progress(done, points, name):
+        if done == 1:
+            others.append(swept(tmp_path, {"species.0.mass": [1.0, 2.0]}, ["density"], hot, duration=3.0))
+
+    over = {"gravity": [[0.0, -1.0], [0.0, -2.0]]}
+    data = swept(tmp_path, over, ["density"], BETWEEN_WALLS, progress, duration=3.0)
+    counts = {}
+    for path in tmp_path.rglob("*.nc"):
+        with gp.open_trajectory(path) as trajectory:
+            counts[path.parent.name] = trajectory.attrs["count"]
+    assert counts == {
+        **{f"scene.gravity=0.0x{g}": 20 for g in (-1.0, -2.0)},
+        **{f"scene.species.0.mass={mass}": 5 for mass in (1.0, 2.0)},
+    }
+    assert "count: 20" in data.attrs["scene"] and "count: 5" in others[0].attrs["scene"]
+
+
+def test_sweeps_at_the_same_time_share_their_points(tmp_path):
+    """In two threads, as two processes would: a point is made once, and both have it."""
+    seen = []
+
+    def run():
+        over = {"gravity": [[0.0, -1.0], [0.0, -2.0], [0.0, -3.0]]}
+        seen.append(swept(tmp_path, over, ["density"], BETWEEN_WALLS, duration=20.0))
+
+    threads = [threading.Thread(target=run) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert seen[0].equals(seen[1]) and set(seen[0].failure.values) == {""}
+    assert len(list(tmp_path.rglob("*"))) == 1 + 3 + 3  # points, each with one trajectory, and no lock
+
+
+@pytest.mark.parametrize("mass", [-1.0, 2.0])
+def test_a_file_of_the_user_stays(tmp_path, mass):
+    file = tmp_path / "scene.yaml"
+    file.write_text("# my own\n")
+    with suppress(gp.SceneError):
+        swept(tmp_path, {"species.0.mass": [mass]}, ["density"], BETWEEN_WALLS, duration=1.0)
+    assert file.read_text() == "# my own\n"
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_point_that_cannot_be_made_is_nan_with_the_reason(tmp_path, capfd, workers):
+    """Full by random insertion, and impossible beforehand; the others are those of a sweep without them."""
+    over = {"packing_fraction": [0.05, 0.72], "radius": [0.25, 0.5]}
+    data = swept(tmp_path / "all", over, workers=workers)
+    alone = swept(tmp_path / "one", {"packing_fraction": [0.05], "radius": [0.25, 0.5]})
+    assert data.Z.sel(packing_fraction=0.05).equals(alone.Z.isel(packing_fraction=0))
+    assert np.isnan(data.Z.sel(packing_fraction=0.72)).all()
+    assert np.isnan(data.duration.sel(packing_fraction=0.72)).all()
+    reasons = data.failure.values
+    assert reasons[0].tolist() == ["", ""]
+    assert all("does not fit by random insertion" in reason for reason in reasons[1])
+    complaint = f"points[packing_fraction=0.72,radius=0.5] is NaN: {reasons[1, 1]}"
+    assert complaint in capfd.readouterr().err.splitlines()
+    data.to_netcdf(tmp_path / "table.nc")
+    assert xr.load_dataset(tmp_path / "table.nc").failure.values.tolist() == reasons.tolist()
+
+
+def test_settings_that_no_scene_can_have_fail_alone(tmp_path):
+    data = swept(tmp_path, {"boxes_per_side": [2, 200]}, duration=5.0)
+    assert data.failure.values[1].startswith("boxes_per_side = 200: boxes must not be narrower")
+    assert np.isfinite(data.Z[0]) and np.isnan(data.Z[1])
+
+
+def test_an_observable_that_some_points_lack_is_nan_there(tmp_path, capfd):
+    boundaries = ["periodic", "wall"]
+    data = swept(tmp_path, {"container.boundary": boundaries}, ["Z", "pressure"])
+    assert np.isfinite(data.Z).values.tolist() == [True, False]
+    assert np.isfinite(data.pressure).all("pressure_face").values.tolist() == [False, True]
+    assert "has no walls" in data.failure.values[0] and "needs a periodic" in data.failure.values[1]
+    assert "points[scene.container.boundary=wall]: Z is NaN: Z of" in capfd.readouterr().err
+    axes = swept(tmp_path / "D", {"container.boundary": ["periodic", ["periodic", "wall", "wall"]]}, ["D"],
+                 duration=400.0)  # fmt: skip
+    assert axes.failure.values[1] == "D: has other components than elsewhere"
+    assert np.isfinite(axes.D[0]) and np.isnan(axes.D[1])
+
+
+def test_what_no_point_can_have_is_refused_before_any_is_run(tmp_path):
+    for observables in (["pressure"], ["Z", "mutual_diffusion"], ["shear_viscosity"]):
+        with pytest.raises(gp.SceneError, match=f"observables = '{observables[-1]}': cannot be measured"):
+            swept(tmp_path / "new", {"packing_fraction": [0.05]}, observables)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("values", "coordinate"),
+    [
+        (np.arange(40, 80, 20), [40, 60]),
+        (range(40, 80, 20), [40, 60]),
+        (iter([40, 60]), [40, 60]),
+        (xr.DataArray([40, 60]), [40, 60]),
+        (np.int64(40), [40]),
+        (40, [40]),
+    ],
+)
+def test_values_of_numpy_and_single_ones_are_taken(tmp_path, values, coordinate):
+    data = swept(tmp_path, {"count": values}, "Z", duration=5.0)
+    assert data["count"].values.tolist() == coordinate and data["count"].dtype.kind == "i"
+    assert np.isfinite(data.Z).all()
+
+
+def test_single_precision_is_a_number_and_no_key_is_one_point(tmp_path):
+    data = swept(tmp_path / "a", {"packing_fraction": np.array([0.05], np.float32)}, "Z", duration=5.0)
+    assert data.packing_fraction.values.tolist() == [float(np.float32(0.05))]
+    one = gp.sweep(GAS, {}, "Z", folder=tmp_path / "b", duration=5.0, progress=lambda *_: None)
+    assert one.Z.dims == () and np.isfinite(one.Z)
+    twice = gp.sweep(GAS, {}, ["Z", "Z"], folder=tmp_path / "b", duration=5.0, progress=lambda *_: None)
+    assert twice.equals(one)
+
+
+def test_the_remainder_of_another_sweep_is_replaced_only_if_asked_for(tmp_path):
+    """As of the same name and another scene: of a point that was cut short too."""
+    over = {"species.0.mass": [1.0]}
+    swept(tmp_path, over, ["density"], BETWEEN_WALLS, duration=3.0)
+    folder = tmp_path / "points/scene.species.0.mass=1.0"
+    folder.rename(f"{folder}.partial")
+    other = replace(BETWEEN_WALLS, gravity=(0.0, -2.0))
+    with pytest.raises(gp.SceneError, match=r"points\[scene.species.0.mass=1.0\].path = .*exists"):
+        swept(tmp_path, over, ["density"], other, duration=3.0)
+    swept(tmp_path, over, ["density"], other, duration=3.0, overwrite=True)
+    with gp.open_trajectory(folder / "replica-0.nc") as trajectory:
+        assert gp.Scene.from_dict(parse_yaml(trajectory.attrs["scene"])).gravity == (0.0, -2.0)
+
+
+def test_the_packing_fraction_of_a_polydisperse_species(tmp_path):
+    """Z of Boublik, Mansoori, Carnahan, Starling and Leland with the radii of the scene."""
+    wide = gp.Scene(
+        gp.Container((16.0, 16.0, 16.0), boundary="periodic"),
+        [gp.Species(150, 0.5, polydispersity=0.4, temperature=1.0)],
+    )
+    data = swept(tmp_path, {"packing_fraction": [0.05, 0.15]}, "Z", wide, duration=200.0)
+    diameters = 2.0 * wide.species[0].radii
+    for row, eta in enumerate((0.05, 0.15)):
+        exact = gp.theory.mixture_compressibility_factor(eta, 3, diameters, theory="boublik")
+        assert abs(data.Z[row] - exact) < 3.0 * data.Z_error[row] + 0.01  # 1/150 of Z - 1
+    with gp.open_trajectory(next(tmp_path.rglob("*.nc"))) as trajectory:
+        assert trajectory.attrs["packing_fraction"] in (pytest.approx(0.05), pytest.approx(0.15))
+
+
+def test_transport_coefficients_of_correlations(tmp_path):
+    """Enskog's viscosity, to its accuracy of a few per cent at this density; lags of ten collisions."""
+    stress = gp.Correlations(0.125, 80, stress=True)
+    names = ["shear_viscosity", "thermal_conductivity", "D"]
+    dense = gp.Scene(
+        gp.Container((5.0, 5.0, 5.0), boundary="periodic"),
+        [gp.Species(60, 0.5, temperature=1.0, exact_temperature=True)],
+    )
+    data = swept(tmp_path, {"packing_fraction": [0.2]}, names, dense, duration=1000.0, correlations=stress)
+    with gp.open_trajectory(next(tmp_path.rglob("*.nc"))) as trajectory:
+        assert trajectory.sizes["frame"] == 126 and trajectory.sizes["lag"] == 81  # 8000 samples
+    for name in names[:2]:
+        assert abs(data[name] - data[f"{name}_theory"])[0] < 3.0 * data[f"{name}_error"][0] + 0.05
+    assert np.isfinite(data.D).all()

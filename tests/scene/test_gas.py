@@ -6,7 +6,7 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.scene.gas import Gas
+from gaspart.scene.gas import Gas, plain_gas
 
 BOX = gp.Container((10.0, 8.0), "periodic")
 DISCS = gp.Species(50, 0.3, mass=2.0, temperature=1.5)
@@ -53,3 +53,27 @@ def test_no_species_of_no_particles_and_no_rule_of_walls_changes_it():
     kinds = [DISCS, replace(DISCS, count=0, radius=0.1)]
     changed = replace(scene, species=kinds, centres_to_walls=True, restitution=gp.Restitution())
     assert changed.gas == scene.gas
+
+
+@pytest.mark.parametrize(
+    ("scene", "line"),
+    [
+        (
+            {"species": [gp.Species(9, 0.3, polydispersity=0.2)]},
+            r"species.polydispersity = 0.2: .*without radii that differ",
+        ),
+        (
+            {"species": [gp.Species(9, 0.3), gp.Species(9, 0.4)]},
+            "species = 2: .*their radii or masses differ",
+        ),
+        (
+            {"species": [gp.Species(9, 0.3)], "restitution": gp.Restitution(0.8)},
+            "restitution.normal = 0.8: .*without inelastic",
+        ),
+        ({"species": []}, "count = 0: .*the scene is empty"),
+    ],
+)
+def test_a_scene_that_is_no_plain_gas_is_told_why(scene, line):
+    container = gp.Container((9.0, 9.0, 9.0), boundary="periodic")
+    with pytest.raises(gp.SceneError, match=line):
+        plain_gas(gp.Scene(container, **scene))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
+from gaspart.engines.engine import ENGINES, engine_from_dict, required
 
 DISCS = gp.Scene(gp.Container((12.0, 12.0), "periodic"), [gp.Species(20, 0.5, temperature=1.0)])
 MIXED = gp.Scene(
@@ -105,7 +106,15 @@ def test_settings_that_change_results_are_refused(other):
         gp.Simulation(MIXED, gp.TimeStepped(**{"time_step": 0.01, **other}), 1).restore(begun.checkpoint())
 
 
-@pytest.mark.parametrize("engine", [gp.EventDriven(), gp.EventDriven(search="lists"), *STEPS[:2]])
+def one_of_each():
+    """One of every engine that is known, with what it needs, and others that keep more in a checkpoint."""
+    for name, kind in ENGINES.items():
+        yield engine_from_dict({"name": name, **dict.fromkeys(required(kind), 0.01)})
+    yield from (gp.EventDriven(search="lists"), STEPS[1], gp.DSMC(model="enskog"))
+
+
+@pytest.mark.filterwarnings("ignore:gaspart")
+@pytest.mark.parametrize("engine", list(one_of_each()))
 def test_a_checkpoint_that_lacks_anything_is_refused(engine):
     begun = gp.Simulation(MIXED, engine, 1)
     begun.advance(until=1.0)

@@ -154,7 +154,7 @@ def test_drawn_velocities_add_a_scatter_that_is_stated(exact, scatter):
 @pytest.mark.parametrize(
     ("scene", "observable", "accuracy", "key"),
     [
-        (gas(0.2, restitution=Restitution(normal=0.9)), "Z", 0.01, "species"),
+        (gas(0.2, restitution=Restitution(normal=0.9)), "Z", 0.01, "restitution"),
         (gas(0.2), "viscosity", 0.01, "observable"),
         (gas(0.2), "Z", 0.0, "accuracy"),
         (gas(0.2, dimension=2), "D", 0.01, "observable"),

@@ -11,6 +11,7 @@ from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES, require_defined
 from gaspart.state.initial import initial_state
 from gaspart.tradeoff.candidates import candidates
+from gaspart.tradeoff.conditions import even_conditions
 from gaspart.tradeoff.target import Target
 from gaspart.tradeoff.until import require_measurable
 from gaspart.yaml_text import dump_yaml
@@ -93,7 +94,7 @@ def test_mutual_diffusion_has_the_model_error_of_diffusion():
     scene = gp.Scene(gp.Container((side,) * 3, "periodic"), kinds)
     models = {}
     for name in ("D", "mutual_diffusion"):
-        made, _ = candidates(Target.named(scene, name), 0.1)
+        made, _ = candidates(Target.named(scene, name), 0.1, even_conditions(scene, 1.0))
         models[name] = {one.name: (one.model, one.discretisation) for one in made}
     assert models["D"] == models["mutual_diffusion"]
     assert models["D"]["dsmc enskog"][0] == pytest.approx(0.066, abs=0.003)
@@ -103,6 +104,7 @@ def test_no_advice_is_to_measure_what_a_model_states():
     """Z of a dilute mixture by the Boltzmann model, of which a run says nothing."""
     kinds = [gp.Species(500, 0.5, temperature=1.0, mass=mass) for mass in (1.0, 2.0)]
     scene = gp.Scene(gp.Container((60.0,) * 3, "periodic"), kinds)
-    made, refused = candidates(Target.named(scene, "Z"), 0.1)
-    assert "dsmc" not in {one.name for one in made} and "is 1 in the Boltzmann model" in refused["dsmc"]
-    assert "dsmc" in {one.name for one in candidates(Target.named(scene, "collision_rate"), 0.1)[0]}
+    even = even_conditions(scene, 1.0)
+    made, refused = candidates(Target.named(scene, "Z"), 0.1, even)
+    assert "dsmc" not in {one.name for one in made} and "is 1 of particles without extent" in refused["dsmc"]
+    assert "dsmc" in {one.name for one in candidates(Target.named(scene, "collision_rate"), 0.1, even)[0]}

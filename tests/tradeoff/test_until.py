@@ -1,7 +1,6 @@
 """Runs that end when they are accurate."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +11,8 @@ import gaspart as gp
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.analysis.statistics.blocks import ORDER
+from gaspart.cli.run import accuracy_lines
+from gaspart.tradeoff import reached
 from gaspart.tradeoff.reached import Examiner, Reached, confirmed
 from gaspart.trajectory import recording
 from gaspart.trajectory.partial import partial_path
@@ -103,6 +104,10 @@ def test_without_the_corrections_it_would_cover_less():
 
 
 GAS = gas(3, 32, 0.2)
+TWO_MASSES = gp.Scene(
+    gp.Container((8.0, 8.0, 8.0), boundary="periodic"),
+    [gp.Species(20, 0.5, mass=mass, temperature=1.0) for mass in (1.0, 2.0)],
+)
 ASKED = gp.Accuracy("Z", 0.02), gp.Accuracy("collision_rate", 0.03)
 SETTINGS = {"scene": GAS, "engine": gp.EventDriven("direct"), "seed": 3, "sample_interval": 0.4}
 
@@ -233,7 +238,7 @@ def test_what_no_longer_run_can_measure_ends_it_with_one_line(tmp_path):
         restitution=gp.Restitution(normal=0.5),
     )
     with pytest.raises(gp.SceneError, match="until = 'pressure:y low': particles at rest"):
-        gp.run(scene, gp.EventDriven(), 1, sample_interval=0.1, until=asked, path=path)
+        gp.run(scene, gp.EventDriven(), 1, sample_interval=0.1, until=asked, at_most=99.0, path=path)
     assert not path.exists() and partial_path(path).exists()
 
 
@@ -281,13 +286,16 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
             {"until": gp.Accuracy("shear_viscosity", 0.1)},
             "until = 'shear_viscosity': correlations: needs correlations",
         ),
-        ({"engine": gp.DSMC()}, "until = 'Z': observable: is 1 in the Boltzmann model, whatever happens"),
+        (
+            {"engine": gp.DSMC()},
+            "until = 'Z': observable: is 1 of particles without extent, whatever happens",
+        ),
         (
             {"scene": gas(3, 8, 0.1, fixed=True)},
             "until = 'Z': species.fixed: the virial of fixed particles is not a pressure",
         ),
         (
-            {"scene": replace(GAS, restitution=gp.Restitution(tangential=1.0)), "sample_interval": None},
+            {"scene": TWO_MASSES, "sample_interval": None},
             "sample_interval = None: must be given: the time between collisions",
         ),
     ],
@@ -318,3 +326,63 @@ def test_examinations_are_at_geometrically_spaced_numbers_of_frames():
     assert counts == [64, 96, 128, 192, 256, 384, 512]
     assert [count for count in range(1000) if is_examined(count)] == [*counts, 768]
     assert [examined_before(count) for count in (10, 64, 65, 96, 500)] == [None, None, 64, 64, 384]
+
+
+PERIODIC = gp.Container((8.0, 8.0, 8.0), boundary="periodic")
+SIDE_BY_SIDE = gp.Scene(
+    PERIODIC, [], [gp.Particle((1.0, y, 1.0), (1.0, 0.0, 0.0), 0.5) for y in (1.0, 4.0)]
+)  # fmt: skip
+ALONE = gp.Scene(PERIODIC, [gp.Species(1, 0.5, temperature=1.0)])
+
+
+@pytest.mark.parametrize(
+    ("scene", "name", "rule"),
+    [
+        (ALONE, "Z", "too few moving particles for a temperature"),
+        (ALONE, "collision_rate", "a single particle meets no other"),
+        (gp.Scene(PERIODIC, [gp.Species(60, 0.5)]), "Z", "nothing moves"),
+        (gp.Scene(gp.Container((8.0, 8.0)), [gp.Species(9, 0.5)]), "pressure", "nothing moves"),
+        (gp.Scene(PERIODIC, [gp.Species(60, 0.5, fixed=True)]), "collision_rate", "fixed particles do not"),
+        (gp.Scene(PERIODIC, [gp.Species(8, 0.5, temperature=1.0)]), "D", "needs 16 moving particles"),
+        (
+            gp.Scene(PERIODIC, [gp.Species(60, 0.5, temperature=1.0)], restitution=gp.Restitution(0.8)),
+            "collision_rate",
+            "there is no steady state to measure; give a duration, or a longest one",
+        ),
+    ],
+)
+def test_what_never_becomes_known_is_refused_before_it_is_run(tmp_path, scene, name, rule):
+    asked = gp.Accuracy(name, 0.1)
+    with pytest.raises(gp.SceneError, match=f"until = '{name}': .*{rule}"):
+        gp.run(scene, gp.EventDriven(), 1, sample_interval=1.0, until=asked, path=tmp_path / "run.nc")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_run_without_a_contact_is_given_up(tmp_path, monkeypatch):
+    """Particles side by side, which a longest duration would end."""
+    monkeypatch.setattr(reached, "IDLE", 128)
+    path, asked = tmp_path / "run.nc", gp.Accuracy("collision_rate", 0.1)
+    run = {"engine": gp.EventDriven(), "seed": 1, "until": asked, "sample_interval": 1.0}
+    gp.run(SIDE_BY_SIDE, path=path, **run)
+    with gp.open_trajectory(path) as data:
+        assert data.sizes["frame"] == 128
+    (one,) = gp.reached_accuracy(path)
+    assert not one.met and "none happened" in one.rule
+    assert accuracy_lines(path)[-1].startswith("the run was given up: nothing that could be measured")
+    before = path.stat().st_mtime_ns
+    gp.run(SIDE_BY_SIDE, path=path, **run)  # which is complete
+    assert path.stat().st_mtime_ns == before
+    gp.run(SIDE_BY_SIDE, path=tmp_path / "longer.nc", at_most=200.0, **run)
+    with gp.open_trajectory(tmp_path / "longer.nc") as data:
+        assert data.sizes["frame"] == 201
+
+
+def test_the_pressure_of_walls_that_nothing_hits_is_given_up(tmp_path, monkeypatch):
+    monkeypatch.setattr(reached, "IDLE", 64)
+    scene = gp.Scene(gp.Container((8.0, 8.0)), [], [gp.Particle((1.0, 1.0), (1.0, 0.0), 0.5)])
+    run = {"engine": gp.EventDriven(), "seed": 1, "sample_interval": 16.0}
+    gp.run(scene, path=tmp_path / "y.nc", until=gp.Accuracy("pressure", 0.1, face="y low"), **run)
+    gp.run(scene, path=tmp_path / "x.nc", until=gp.Accuracy("pressure", 0.5, face="x low"), **run)
+    ((y,), (x,)) = (gp.reached_accuracy(tmp_path / f"{axis}.nc") for axis in "yx")
+    assert y.value == 0.0 and not y.met
+    assert x.value == pytest.approx(1.0 / 7.0**2, rel=0.05) and x.met

@@ -100,3 +100,17 @@ def test_what_cannot_be_counted_is_refused(tmp_path, path):
     assert rates["pair"].values.tolist() == ["0-0"] and rates.theory is None
     exact = theory.mixture_compressibility_factor(*many.mixture.sizes)
     assert float(z.theory) == pytest.approx(exact, rel=5e-3)  # and a finite number
+
+
+def test_rates_of_few_particles_are_those_of_their_number(tmp_path):
+    """Each of ten spheres has nine partners of its kind: the rate of an infinite mixture is 11 % higher."""
+    kinds = [gp.Species(10, 0.5, temperature=1.0), gp.Species(10, 0.25, mass=4.0, temperature=1.0)]
+    scene = gp.Scene(gp.Container((12.0,) * 3, "periodic"), kinds)
+    path = gp.run(scene, gp.EventDriven(), 1, 60000.0, 200.0, tmp_path / "run.nc", pairs=True)
+    rates = gp.analysis.pair_collision_rates(path)
+    like, unlike, other = rates.theory.values  # at the temperature of the seed
+    infinite = theory.mixture_collision_rates(*scene.mixture.sizes, masses=scene.mixture.masses)
+    assert like / unlike == pytest.approx(0.9 * infinite[0, 0] / infinite[0, 1], rel=1e-12)
+    assert other / unlike == pytest.approx(0.9 * infinite[1, 1] / infinite[0, 1], rel=1e-12)
+    assert (rates.error / rates.estimate < 0.03).all()
+    assert (abs(rates.estimate - rates.theory) < 3.0 * rates.error).all()

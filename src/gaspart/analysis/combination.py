@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -32,14 +33,15 @@ def replicas(
 ) -> Observable:
     """An observable, by its name as of `gaspart measure`, as the mean over independent runs of one scene.
 
-    sources: at least two trajectories, by their paths or open, or simulations, with different seeds; start
-    and `selection` as of the observable's function; end: the time until which frames count, by default all.
-    The uncertainty is that of the mean by the scatter of the runs, which needs no assumption about
-    correlations within a run, with one degree of freedom less than there are runs (`freedom`). The variable
-    with the suffix _replicas has the value of each (replica, ...). Theory is the mean of theirs.
+    sources: at least two trajectories, by their paths or open, or simulations, of different seeds or initial
+    states; start and `selection` as of the observable's function; end: the time until which frames count, by
+    default all. The uncertainty is that of the mean by the scatter of the runs, which needs no assumption
+    about correlations within a run, with one degree of freedom less than there are runs (`freedom`). The
+    variable with the suffix _replicas has the value of each (replica, ...). Theory is the mean of theirs.
 
     Raises SceneError for fewer than two runs, runs of different scenes or engines, with the first difference,
-    two of the same seed, curves at different places, and as the observable's function does.
+    two that are the same bit for bit (of one initial state and one seed, or of one initial state in a scene
+    that draws nothing afterwards), curves at different places, and as the observable's function does.
     """
     if isinstance(sources, str | Path | Simulation | xr.Dataset) or len(sources) < 2:
         raise SceneError("sources", sources, "must be a list of two runs or more")
@@ -56,34 +58,76 @@ def replicas(
 
 @dataclass(frozen=True)
 class _Recipe:
-    """What a run was made from. name: of the run, for its user; settings: its scene and engine."""
+    """What a run was made from, and what it has become. name: of the run, for its user; settings: its scene
+    and engine; seed; times: of its states, all until the last one if `every`; state: the bits of that at a
+    time, as a file has them."""
 
     name: str
     settings: dict[str, Any]
     seed: str
+    times: np.ndarray
+    every: bool
+    state: Callable[[float], bytes]
 
 
 def _recipe(run: Any, name: str) -> _Recipe:
     """The recipe of an open trajectory or a simulation."""
     if isinstance(run, Simulation):
         settings = {"scene": run.scene.to_dict(), "engine": engine_to_dict(run.engine)}
-        return _Recipe(name, settings, str(run.seed))
+        times = np.array([0.0, run.time])
+        return _Recipe(name, settings, str(run.seed), times, True, partial(_simulated, run))
     if not isinstance(run, xr.Dataset) or not {"scene", "engine", "seed"} <= set(run.attrs):
         raise SceneError("sources", type(run).__name__, "must be trajectories, their paths or simulations")
     settings = {"scene": parse_yaml(run.attrs["scene"]), "engine": json.loads(run.attrs["engine"])}
-    return _Recipe(name, settings, str(run.attrs["seed"]))
+    frames = {one: run[one].values for one in ("time", "coordinates", "velocities")}
+    stored = partial(_stored, frames)
+    return _Recipe(name, settings, str(run.attrs["seed"]), frames["time"], False, stored)
+
+
+def _stored(frames: dict[str, np.ndarray], time: float) -> bytes:
+    """The state of a trajectory in the frame at a time."""
+    number = int(np.searchsorted(frames["time"], time))
+    return _bits(frames["coordinates"][number], frames["velocities"][number])
+
+
+def _simulated(simulation: Simulation, time: float) -> bytes:
+    """The state of a simulation at a time until the present one, for which it is run again."""
+    if time < simulation.time:
+        simulation = simulation.again()
+        simulation.advance(until=time)
+    return _bits(simulation.state.positions, simulation.state.velocities)
+
+
+def _bits(positions: np.ndarray, velocities: np.ndarray) -> bytes:
+    """Of positions and velocities (N, d), in single precision."""
+    return np.stack([positions, velocities]).astype(np.float32).tobytes()
 
 
 def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
-    """Raise SceneError unless a run is a replica of others: the same but for the seed."""
+    """Raise SceneError unless a run is a replica of others: the same but for the seed or the first state."""
     for other in others:
         if difference := _difference(recipe.settings, other.settings):
             key, one, two = difference
-            rule = f"is {shown(two)} in {other.name}: replicas differ in nothing but their seed"
+            rule = f"is {shown(two)} in {other.name}: replicas differ in nothing but seed and first state"
             raise SceneError(key, one, rule, recipe.name)
-        if recipe.seed == other.seed:
-            rule = f"is that of {other.name} too: two runs which are the same have no scatter"
+        time = _last_common(recipe, other)
+        if time is None or recipe.state(0.0) != other.state(0.0):
+            continue
+        if recipe.seed == other.seed if time == 0.0 else recipe.state(time) == other.state(time):
+            rule = f"and the first state give the same run, bit for bit, as {other.name}: no scatter"
             raise SceneError("seed", recipe.seed, rule, recipe.name)
+
+
+def _last_common(one: _Recipe, other: _Recipe) -> float | None:
+    """The last time at which both have a state; None if they have not even the first one."""
+    if one.every and other.every:
+        return float(min(one.times[-1], other.times[-1]))
+    if one.every or other.every:
+        stored, end = (other, one.times[-1]) if one.every else (one, other.times[-1])
+        common = stored.times[stored.times <= end]
+    else:
+        common = np.intersect1d(one.times, other.times)
+    return float(common[-1]) if common.size and common[0] == 0.0 else None
 
 
 def _difference(one: Any, two: Any, key: str = "") -> tuple[str, Any, Any] | None:

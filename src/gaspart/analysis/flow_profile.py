@@ -6,6 +6,7 @@ from gaspart.analysis.expected.described import described
 from gaspart.analysis.fields import field
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
+from gaspart.analysis.profiles import Means, with_freedom
 from gaspart.analysis.run import Source, measured
 
 
@@ -39,4 +40,5 @@ def velocity_profile(
             "position": (places, {"units": "length", "long_name": name}),
         }
         about = described("velocity", run, "xyz".index(name), places)
-        return observable("velocity", along, found.estimate.values, found.error.values, **about)
+        means = Means(found.estimate.values, found.error.values, found["velocity_freedom"].values)
+        return with_freedom(observable("velocity", along, means.values, means.errors, **about), means)

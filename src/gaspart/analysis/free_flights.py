@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis.bins import Grid
 from gaspart.analysis.collisions import pair_rows
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.statistics import means_of
@@ -60,11 +61,12 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     ]
     group = (flights["particles"].values % GROUPS)[chosen]
     members = [(times[chosen][group == n], paths[chosen][group == n]) for n in range(GROUPS)]
-    edges = np.linspace(0.0, _LONGEST * mean, count_of("bins", bins, least=2) + 1)
-    width = edges[1]
-    values, errors = means_of([np.histogram(time, edges)[0] / width / len(time) for time, _ in members])
+    grid = Grid.line(0.0, _LONGEST * mean, count_of("bins", bins, least=2))
+    (edges,), (middle,) = grid.edges, grid.middles
+    values, errors = means_of(
+        [grid.sums(grid.cells(time[:, None])) / grid.volume / len(time) for time, _ in members]
+    )
     means, scatter = means_of([(time.mean(), path.mean()) for time, path in members])
-    middle = 0.5 * (edges[1:] + edges[:-1])
     about: dict[str, Any] = {"units": "1 / time", "long_name": "probability density of free times"}
     along = {"free_time": (middle, {"units": "time", "long_name": "time between collisions"})}
     expected = _theory(simulation, edges)
@@ -84,10 +86,7 @@ def _theory(simulation: Simulation, edges: np.ndarray) -> tuple[np.ndarray, tupl
     gas, state = simulation.scene.gas, simulation.state
     if gas is None or gas.packing_fraction > theory.HIGHEST_PACKING_FRACTION[gas.dimension]:
         return None
-    momentum = state.momentum
-    total = gas.mass * gas.count
-    energy = state.translational_energy - 0.5 * float((momentum**2).sum()) / total
-    temperature = 2.0 * energy / (gas.dimension * (gas.count - 1))
+    temperature = state.temperature
     settings = {**gas.parameters, "temperature": temperature}
     inner = np.linspace(edges[:-1], edges[1:], 5)  # Boole's rule
     weights = np.array([7.0, 32.0, 12.0, 32.0, 7.0]) / 90.0

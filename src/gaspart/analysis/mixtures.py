@@ -23,7 +23,9 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
 
     source: a trajectory of a run with `pairs`, by its path or open, or a simulation, which is run again;
     start: the time from which frames count (by default a quarter of the run). Theory: exact but for the
-    contact values. Raises SceneError for single particles, too few frames, and a run without `pairs`.
+    contact values, which are those of an infinite mixture; a particle of N_i has N_i - 1 partners of its own
+    species, and the mean speed is that of a finite number at fixed energy. Raises SceneError for single
+    particles, too few frames, and a run without `pairs`.
     """
     with measured(source, start, pairs=True) as run:
         require_defined("pair_rates", run.scene)

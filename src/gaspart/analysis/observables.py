@@ -44,7 +44,7 @@ OBSERVABLES: dict[str, Named] = {
         units="1",
         function="compressibility_factor",
         conditions=(where.unsheared, where.periodic_virial, where.elastic, where.all_move, where.thermal),
-        nothing={"boltzmann": "is 1 in the Boltzmann model, whatever happens"},
+        nothing={"boltzmann": "is 1 of particles without extent, whatever happens"},
         theory="equilibrium.compressibility_factor",
         bulk="compressibility_factor",
         source="{state}",
@@ -313,7 +313,7 @@ OBSERVABLES: dict[str, Named] = {
         units="mass length^(2-d) / time",
         function="bulk_viscosity",
         conditions=(where.unsheared, where.tallied),
-        nothing={"boltzmann": "is 0 in the Boltzmann model, whose contacts have no extent"},
+        nothing={"boltzmann": "is 0 of particles without extent; a run shows that of its cells"},
         theory="transport.bulk_viscosity",
         bulk="bulk_viscosity",
         source="Enskog's theory, with g(sigma) from: {state}",
@@ -359,11 +359,15 @@ OBSERVABLES: dict[str, Named] = {
 """By name, as on the command line, in a sweep and in a config."""
 
 
+TOO_SHORT = ("frames", "duration", "collisions", "start", "D")
+"""Keys of the errors of an analysis that a longer run may not have."""
+
+
 def known(name: object) -> str:
     """The name of an observable. Raises SceneError for any other value."""
-    if name not in OBSERVABLES:
+    if not isinstance(name, str) or name not in OBSERVABLES:
         raise SceneError("observable", name, unknown_word(name, OBSERVABLES, "observable"))
-    return str(name)
+    return name
 
 
 def having(**traits: Any) -> tuple[str, ...]:

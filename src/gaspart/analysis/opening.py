@@ -8,6 +8,7 @@ from gaspart.analysis.conditions import walled_axis_of
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
 from gaspart.analysis.observables import require_defined
+from gaspart.analysis.profiles import Means, with_freedom
 from gaspart.analysis.run import Source, measured, selected
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
@@ -45,4 +46,5 @@ def particle_flux(
         found = correlated_mean(np.diff(beyond) / np.diff(run.time), LEAST_INTERVALS).estimate
         along = {"component": (np.array(["xyz"[number]]), {"long_name": "axis"})}
         about = described("flux", run, number, place, members, beyond)
-        return observable("flux", along, np.array([found.value]), np.array([found.error]), **about)
+        means = Means(*(np.array([each]) for each in (found.value, found.error, found.freedom)))
+        return with_freedom(observable("flux", along, means.values, means.errors, **about), means)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from gaspart.analysis import series
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.observables import require_defined
+from gaspart.analysis.room import mean_areas, touched
 from gaspart.analysis.run import Run, Source, measured, require_collisions
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
@@ -29,14 +31,13 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
     with measured(source, start) as run:
         require_defined("Z", run.scene)
         require_collisions(run)
-        scale = run.dimension * run.count * run.temperature
-        z = 1.0 + run.increments("virial_sum") / (scale * np.diff(run.time))
-        return scalar("compressibility_factor", z, run.time, **described("Z", run))
+        return scalar("compressibility_factor", series.compressibility(run), run.time, **described("Z", run))
 
 
 def wall_pressure(source: Source, start: float | None = None) -> Observable:
     """Pressure on each face of the container that is a wall, (face,): the momentum given to it per time and
-    per area that centres can touch.
+    per area that centres can touch at that time, between faces where they are: beside a piston or a vibrating
+    floor the area changes.
 
     Contacts of particles at rest are no events: they press a floor with what gravity gives the particles and
     no event takes (`_rest_on_floors`). Their thrust on side walls is not known: NaN while particles rest.
@@ -51,14 +52,14 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
         if blocks < 4:
             raise SceneError("frames", len(run.time), "an error needs 5 or more")
         ends = np.linspace(0, len(run.time) - 1, blocks + 1).astype(int)
-        faces, series = pressures_on_walls(run, ends)
-        values, errors = means_of(series - series[0])  # no error of rounding at rest
+        faces, found = pressures_on_walls(run, ends)
+        values, errors = means_of(found - found[0])  # no error of rounding at rest
         return observable(
             "wall_pressure",
             {"face": (faces, {"long_name": "face of the container"})},
-            values + series[0],
+            values + found[0],
             errors,
-            **described("pressure", run, _touched(run)),
+            **described("pressure", run, touched(run, run.time[:1])[0]),
         )
 
 
@@ -66,12 +67,13 @@ def pressures_on_walls(run: Run, ends: np.ndarray) -> tuple[np.ndarray, np.ndarr
     """Names (W,) of the faces that are walls, and the pressures on them (K, W) between the frames `ends`
     (K + 1,). Raises SceneError as `wall_pressure`."""
     require_defined("pressure", run.scene)
-    d, touched = run.dimension, _touched(run)
-    areas = np.repeat(touched.prod() / touched, 2)
-    impulse = np.diff(run.data["wall_impulse"].values[ends, : 2 * d], axis=0)
-    series = (np.abs(impulse) + _rest_on_floors(run, ends)) / np.diff(run.time[ends])[:, None] / areas
+    d, time = run.dimension, np.diff(run.time)[:, None]
+    pressed = np.abs(series.over(series.face_pressures(run) * time, ends))
+    areas = np.repeat(mean_areas(run), 2, axis=1)
+    resting = _rest_on_floors(run, ends) * series.over(time / areas, ends) / series.over(time, ends)
     chosen = np.repeat(~run.periodic, 2)
-    return np.array(face_names(d))[chosen], series[:, chosen]
+    pressures = (pressed + resting) / series.over(time, ends)
+    return np.array(face_names(d))[chosen], pressures[:, chosen]
 
 
 def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
@@ -113,12 +115,6 @@ def refuse_rest(run: Run, rule: str) -> None:
             raise SceneError("particles at rest", int(resting), rule)
 
 
-def _touched(run: Run) -> np.ndarray:
-    """(d,) sides of the volume that centres of the largest particles can reach."""
-    lower, upper = run.scene.reach(run.scene.largest_radius)
-    return np.subtract(upper, lower)
-
-
 def collision_rate(source: Source, start: float | None = None) -> Observable:
     """Collisions of one particle per time, 2 M / (N t) for M collisions of pairs; fixed particles do not
     count in N.
@@ -131,5 +127,5 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
         require_defined("collision_rate", run.scene)
         refuse_rest(run, "touch others without a collision, so that there is no rate")
         require_collisions(run)
-        rate = 2.0 * run.increments("collisions") / (run.moving.sum() * np.diff(run.time))
-        return scalar("collision_rate", rate, run.time, **described("collision_rate", run))
+        about = described("collision_rate", run)
+        return scalar("collision_rate", series.collision_rate(run), run.time, **about)

@@ -15,11 +15,12 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.conditions import SLIDING
+from gaspart.analysis.flow import Peculiar, about_the_flow, flow_axes
 from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, Mixture
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import flow, refuse_sheared
+from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_particle
@@ -127,33 +128,73 @@ class Run:
         return np.array(self.scene.conserved_axes)
 
     @cached_property
-    def peculiar(self) -> np.ndarray:
-        """(T, M, d) velocities of the M moving particles about the centre of mass's, where that is
-        conserved, and about the flow of a sheared gas."""
-        velocities, masses = self.velocities[:, self.moving], self.masses[self.moving]
-        if self.scene.shear_rate is not None:
-            velocities = velocities - flow(self.scene, self.positions[:, self.moving])
-        drift = np.einsum("tnd,n->td", velocities, masses) / (masses.sum() or 1.0)  # of none: nothing
-        return velocities - np.where(self.conserved, drift, 0.0)[:, None]
+    def motion(self) -> Peculiar:
+        """Of the moving particles about the local flow where the gas flows, otherwise about the velocity of
+        their centre of mass, where that is conserved (see `flow`)."""
+        return about_the_flow(self)
+
+    @cached_property
+    def flow_axes(self) -> list[int]:
+        """The axes along which the velocity of the gas may vary (see `flow.flow_axes`)."""
+        return flow_axes(self)
 
     @property
-    def freedom(self) -> int:
-        """Degrees of freedom of flight. Raises SceneError if there is none, as of one particle in a periodic
-        container."""
-        freedom = self.dimension * int(self.moving.sum()) - int(self.conserved.sum())
+    def peculiar(self) -> np.ndarray:
+        """(T, M, d) the velocities of `motion`."""
+        return self.motion.velocities
+
+    @cached_property
+    def freedoms(self) -> np.ndarray:
+        """(T,) degrees of freedom of flight of each frame. Raises SceneError if there is none, as of one
+        particle in a periodic container."""
+        moving = int(self.moving.sum())
+        found = np.full(len(self.time), self.dimension * moving - int(self.conserved.sum()), dtype=float)
+        if self.flow_axes:
+            found = self.motion.freedoms().sum(axis=1)
+        if not found.min() >= 1.0:
+            raise SceneError("count", moving, "too few moving particles for a temperature")
+        return found
+
+    @property
+    def freedom(self) -> float:
+        """Their mean: a whole number unless the gas flows."""
+        return float(self.freedoms.mean())
+
+    @cached_property
+    def temperatures(self) -> np.ndarray:
+        """(T,) k_B T of each frame: twice the kinetic energy of flight about the mean motion (see `motion`)
+        per degree of freedom; 0 if it is only rounding of the velocity of the centre of mass. Of a file that
+        lacks particles, see `_of_all`. Raises SceneError as `freedoms`."""
+        if self.followed and "stress_sum" in self.data:
+            return self._of_all
+        masses, scene = self.masses[self.moving], self.scene
+        if self.flow_axes or scene.rough or scene.thermostat or scene.shear_rate is not None:
+            energies = self.motion.energies(masses).sum(axis=1)
+            whole = np.einsum("tnd,tnd,n->t", *[self.velocities[:, self.moving]] * 2, masses)
+        else:  # the energy is in double precision, and the momentum that of any frame
+            whole = 2.0 * self.data["kinetic_energy"].values
+            first = self.data["velocities"][0].values[self.moving].astype(float)
+            momentum = np.where(self.conserved, masses @ first, 0.0)
+            energies = whole - (momentum @ momentum) / (masses.sum() or 1.0)
+        moves = energies.mean() > _AT_REST * whole.mean()
+        return np.asarray(energies / self.freedoms) if moves else np.zeros(len(self.time))
+
+    @property
+    def _of_all(self) -> np.ndarray:
+        """(T,) k_B T of each frame of a run with the tally of the stress, whichever particles are in the
+        file: from the energy of all, of flight and spin, about the centre of mass."""
+        d, count = self.dimension, self.count
+        freedom = d * (count - 1) + self.scene.rough * count * (d * (d - 1) // 2)
         if freedom < 1:
-            raise SceneError("count", int(self.moving.sum()), "too few moving particles for a temperature")
-        return freedom
+            raise SceneError("count", count, "too few moving particles for a temperature")
+        drift = self.data["flux_velocity"].values[-1] if "flux_velocity" in self.data else np.zeros(d)
+        whole = self.masses.sum() * (drift @ drift)
+        return np.asarray((2.0 * self.data["kinetic_energy"].values - whole) / freedom)
 
     @cached_property
     def temperature(self) -> float:
-        """k_B T: twice the mean kinetic energy of flight per degree of freedom; 0 if it is only rounding of
-        the velocity of the centre of mass. Raises SceneError as `freedom`."""
-        freedom, masses = self.freedom, self.masses[self.moving]
-        velocities = self.velocities[:, self.moving]
-        energy = 0.5 * np.einsum("tnd,tnd,n->t", self.peculiar, self.peculiar, masses)
-        whole = 0.5 * np.einsum("tnd,tnd,n->t", velocities, velocities, masses)
-        return float(2.0 * energy.mean() / freedom) if energy.mean() > _AT_REST * whole.mean() else 0.0
+        """k_B T, the mean of `temperatures`."""
+        return float(self.temperatures.mean())
 
     @property
     def falls(self) -> bool:
@@ -288,6 +329,7 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
             counter.take()
             extra["pair_collisions"] = counter.counts.copy()
         row = {**vars(tally), **places, "velocities": state.velocities, **extra, "time": again.time}
+        row["kinetic_energy"] = state.kinetic_energy
         rows.append({name: value for name, value in row.items() if value is not None})
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]

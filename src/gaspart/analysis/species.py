@@ -31,8 +31,9 @@ def by_species(source: Source, start: float | None = None) -> xr.Dataset:
       species. NaN where a species cannot have one, such as a D between walls, for the reason in the attribute
       `not_measured`, and where it has fewer lags than others.
 
-    Along axes on which the total momentum is conserved velocities are those about the centre of mass. There
-    the mean square of a particle of mass m is 1 - m / M of that without this condition, M the mass of all
+    Velocities are those about the local flow where the gas flows, otherwise about the centre of mass along
+    axes on which the total momentum is conserved (see `gaspart.analysis.flow`). There the mean square of a
+    particle of mass m is 1 - m / M of that without this condition, M the mass of all whose mean is taken off
     (exact in equilibrium), for which temperatures and speeds are corrected. `to_dataframe` of the variables
     without lags is a table with a row for each species.
 
@@ -69,21 +70,23 @@ def _of_motion() -> tuple[str, ...]:
 def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
     """The temperature and the mean speed of the moving particles of a species."""
     chosen, masses = selected(run, kind, None), run.masses[run.moving]
-    part = masses[chosen] / masses.sum()
-    free = np.where(run.conserved, 1.0 - part[:, None], 1.0)  # (n, d) degrees of freedom of each particle
-    if not free.sum(axis=1).all():
+    shape = run.motion.velocities.shape
+    velocities = run.motion.velocities[:, chosen]
+    free = np.broadcast_to(run.motion.freedom, shape)[:, chosen]
+    if not free.any():
         raise SceneError("count", len(masses), "a single particle keeps its velocity")
-    velocities = run.peculiar[:, chosen]
-    energies = np.einsum("tnd,tnd,n->t", velocities, velocities, masses[chosen]) / free.sum()
-    with np.errstate(divide="ignore", invalid="ignore"):
-        squares = np.where(free > 0.0, velocities**2 / free, 0.0).sum(axis=2)
+    energies = np.einsum("tnd,tnd,n->t", velocities, velocities, masses[chosen])
+    energies /= free.sum(axis=(1, 2)).mean()
+    known = (free > 0.0).all(axis=2)  # not alone in its cell of a flow
+    squares = np.divide(velocities**2, free, out=np.zeros(free.shape), where=free > 0.0).sum(axis=2)
+    speeds = (np.sqrt(squares) * known).sum(axis=1) / known.sum(axis=1).mean()
     edges = np.append(run.time, 2.0 * run.time[-1] - run.time[-2])
     about: dict[str, Any] = {"units": "energy", "long_name": "temperature"}
     temperature = scalar("temperature", energies, edges, **about)
     about = {"units": "length / time", "long_name": "mean speed"}
     return {
         "temperature": temperature,
-        "mean_speed": scalar("mean_speed", np.sqrt(squares).mean(axis=1), edges, **about),
+        "mean_speed": scalar("mean_speed", speeds, edges, **about),
     }
 
 

@@ -21,7 +21,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.expected.described import described
-from gaspart.analysis.observable import Observable, observable, scalar
+from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import KEPT, require_defined
 from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import correlated_mean, means_of
@@ -85,6 +85,8 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     with measured(source, start, sheared=True) as run:
         require_defined("pressure_tensor", run.scene)
         _stored(run)
+        if len(run.time) <= LEAST_INTERVALS:
+            raise SceneError("frames", len(run.time), f"an error needs {LEAST_INTERVALS + 1} or more")
         d, volume = run.dimension, math.prod(run.scene.container.lengths)
         rates = run.increments("stress_sum") / (volume * np.diff(run.time))[:, None, None]
         series = rates.reshape(len(rates), d * d).T
@@ -95,7 +97,7 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
             {"component": (names, {"long_name": "component"})},
             np.array([mean.value for mean in means]),
             np.array([mean.error for mean in means]),
-            **described("pressure_tensor", run, _temperature(run)),
+            **described("pressure_tensor", run, run.temperature),
         )
 
 
@@ -129,18 +131,6 @@ def _initial(run: Run) -> State:
     return state
 
 
-def _temperature(run: Run) -> float:
-    """k_B T, from the energy of all particles about their centre of mass, whichever are in the file."""
-    d = run.dimension
-    freedom = d * (run.count - 1) + run.scene.rough * run.count * (d * (d - 1) // 2)
-    if freedom < 1:
-        raise SceneError("count", run.count, "too few moving particles for a temperature")
-    energy = float(run.data["kinetic_energy"].mean())
-    if "flux_velocity" in run.data:
-        energy -= 0.5 * float(run.masses.sum() * (run.data["flux_velocity"].values[-1] ** 2).sum())
-    return 2.0 * energy / freedom
-
-
 def _response(run: Run, lag: float | None) -> Observable:
     """The shear viscosity of a sheared gas, from the momentum that it carries across the flow."""
     _stored(run)
@@ -164,7 +154,7 @@ def _coefficient(run: Run, public: str, name: str, lag: float | None) -> Observa
         np.sum([form(run, part) for part in _PARTS.get(name, (name,))], axis=0)
         for form in (green_kubo, helfand)
     )
-    about = described(public, run, _temperature(run))
+    about = described(public, run, run.temperature)
     units = about["units"]
     result = scalar(public, running[:, lags], run.time[-len(running) - 1 :], **about)
     time = settings.interval * np.arange(running.shape[1])
@@ -210,7 +200,7 @@ def helfand(run: Run, name: str) -> np.ndarray:
 
 def _scale(run: Run, name: str) -> float:
     """1 / (V x)."""
-    return 1.0 / (math.prod(run.scene.container.lengths) * _temperature(run) ** (2 if name == "heat" else 1))
+    return 1.0 / (math.prod(run.scene.container.lengths) * run.temperature ** (2 if name == "heat" else 1))
 
 
 def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:

@@ -8,6 +8,8 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
 from gaspart.analysis.observables import require_defined
+from gaspart.analysis.profiles import Means, with_freedom
+from gaspart.analysis.room import mean_areas
 from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
@@ -38,9 +40,10 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
         for number, face in sliding_faces(run.scene):
             work = _sums(run, "wall_shear")[:, number] @ np.array(face.velocity)
             energy[:, list(faces).index(number)] -= work
-        values, errors = _steady(run, faces, energy, _energies(run))
+        found = _steady(run, faces, energy, _energies(run))
         along = {"face": (_names(faces), {"long_name": "face of the container"})}
-        return observable("heat_flux", along, values, errors, **described("heat_flux", run, faces))
+        about = described("heat_flux", run, faces)
+        return with_freedom(observable("heat_flux", along, found.values, found.errors, **about), found)
 
 
 def wall_shear(source: Source, start: float | None = None) -> Observable:
@@ -62,19 +65,16 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
         axes = np.array([axis for axis in range(run.dimension) if (faces // 2 != axis).any()])
         given = _sums(run, "wall_shear")[:, faces][..., axes]
         parts = [_steady(run, faces, given[..., n], _momenta(run, axis)) for n, axis in enumerate(axes)]
-        values, errors = (np.stack(part, axis=1) for part in zip(*parts, strict=True))
         across = faces[:, None] // 2 == axes
+        found = Means(
+            *(np.where(across, np.nan, np.stack(each, axis=1)) for each in zip(*(vars(part).values() for part in parts), strict=True))
+        )
         along = {
             "face": (_names(faces), {"long_name": "face of the container"}),
             "component": (np.array(list("xyz"))[axes], {"long_name": "axis along the face"}),
         }
-        return observable(
-            "wall_shear",
-            along,
-            np.where(across, np.nan, values),
-            np.where(across, np.nan, errors),
-            **described("wall_shear", run, faces, axes),
-        )
+        about = described("wall_shear", run, faces, axes)
+        return with_freedom(observable("wall_shear", along, found.values, found.errors, **about), found)
 
 
 def _names(faces: np.ndarray) -> np.ndarray:
@@ -88,10 +88,8 @@ def _sums(run: Run, name: str) -> np.ndarray:
     return np.asarray(run.data[name].values)
 
 
-def _steady(
-    run: Run, faces: np.ndarray, given: np.ndarray, stored: list[np.ndarray]
-) -> tuple[np.ndarray, np.ndarray]:
-    """(F,), (F,) the mean over time of what each face is given per area, and its error.
+def _steady(run: Run, faces: np.ndarray, given: np.ndarray, stored: list[np.ndarray]) -> Means:
+    """(F,) the mean over time of what each face is given per area, and its error.
 
     given (T, F): sums; stored (T,) each: bounded sums over the gas, by the change of which blocks are
     corrected. Raises SceneError for too few frames and faces that nothing has hit.
@@ -104,12 +102,13 @@ def _steady(
     blocks = min(_BLOCKS, intervals)
     length = run.block_length(blocks)
     ends = slice(None, blocks * length + 1, length)
-    per_area = np.diff(given, axis=0) / _areas(run)[:, faces // 2]
+    per_area = np.diff(given, axis=0) / mean_areas(run)[:, faces // 2]
     grown = per_area[: blocks * length].reshape(blocks, length, -1).sum(axis=1)
     rates = grown / np.diff(run.time[ends])[:, None]
     changes = [np.diff(one[ends]) for one in stored]
     found = [_corrected(rate, changes) for rate in rates.T]
-    return np.array([one.value for one in found]), np.array([one.error for one in found])
+    columns = ([getattr(one, name) for one in found] for name in ("value", "error", "freedom"))
+    return Means(*map(np.array, columns))
 
 
 def _corrected(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
@@ -123,13 +122,6 @@ def _corrected(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
     design = np.stack([np.ones(len(rates)), *used], axis=1)
     slopes = np.linalg.lstsq(design, rates, rcond=None)[0][1:]
     return correlated_mean(rates - design[:, 1:] @ slopes, LEAST_INTERVALS).estimate
-
-
-def _areas(run: Run) -> np.ndarray:
-    """(T - 1, d) the area across each axis that centres can touch."""
-    lower, upper = run.scene.reach(run.scene.largest_radius)
-    sides = np.subtract(upper, lower)
-    return np.broadcast_to(sides.prod() / sides, (len(run.time) - 1, run.dimension))
 
 
 def _energies(run: Run) -> list[np.ndarray]:

@@ -113,7 +113,7 @@ def _lines(advice: Advice, file: str) -> list[str]:
         f"95 % half-width   {best.half_width:.2g} of {advice.observable} (bias: at most {best.bias:.1g})",
     ]
     if OBSERVABLES[advice.observable].power:
-        lines += _drawn(advice.observable, advice.scatter)
+        lines += _drawn(advice.observable, advice.scatter, True, False)
     lines.append(_pays(advice.scene, best.engine, advice.observable))
     if not advice.within_budget:
         lines.append(f"the budget does not suffice for {advice.accuracy:g}")
@@ -126,12 +126,40 @@ def _lines(advice: Advice, file: str) -> list[str]:
     return lines
 
 
-def _drawn(observable: str, scatter: float) -> list[str]:
-    """What velocities that are drawn add to the error."""
+def _rarely_visited(plan: Plan) -> list[str]:
+    """What part of a curve the accuracy is of."""
+    known, places = plan.places
+    if known == places:
+        return []
+    text = (
+        f"{known} of {places}, to which particles come in every part of the pilot: the accuracy is of these"
+    )
+    return [f"places            {text}"]
+
+
+def _drawn(observable: str, scatter: float, velocities: bool, places: bool) -> list[str]:
+    """What differences of the energy at the start add to the error, of drawn velocities and places."""
     if not scatter:
         return []
-    text = f"{scatter:.2g} of {observable} from run to run, beyond this"
-    return [f"drawn velocities  {text}: exact_temperature: true removes it"]
+    lines = [f"energy at start   {scatter:.2g} of {observable} from run to run, beyond this"]
+    if velocities:
+        lines.append("                  velocities are drawn: exact_temperature: true removes their part")
+    if places:
+        lines.append(
+            "                  heights are random: the mean of runs with several seeds, or of runs from "
+            "one state (--from), which have one energy"
+        )
+    return lines
+
+
+def _differences(plan: Plan) -> list[str]:
+    """Pilots that do not agree within their bounds, of which the exact one is believed."""
+    lines = []
+    for one in plan.differing:
+        exact = plan.pilots[0]
+        values = f"{one.value:.4g} against {exact.value:.4g} by the event-driven engine"
+        lines.append(f"pilots differ     {one.engine.title}: {values}, more than its bound and their noise")
+    return lines
 
 
 def _pays(scene: Scene, engine: Engine, observable: str) -> str:
@@ -166,7 +194,9 @@ def _plan_lines(plan: Plan, file: str) -> list[str]:
         if asked := recipe.correlations:
             lags = f"{asked.interval:g} apart, up to {asked.lags * asked.interval:.4g}"
             lines.append(f"lags              {lags}, the time of about 10 collisions of a particle")
-    lines += _drawn(plan.target.name, plan.scatter)
+    lines += _rarely_visited(plan)
+    scatter = plan.scatter
+    lines += _drawn(plan.target.name, scatter.value, scatter.drawn, scatter.placed)
     lines.append(_pays(plan.target.scene, best.candidate.engine, plan.target.observable))
     if not plan.affordable:
         lines.append(_shortfall(plan))
@@ -174,6 +204,7 @@ def _plan_lines(plan: Plan, file: str) -> list[str]:
         cost = f"{pilot.seconds:.2g} s" if pilot.seconds else "kept from before"
         shown = f"{pilot.value:.4g} to {100.0 * pilot.accuracy:.2g} %" if pilot.measured else pilot.rule
         lines.append(f"pilot             {pilot.engine.title}, {cost}: {shown}")
+    lines += _differences(plan)
     for other in plan.options[1:]:
         cost = f"{other.seconds:.3g} s" if math.isfinite(other.seconds) else "not as accurate"
         without = f"gives up {other.candidate.gives_up}"

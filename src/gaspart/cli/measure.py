@@ -50,7 +50,8 @@ def add_measure(parser: Parser) -> None:
     names = "; ".join(f"{name}: {one.listed}" for name, one in OBSERVABLES.items())
     names += f"; {_FIELD}: density, flow or temperature in cells along some axes"
     text = f"{names}. Uncertainties are one standard deviation; of curves a few rows are printed. "
-    text += "Several files are runs of one scene with different seeds: their mean and its scatter are given."
+    text += "Several files are runs of one scene with other seeds or initial states: their mean and scatter "
+    text += "are given."
     set_command(parser, _measure, text, _EXAMPLES)
     add = parser.add_argument
     add_trajectory(parser)

@@ -263,8 +263,18 @@ def accuracy_lines(path: Path) -> list[str]:
         verdict = "reached" if one.met else "not reached"
         lines.append(f"{one.asked.name}{where} = {value}; {error}; {required}: {verdict}")
     if path.suffix != PARTIAL and not all(one.met for one in reached):
-        lines.append("the longest duration (--at-most) ended the run before all were reached")
+        lines.append(_why_ended(path))
     return lines
+
+
+def _why_ended(path: Path) -> str:
+    """Why a run with --until ended before it was accurate."""
+    from gaspart.trajectory.recipe import read_recipe
+
+    until = read_recipe(path).until
+    if until is not None and until.at_most is None:
+        return "the run was given up: nothing that could be measured has happened; --at-most makes it longer"
+    return "the longest duration (--at-most) ended the run before all were reached"
 
 
 def run_options(path: Path, recipe: Recipe) -> list[str]:

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from gaspart.analysis.flow import Peculiar, about_the_mean
 from gaspart.engines import Engine
 from gaspart.scene.gas import Gas
 from gaspart.scene.geometry import ball_volume
@@ -67,17 +68,28 @@ class Frames:
 
     @cached_property
     def gas(self) -> Gas | None:
-        """The plain gas that the particles are, as far as the file knows, of mass 1 at the temperature of the
-        motion about the centre of mass (NaN without velocities); None if they differ or more than elastic
-        contacts moves them."""
+        """The plain gas that the particles are, as far as the file knows, of mass 1 at the mean of its
+        `temperatures` (NaN without velocities); None if they differ or more than elastic contacts moves
+        them."""
         if not self.plain or self.diameter is None:
             return None
-        temperature = math.nan
-        if self.velocities is not None:
-            moving = self.velocities - self.velocities.mean(axis=1, keepdims=True)
-            freedom = self.dimension * max(self.count - 1, 1)
-            temperature = float((moving**2).sum() / (len(moving) * freedom))
+        temperature = math.nan if self.velocities is None else float(self.temperatures.mean())
         return Gas(self.dimension, self.packing_fraction, self.count, self.diameter, temperature)
+
+    @cached_property
+    def motion(self) -> Peculiar:
+        """Velocities of particles of mass 1 about the mean one of each frame, along periodic axes. Raises
+        ValueError without velocities."""
+        if self.velocities is None:
+            raise ValueError("velocities: None (the file has none)")
+        return about_the_mean(self.velocities, np.ones(self.count), np.array(self.periodic))
+
+    @property
+    def temperatures(self) -> np.ndarray:
+        """(T,) k_B T of each frame, of particles of mass 1; 0 of one that cannot move about the mean."""
+        energies = self.motion.energies(np.ones(self.count)).sum(axis=1)
+        freedom = self.dimension * self.count - sum(self.periodic)
+        return np.asarray(energies / max(freedom, 1))
 
     def at(self, frame: int) -> Frames:
         """One frame, with the container and the radii that it has."""

@@ -172,7 +172,8 @@ def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.n
     for name, face in scene.faces.items():
         axis, upper = "xyz".index(name[0]), "high" in name
         if isinstance(face, Vibrating):
-            place = lengths[axis] - face.place(time) if upper else face.place(time)
+            inwards = float(face.places(np.array(time)))
+            place = lengths[axis] - inwards if upper else inwards
         elif isinstance(face, Piston) and piston is not None:
             place = float(piston)
         else:

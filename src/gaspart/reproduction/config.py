@@ -46,7 +46,7 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
     """
     contents = [(str(file), read_yaml(file)) for file in files]
     try:
-        _check_values(config)
+        check_values(config)
         _check_names(config)
         _against(schema(_installed_kinds(config)), config, "")
         planned = {experiment: checked_points(config, experiment) for experiment in config["experiments"]}
@@ -84,7 +84,7 @@ def _read_numbers(block: Any, held: list[Any]) -> None:
             block[key] = float(value)
 
 
-def _check_values(config: object) -> None:
+def check_values(config: object) -> None:
     """Raise SceneError unless a config is a tree of mappings, lists and plain values, not too deep and not
     too large, whose numbers are finite and neither too large nor too small to compute with."""
     stack = [("", config, 0)]  # a stack, so that a deep config does not exhaust Python's own
@@ -175,6 +175,15 @@ def _animation(config: dict, animation: str, block: dict | None) -> None:
 def checked_points(config: dict, experiment: str) -> dict[str, Point]:
     """The points of an experiment, by name, after a check of each value of the grid and of every point.
     Raises SceneError."""
+    made = gridded_points(config, experiment)
+    for point in made.values():
+        check_point(point)
+    return made
+
+
+def gridded_points(config: dict, experiment: str) -> dict[str, Point]:
+    """The points of an experiment, by name, after a check of each value of the grid by itself. Raises
+    SceneError."""
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):
         if key.startswith(keys.PREFIX):  # a value of a scene file, which the scene validates
@@ -182,14 +191,17 @@ def checked_points(config: dict, experiment: str) -> dict[str, Point]:
         if key not in POINT:
             raise SceneError(f"{where}.grid.{key}", value, unknown_word(key, POINT))
         _against(POINT[key], value, f"{where}.grid.{key}")
-    made = {point.name: point for point in points(config, experiment)}
-    for name, point in made.items():
-        try:
-            jobs.validate(point)
-        except SceneError as error:
-            located = error.file or error.key.startswith(where)
-            raise error if located else error.inside(f"{where}[{name}]") from None
-    return made
+    return {point.name: point for point in points(config, experiment)}
+
+
+def check_point(point: Point) -> None:
+    """Make the parameters of a point's job. Raises SceneError where its settings contradict each other."""
+    where = f"experiments.{point.experiment}"
+    try:
+        jobs.validate(point)
+    except SceneError as error:
+        located = error.file or error.key.startswith(where)
+        raise error if located else error.inside(f"{where}[{point.name}]") from None
 
 
 @cache

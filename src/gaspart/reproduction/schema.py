@@ -38,7 +38,11 @@ length, mass, time and energy with k_B = 1, d the dimension. A scene that breaks
 a run. Theory is that of the equation that the engine of a run solves: of particles that touch, or of the
 Boltzmann or the Enskog equation.
 """
-_FEATURES = "## Features and engines\n\nWhich engine models what, and which features exclude each other.\n"
+_FEATURES = """## Features and engines
+
+Which engine models what, and which features exclude each other.
+All engines model any number of species, whose radii and masses may differ.
+"""
 
 
 @cache

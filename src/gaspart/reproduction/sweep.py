@@ -7,31 +7,30 @@ is missing.
 
 from __future__ import annotations
 
-import pickle
-import subprocess
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import fields
-from itertools import product
+from dataclasses import dataclass, fields, replace
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from gaspart.analysis.observables import OBSERVABLES, known, require_defined, require_kept
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import Engine, EventDriven, engine_to_dict
-from gaspart.errors import SceneError, SimulationError, unknown_word
-from gaspart.interruption import exit_on_signals
-from gaspart.kernels.compile.loading import load_numba
-from gaspart.reproduction.config import checked_points
-from gaspart.reproduction.jobs import simulate, simulate_until
-from gaspart.reproduction.jobs.replicas import Record, replica_paths, write_replicas
+from gaspart.errors import SceneError, unknown_word
+from gaspart.reproduction.config import check_point, gridded_points
+from gaspart.reproduction.jobs import simulate
 from gaspart.reproduction.points.keys import ENGINES, EXTENTS, GAS, PREFIX
+from gaspart.reproduction.points.measurable import distinct, require_observable
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.points.variants import task, variant, warm
+from gaspart.reproduction.sweep_axes import axes_of, names_of
+from gaspart.reproduction.sweep_points import make_all
 from gaspart.reproduction.sweep_table import Measured, measured, table
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.tradeoff.accuracy import Accuracy
+from gaspart.trajectory.correlator import Correlations
+from gaspart.trajectory.recipe import multiple
+from gaspart.trajectory.until import Until
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,7 +40,8 @@ EXPERIMENT = "points"
 _SAMPLES = 128
 _KEPT = ("radius", "packing_fraction", "count", "side")
 """The extents of a gas in the order in which they keep their values where others vary."""
-_RECORD: dict[str, Record] = {"simulate": simulate.record, "simulate_until": simulate_until.record}
+_KEPT_OF_SIZES = ("radius", "count", "packing_fraction", "side")
+"""The same of a polydisperse species, whose radii follow from their number."""
 Progress: TypeAlias = Callable[[int, int, str], None]
 
 
@@ -57,6 +57,7 @@ def sweep(
     at_most: float | None = None,
     samples: int | None = None,
     equilibration: float | None = None,
+    correlations: Correlations | None = None,
     replicas: int = 1,
     seed: int = 0,
     workers: int = 1,
@@ -65,58 +66,101 @@ def sweep(
 ) -> xr.Dataset:
     """Run a scene for each combination of some values, and measure observables of each run.
 
-    over: the values of each key that varies, all combinations of which are run. A key is one of a config:
-    for one species alone in a container `packing_fraction`, `count`, `radius`, `side`, `temperature` and
-    the others of a gas, where of radius, packing fraction and count those that are not varied keep their
-    values as far as possible; a setting of the engine, such as `time_step`; or the place of a value in a
-    scene file, such as `gravity` or `species.0.mass`. observables: names as of `gaspart measure`. engine:
-    by default `EventDriven()`.
+    over: the values of each key that varies; without any key there is one point. A key is one of a config:
+    of one species alone in a container `packing_fraction`, `count`, `radius`, `side`, `temperature` and the
+    others of a gas, where of radius, packing fraction and count those that do not vary are kept as far as
+    possible; a setting of the engine, such as `time_step`; or the place of a value in a scene file, such as
+    `gravity` or `species.0.mass`. observables: names of `gaspart measure`. engine: by default event-driven.
 
-    Each run has a duration, divided into so many samples (128 by default), or ends when the standard
-    errors of `until` are reached (see `gaspart.run`; the samples are then those until `at_most`, by
-    default one for each collision of a particle), at the latest after `at_most`. equilibration: a time
-    before, which is not measured; by default the first quarter of each run is not. replicas: independent
-    runs, whose mean is taken. seed: with the names of a point and a replica it gives each random stream.
-    workers: processes that run points at the same time, which changes no bit. progress(done, points,
+    Each run has a duration, divided into so many samples (128), or ends when the standard errors of `until`
+    are reached (see `gaspart.run`; the samples are those until `at_most`, by default one for each collision
+    of a particle). equilibration: a time before, which is not measured; by default the first quarter of each
+    run is not. correlations: what each run accumulates; for viscosities and conductivity those of the stress.
+    replicas: independent runs, whose mean is taken. seed: with the names of point and replica it gives each
+    random stream. workers: processes that run points at a time, which changes no bit. progress(done, points,
     name) is called when a point is complete; by default it writes a line to the standard error.
 
-    Returns a Dataset with a dimension for each key of `over`. An observable has its name; with the suffix
-    _error it is the standard uncertainty, with _theory the value of theory, where there is one. Curves
-    have their own dimension too, such as `rdf_distance`; where its places differ between the points,
-    these are the variable `rdf_distance_places`. `duration` is that of each run, the mean over replicas.
-    The trajectories are `folder`/points/<name>/replica-<k>.nc. Those that are complete are not made
-    again, and one that was cut short goes on; those of other settings are replaced only with `overwrite`.
+    Returns a Dataset with a dimension for each key, with each observable, its standard uncertainty (_error),
+    its value by theory, if there is one (_theory), its curve's own dimension, such as `rdf_distance` (where
+    places differ `rdf_distance_places`), and `duration`. What could not be made or measured is NaN; `failure`
+    has the reason, otherwise "". Trajectories are `folder`/points/<name>/replica-<k>.nc: complete ones are
+    not made again, one that was cut short goes on, and those of other settings are replaced only with
+    `overwrite`. Several sweeps may use a folder, also at the same time.
 
-    Raises SceneError for settings that contradict each other, a folder that holds a trajectory of another
-    sweep, and what cannot be measured; SimulationError as `gaspart.run`.
+    Raises SceneError for settings that contradict each other, trajectories of another sweep, an observable
+    that no point can have, and a grid of which no point can be run.
     """
-    names = [known(name) for name in observables]
-    axes = {key: list(values) for key, values in over.items()}
-    engine = EventDriven() if engine is None else engine
+    engine = _checked(scene, EventDriven() if engine is None else engine)
+    axes = axes_of(over)
+    names = names_of(observables, axes)
     length = _length(duration, until, at_most, samples, equilibration)
-    point = {**length, **_settings(scene, axes, engine, Path(folder))}
-    point |= {
-        "replicas": count_of("replicas", replicas, least=1),
-        "pairs": any(OBSERVABLES[name].needs == "pairs" for name in names),
-    }
-    job = "simulate" if until is None else "simulate_until"
-    grid = {key if key in point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
-    planned = _planned({"job": job, "point": point, "grid": grid}, str(folder), count_of("seed", seed))
-    _run(_measurable(planned, names), count_of("workers", workers, least=1), progress or _print, overwrite)
-    rows: list[Measured] = [measured(one, names, equilibration is None) for one in planned]
+    point = {**length, **_settings(scene, axes, engine), **_kept(names, correlations, length)}
+    point["replicas"] = count_of("replicas", replicas, least=1)
+    plan = _planned(_experiment(point, axes, engine), _root(folder), count_of("seed", seed))
+    _require_measurable(names, plan.able)
+    _make(plan, count_of("workers", workers, least=1), bool(overwrite), progress or _print)
+    rows = [_row(one, names, equilibration is None, plan.failures.get(one.name, "")) for one in plan.points]
     return table(rows, names, axes, {"scene": scene, "engine": engine, "seed": seed})
 
 
-def _measurable(planned: list[Point], names: list[str]) -> list[Point]:
-    """The points. Raises SceneError, before anything runs, for an observable that one does not have, or that
-    its run does not keep what it needs for."""
-    for point, name in product(planned, names):
-        try:
-            require_defined(name, point.scene)
-            require_kept(name, ("pairs",))
-        except SceneError as error:
-            raise error.inside(f"{name} of {EXPERIMENT}[{point.name}]") from None
-    return planned
+@dataclass(frozen=True)
+class _Plan:
+    """The points of a sweep, and, by the name of each that cannot be made, the reason."""
+
+    points: list[Point]
+    failures: dict[str, str]
+
+    @property
+    def able(self) -> list[Point]:
+        """The points without a reason."""
+        return [point for point in self.points if point.name not in self.failures]
+
+
+def _checked(scene: Any, engine: Any) -> Engine:
+    """The engine. Raises SceneError for other things."""
+    if not isinstance(scene, Scene):
+        raise SceneError("scene", scene, "must be a gaspart.Scene")
+    if not isinstance(engine, Engine):
+        raise SceneError("engine", engine, "must be an engine, such as gaspart.EventDriven()")
+    return engine
+
+
+def _experiment(point: dict[str, Any], axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
+    """The experiment of a config, with what its points share."""
+    grid = {key if key in point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
+    return {"job": "simulate_until" if "until" in point else "simulate", "point": point, "grid": grid}
+
+
+def _make(plan: _Plan, workers: int, overwrite: bool, progress: Progress) -> None:
+    """Make the points, and add the reasons why some could not be made to the plan."""
+    done = count(len(plan.failures) + 1)
+    for name, reason in plan.failures.items():
+        _complain(name, reason)
+
+    def finished(point: Point, reason: str) -> None:
+        if reason:
+            plan.failures[point.name] = reason
+            _complain(point.name, reason)
+        progress(next(done), len(plan.points), point.name)
+
+    _make_folder(plan.points[0].root)
+    make_all(plan.able, workers, overwrite, finished)
+
+
+def _root(folder: Any) -> str:
+    """The absolute path of the folder of a sweep. Raises SceneError."""
+    if not isinstance(folder, str | Path) or not str(folder) or "\0" in str(folder):
+        raise SceneError("folder", folder, "must be the path of a folder")
+    return str(Path(folder).absolute())
+
+
+def _make_folder(root: str) -> None:
+    """Make the folder of the points, unless it exists. Raises SceneError."""
+    try:
+        Path(root, EXPERIMENT).mkdir(parents=True, exist_ok=True)
+    except (OSError, UnicodeEncodeError) as error:
+        reason = getattr(error, "strerror", None) or "its name is not UTF-8"
+        raise SceneError("folder", root, f"cannot be made: {reason}") from None
 
 
 def _length(
@@ -140,11 +184,33 @@ def _length(
         if at_most is not None:
             raise SceneError("at_most", at_most, "needs until")
         return {"samples": _SAMPLES, **settings}
-    asked = (until,) if isinstance(until, Accuracy) else tuple(until)
-    for one in asked:
+    asked = tuple(until) if isinstance(until, list | tuple) else (until,)
+    for one in Until(asked, settings["duration"]).accuracies:  # raises SceneError for other things
         if one.start is not None:
             raise SceneError("until.start", one.start, "is the equilibration of a sweep")
     return {**settings, "until": {one.name: one.accuracy for one in asked}}
+
+
+def _kept(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
+    """What a point states of the contents of its files. Raises SceneError."""
+    needs = {OBSERVABLES[name].needs for name in names}
+    if "until" in length:
+        if correlations is not None:
+            raise SceneError("correlations", correlations, "need a duration, not until")
+        return {"displacements": "paths" in needs}
+    kept: dict[str, Any] = {"pairs": "pairs" in needs, "displacements": "paths" in needs}
+    if correlations is None:
+        return kept
+    if not isinstance(correlations, Correlations):
+        raise SceneError("correlations", correlations, "must be a gaspart.Correlations")
+    if correlations.start:
+        raise SceneError("correlations.start", correlations.start, "is the equilibration of a sweep")
+    intervals = multiple("duration", length["duration"], "correlations.interval", correlations.interval)
+    if 2 * correlations.lags > intervals + 1:
+        raise SceneError("correlations.lags", correlations.lags, f"must be at most half of {intervals}")
+    frames = next(n for n in range(min(intervals, length["samples"]), 0, -1) if intervals % n == 0)
+    kept |= {"samples": intervals, "frames": frames, "lags": correlations.lags}
+    return kept | {"stress": correlations.stress}
 
 
 def point_keys(engine: Engine) -> set[str]:
@@ -152,7 +218,7 @@ def point_keys(engine: Engine) -> set[str]:
     return {*EXTENTS, *GAS, *ENGINES[engine.name]}
 
 
-def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine, folder: Path) -> dict[str, Any]:
+def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
     """What a point states of its scene and its engine beside what varies. Raises SceneError."""
     settings = {key: value for key, value in engine_to_dict(engine).items() if value is not None}
     settings = {("engine" if key == "name" else key): value for key, value in settings.items()}
@@ -164,10 +230,9 @@ def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine, folder: Pa
     for key in axes:
         if key not in point_keys(engine) and key.partition(".")[0] not in parts:
             raise SceneError(f"over.{key}", axes[key], unknown_word(key, {*point_keys(engine), *parts}))
-    path = folder / "scene.yaml"
-    folder.mkdir(parents=True, exist_ok=True)
-    scene.to_file(path)
-    return settings | {"scene": str(path)}
+        if key not in point_keys(engine) and None in axes[key]:
+            raise SceneError(f"over.{key}", None, "replaces no value of a scene: vary one that it can have")
+    return settings | {"scene": scene.to_dict()}
 
 
 def _gas(scene: Scene, axes: Mapping[str, list], varied: str) -> dict[str, Any]:
@@ -181,6 +246,8 @@ def _gas(scene: Scene, axes: Mapping[str, list], varied: str) -> dict[str, Any]:
         "boundary": list(container.boundary),
         "centres_to_walls": scene.centres_to_walls,
         "mass": species.mass,
+        "polydispersity": species.polydispersity,
+        "radius_distribution": species.radius_distribution,
         "temperature": species.temperature,
         "exact_temperature": species.exact_temperature,
         "speed": species.speed,
@@ -193,87 +260,85 @@ def _gas(scene: Scene, axes: Mapping[str, list], varied: str) -> dict[str, Any]:
         "side": list(container.lengths),
     }
     same = {"count": species.count, "radius": species.radius, "side": list(container.lengths)}
-    if Point(EXPERIMENT, "", "simulate", {**settings, **same}, "", 0).scene != scene:
+    given = {key: value for key, value in {**settings, **same}.items() if value is not None}
+    if Point(EXPERIMENT, "", "simulate", given, "", 0).scene != scene:
         raise SceneError(f"over.{varied}", axes[varied], rule)
-    kept = [key for key in _KEPT if key not in axes][: 3 - sum(key in axes for key in EXTENTS)]
+    order = _KEPT if species.alike else _KEPT_OF_SIZES
+    kept = [key for key in order if key not in axes][: 3 - sum(key in axes for key in EXTENTS)]
     if "side" not in axes and "side" not in kept and len(set(container.lengths)) > 1:
         raise SceneError(f"over.{varied}", axes[varied], "needs a container with equal sides")
     settings |= {key: extents[key] for key in kept}
     return {key: value for key, value in settings.items() if key not in axes}
 
 
-def _planned(experiment: dict, root: str, seed: int) -> list[Point]:
-    """The points of an experiment, in the order of the product of its values. Raises SceneError."""
+def _planned(experiment: dict, root: str, seed: int) -> _Plan:
+    """The points of an experiment, in the order of the product of its values. Raises SceneError for values of
+    no use anywhere, and if no point can be run."""
     config = {"experiments": {EXPERIMENT: experiment}, "points": root, "seed": seed}
     try:
-        return list(checked_points(config, EXPERIMENT).values())
+        planned = list(gridded_points(config, EXPERIMENT).values())
     except SceneError as error:
-        key = error.key.removeprefix(f"experiments.{EXPERIMENT}")
-        key = f"over{key.removeprefix('.grid')}" if key.startswith(".grid") else key.lstrip(".")
-        raise SceneError(key, error.value, error.rule, error.file) from None
-
-
-def _run(planned: list[Point], workers: int, progress: Progress, overwrite: bool) -> None:
-    """Make the trajectories of all points, in this process or in several."""
-    if workers == 1:
-        for done, point in enumerate(planned, 1):
-            _make(point.to_dict(), overwrite)
-            progress(done, len(planned), point.name)
-        return
-    for one in {variant(point): point for point in planned}.values():  # or each process would compile them
-        warm(task(one))
-    with ThreadPoolExecutor(workers) as pool:
+        raise _of_sweep(error) from None
+    errors = {}
+    for point in planned:
         try:
-            futures = {pool.submit(_in_process, point, overwrite): point for point in planned}
-            for done, future in enumerate(as_completed(futures), 1):
-                future.result()
-                progress(done, len(planned), futures[future].name)
-        except BaseException:  # processes that run have had the same signal, and end after a checkpoint
-            pool.shutdown(cancel_futures=True)
-            raise
+            check_point(point)
+            if point.job == "simulate":
+                simulate.recipe(point.parameters, point.seed())
+        except SceneError as error:
+            errors[point.name] = _of_sweep(error)
+    if len(errors) == len(planned):
+        raise errors[planned[0].name]
+    return _Plan(planned, {name: _without_point(error, name) for name, error in errors.items()})
 
 
-def _in_process(point: Point, overwrite: bool) -> None:
-    """`_make` in a process of its own, which, unlike those of a pool, does not run the caller's script again.
-    Raises what that raised."""
-    command = [sys.executable, "-m", "gaspart.reproduction.sweep"]
-    given = pickle.dumps((point.to_dict(), overwrite))
-    done = subprocess.run(command, input=given, stdout=subprocess.PIPE, check=False)
-    if done.returncode:
-        code = f"ended with code {done.returncode}"
-        raise SimulationError(f"{EXPERIMENT}[{point.name}]: the process of the run {code}")
-    if error := pickle.loads(done.stdout):
-        raise error
+def _of_sweep(error: SceneError) -> SceneError:
+    """An error of a config with the key that it has in a sweep."""
+    key = error.key.removeprefix(f"experiments.{EXPERIMENT}")
+    if key.startswith("["):
+        key = f"{EXPERIMENT}{key}"
+    elif key.startswith(".grid"):
+        key = f"over{key.removeprefix('.grid')}"
+    return SceneError(key.lstrip(".") or "over", error.value, error.rule, error.file)
 
 
-def _serve() -> None:
-    """Make the point that the standard input states, and write the error that it raised, or None."""
-    exit_on_signals()
-    load_numba(ours=True)
-    error = None
-    try:
-        _make(*pickle.load(sys.stdin.buffer))
-    except (SceneError, SimulationError) as raised:
-        error = raised
-    pickle.dump(error, sys.stdout.buffer)
+def _without_point(error: SceneError, name: str) -> str:
+    """The text of an error of a point, where its name is known."""
+    key = error.key.removeprefix(f"{EXPERIMENT}[{name}].")
+    return str(SceneError(key, error.value, error.rule, error.file))
 
 
-def _make(values: dict, overwrite: bool) -> None:
-    """Make the trajectories of a point, or check that those in its folder are these. Raises SceneError."""
-    point = Point.from_dict(values)
-    parameters, folder, record = point.parameters, Path(point.path), _RECORD[point.job]
-    try:
-        if not folder.exists():
-            return write_replicas(record, parameters, folder)
-        for path, seed in zip(replica_paths(parameters, folder), parameters["seeds"], strict=True):
-            record(parameters, tuple(seed), path, overwrite)
-    except SceneError as error:
-        raise error.inside(f"{EXPERIMENT}[{point.name}]") from None
+def _require_measurable(names: list[str], points: list[Point]) -> None:
+    """Raise SceneError for an observable that no run of any of the points can have."""
+    kinds = distinct(points)
+    for name in names:
+        refused = None
+        for point in kinds:
+            try:
+                require_observable(name, point)
+                break
+            except SceneError as error:
+                refused = refused or error
+        else:
+            if refused:
+                rule = f"cannot be measured: {refused.key}: {refused.rule}"
+                raise SceneError("observables", name, rule)
+
+
+def _row(point: Point, names: list[str], part: bool, failure: str) -> Measured:
+    """A row of the table: what a point gives, or the reason why it could not be made."""
+    if failure:
+        return Measured({}, [], failure)
+    found, refused = measured(point, names, part)
+    for name, error in refused.items():
+        _complain(point.name, str(error), name)
+    return replace(found, failure="; ".join(str(error) for error in refused.values()))
 
 
 def _print(done: int, points: int, name: str) -> None:
     print(f"{done} of {points} points: {name}", file=sys.stderr, flush=True)
 
 
-if __name__ == "__main__":
-    _serve()
+def _complain(point: str, reason: str, observable: str = "") -> None:
+    what = f": {observable}" if observable else ""
+    print(f"{EXPERIMENT}[{point}]{what} is NaN: {reason}", file=sys.stderr, flush=True)

@@ -24,27 +24,35 @@ _PARTS = ("", "_error", "_theory")
 
 @dataclass(frozen=True)
 class Measured:
-    """The observables of one point, each of all its replicas, and the duration of each replica."""
+    """The observables of one point, each of all its replicas, and the duration of each replica.
+
+    An observable that was not measured is not there; failure: the reason, "" if there is none.
+    """
 
     observables: dict[str, list[Observable]]
     durations: list[float]
+    failure: str = ""
 
 
-def measured(point: Point, names: Sequence[str], part: bool) -> Measured:
+def measured(point: Point, names: Sequence[str], part: bool) -> tuple[Measured, dict[str, SceneError]]:
     """Observables of a point, by name, of its frames after the equilibration, or, with `part`, after the
-    first quarter of each run. Raises SceneError as `gaspart.analysis.measuring.measure`."""
+    first quarter of each run; and the error of each that cannot be measured."""
     start = None if part else point.schedule.equilibration
     found: dict[str, list[Observable]] = {name: [] for name in names}
-    durations = []
+    durations: list[float] = []
+    refused: dict[str, SceneError] = {}
     for path in point.replica_paths:
-        with open_trajectory(path) as trajectory:
-            durations.append(float(trajectory["time"][-1]))
-            for name in names:
-                try:
-                    found[name].append(measure(name, trajectory, start))
-                except SceneError as error:
-                    raise error.inside(f"{name} of {path}") from None
-    return Measured(found, durations)
+        try:
+            with open_trajectory(path) as trajectory:
+                durations.append(float(trajectory["time"][-1]))
+                for name in names:
+                    try:
+                        found[name].append(measure(name, trajectory, start))
+                    except SceneError as error:
+                        refused.setdefault(name, error.inside(f"{name} of {path}"))
+        except SceneError as error:  # a damaged file
+            refused |= {name: refused.get(name, error) for name in names}
+    return Measured({name: found[name] for name in names if name not in refused}, durations), refused
 
 
 def table(
@@ -56,13 +64,27 @@ def table(
         coords={key: [_label(value) for value in values] for key, values in axes.items()},
         attrs=_attributes(**run),
     )
+    failures = [row.failure for row in rows]
     for name in names:
-        for key, variable in _variables(name, [row.observables[name] for row in rows], axes).items():
+        found = [row.observables.get(name) for row in rows]
+        for number in _of_other_form(found):
+            found[number] = None
+            reasons = [failures[number], f"{name}: has other components than elsewhere"]
+            failures[number] = "; ".join(filter(None, reasons))
+        for key, variable in _variables(name, found, axes).items():
             data[key] = variable
-    durations = [np.mean(row.durations) for row in rows]
+    durations = [float(np.mean(row.durations)) if row.durations else np.nan for row in rows]
     shape = [len(values) for values in axes.values()]
     data["duration"] = (tuple(axes), np.reshape(durations, shape), {"units": "time"})
+    about = {"long_name": "why something is NaN"}
+    data["failure"] = (tuple(axes), np.reshape(np.array(failures, dtype=object), shape), about)
     return data
+
+
+def _of_other_form(points: Sequence[list[Observable] | None]) -> list[int]:
+    """The numbers of the points whose observable has other dimensions than that of the first one."""
+    known = [(number, replicas[0]) for number, replicas in enumerate(points) if replicas]
+    return [number for number, one in known if one.estimate.dims != known[0][1].estimate.dims]
 
 
 def _attributes(scene: Scene, engine: Engine, seed: int) -> dict[str, Any]:
@@ -75,17 +97,22 @@ def _label(value: Any) -> Any:
 
 
 def _variables(
-    name: str, points: list[list[Observable]], axes: Mapping[str, list]
+    name: str, points: Sequence[list[Observable] | None], axes: Mapping[str, list]
 ) -> dict[str, xr.DataArray]:
-    """An observable of all points and, where they differ, the places of its curve, as arrays over `axes`."""
-    first = points[0][0]
+    """An observable of all points and, where they differ, the places of its curve, as arrays over `axes`.
+    None: it is not known at a point."""
+    known = [replicas for replicas in points if replicas]
+    if not known:
+        nothing = xr.DataArray(_stacked(points, axes), dims=tuple(axes))
+        return {name: nothing, f"{name}_error": nothing}
+    first = known[0][0]
     along = [str(dim) for dim in first.estimate.dims]
-    places = [[one.estimate[dim].values for dim in along] for replicas in points for one in replicas]
+    places = [[one.estimate[dim].values for dim in along] for replicas in known for one in replicas]
     common = all(np.array_equal(a, b) for row in places for a, b in zip(row, places[0], strict=True))
     dims = (*axes, *(f"{name}_{dim}" for dim in along))
     found = {}
     for part in _PARTS:
-        each = [mean_of(replicas, part) for replicas in points]
+        each = [mean_of(replicas, part) if replicas else None for replicas in points]
         if part == "_theory" and all(one is None for one in each):
             continue
         about = dict(first.estimate.attrs)
@@ -95,7 +122,7 @@ def _variables(
         if common:
             found[f"{name}_{dim}"] = xr.DataArray(places[0][axis], dims=(f"{name}_{dim}",), attrs=about)
         else:
-            each = [replicas[0].estimate[dim].values for replicas in points]
+            each = [replicas[0].estimate[dim].values if replicas else None for replicas in points]
             at = xr.DataArray(_stacked(each, axes), dims=(*axes, f"{name}_{dim}"), attrs=about)
             found[f"{name}_{dim}_places"] = at
     return found
@@ -116,15 +143,14 @@ def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
     return np.mean(values, axis=0)
 
 
-def _stacked(each: Sequence[np.ndarray | None], axes: Mapping[str, list]) -> np.ndarray:
-    """The arrays of all points, of which some may be shorter or missing, as one; the rest is nan."""
+def _stacked(each: Sequence[Any], axes: Mapping[str, list]) -> np.ndarray:
+    """The arrays of all points, of which some may be shorter or missing (None), as one; the rest is nan."""
     known = [np.asarray(one) for one in each if one is not None]
-    inner = tuple(np.max([one.shape for one in known], axis=0).astype(int))
-    whole = np.full((len(each), *inner), np.nan if known[0].dtype.kind in "fiu" else "", dtype=object)
-    if known[0].dtype.kind in "fiu":
-        whole = whole.astype(float)
+    inner = tuple(np.max([one.shape for one in known], axis=0).astype(int)) if known else ()
+    numbers = all(one.dtype.kind in "fiu" for one in known)
+    whole = np.full((len(each), *inner), np.nan if numbers else "", dtype=float if numbers else object)
     for row, one in enumerate(each):
         if one is not None:
             at: tuple[Any, ...] = (row, *(slice(size) for size in np.shape(one)))
             whole[at] = one
-    return whole.reshape(*(len(values) for values in axes.values()), *inner)
+    return whole.reshape([len(values) for values in axes.values()] + list(inner))

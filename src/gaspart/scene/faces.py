@@ -16,6 +16,8 @@ from gaspart.scene.keys import choice as choice_of
 from gaspart.scene.validation import choice, from_mapping, size
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from gaspart.scene.scene import Scene
 
 FACES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
@@ -178,12 +180,14 @@ class Vibrating(Surface):
         """The greatest acceleration of the wall, apart from the return of the sawtooth."""
         return 2.0 * math.pi * self.greatest_speed / self.period if self.waveform == "sine" else 0.0
 
-    def place(self, time: float) -> float:
-        """How far the wall has moved inwards at a time, for pictures."""
-        turns = math.fmod(time, self.period) / self.period
+    def places(self, times: np.ndarray) -> np.ndarray:
+        """(...) how far the wall has moved inwards at times (...)."""
+        import numpy as np
+
+        turns = np.fmod(times, self.period) / self.period
         if self.waveform == "sawtooth":
             return 2.0 * self.amplitude * turns
-        return self.amplitude * (1.0 - math.cos(2.0 * math.pi * turns))
+        return self.amplitude * (1.0 - np.cos(2.0 * math.pi * turns))
 
 
 @dataclass(frozen=True)

@@ -72,7 +72,7 @@ FEATURES: dict[str, Feature] = {
         lambda scene: True if any(kind.fixed and kind.count for kind in scene.kinds) else None,
     ),
     "polydispersity": Feature(
-        "species of particles of different sizes",
+        "radii that differ within a species",
         "species.polydispersity",
         lambda scene: next((kind.polydispersity for kind in scene.species if not kind.alike), None),
     ),

@@ -90,8 +90,16 @@ def mixture_of(scene: Scene) -> Mixture | None:
 
 
 def plain_gas(scene: Scene) -> Gas:
-    """`Scene.gas`. Raises SceneError for a scene that is none."""
-    if scene.gas is None:
-        rule = "must be one, of smooth and elastic particles alone, without gravity or obstacles"
-        raise SceneError("species", len(scene.kinds), rule)
-    return scene.gas
+    """`Scene.gas`. Raises SceneError, with what it has besides, for a scene that is none."""
+    from gaspart.scene.features import FEATURES, features
+
+    if scene.gas is not None:
+        return scene.gas
+    rule = "a gas of equal, smooth and elastic particles alone is needed"
+    if not scene.count:
+        raise SceneError("count", 0, f"{rule}: the scene is empty")
+    present = features(scene) - {"centres_to_walls"}
+    for name in FEATURES:
+        if name in present:
+            raise FEATURES[name].refuse(scene, f"{rule}, without {FEATURES[name].meaning}")
+    raise SceneError("species", len(scene.kinds), f"{rule}: their radii or masses differ")

@@ -100,6 +100,14 @@ class State:
         return 0.5 * float((_finite(self.moments_of_inertia) * (self.spins**2).T).sum())
 
     @property
+    def temperature(self) -> float:
+        """k_B T of a gas without walls: that of flight about the centre of mass, per degree of freedom.
+        Raises ZeroDivisionError for a single particle."""
+        momentum = self.momentum
+        whole = 0.5 * float((momentum**2).sum()) / float(_finite(self.masses).sum())
+        return 2.0 * (self.translational_energy - whole) / (self.dimension * (self.count - 1))
+
+    @property
     def kinetic_energy(self) -> float:
         """Translational and rotational."""
         return self.translational_energy + self.rotational_energy

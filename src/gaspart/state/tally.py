@@ -85,3 +85,10 @@ class Tally:
     flux_velocity: np.ndarray | None = field(
         default=None, metadata={"along": ("axis",), "units": SPEED, "only": "stress"}
     )
+
+
+def compressibility_factor(
+    virial: np.ndarray | float, count: int, dimension: int, temperature: float, time: np.ndarray | float
+) -> np.ndarray:
+    """Z = 1 + sum |dr . dp| / (d N k_B T t) of N particles without walls, from the virial sum of a time t."""
+    return np.asarray(1.0 + virial / (dimension * count * temperature * time))

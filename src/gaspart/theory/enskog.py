@@ -78,13 +78,19 @@ def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int,
     """nu_N / nu of `count` particles in a periodic container, fixed energy, total momentum zero.
 
     Contacts: the canonical Z_N - 1 over Z - 1 (to O(1/N), see `state.finite_size_correction`).
-    Speeds: <|v_12 . n|> of velocities uniform on the sphere in D = d (N-1) dimensions over Maxwell's,
-    sqrt(d N / 2) Gamma(D/2) / Gamma((D+1)/2) (exact).
+    Speeds: see `approach_factor`.
     """
-    speeds = math.sqrt(count / (count - 1.0)) * mean_speed_factor(dimension * (count - 1))
+    speeds = approach_factor(dimension, count)
     eta = np.maximum(packing_fraction, 1e-6)  # the ratio's limit, where the excess itself vanishes
     shift = finite_size_correction(eta, dimension, count, ensemble="canonical")
     return speeds * (1.0 + shift / (compressibility_factor(eta, dimension) - 1.0))
+
+
+def approach_factor(dimension: int, count: int) -> float:
+    """<|v_12 . n|> of `count` particles with a fixed energy E and no total momentum over Maxwell's at the
+    temperature 2 E / (d N): sqrt(d N / 2) Gamma(D/2) / Gamma((D+1)/2), of velocities uniform on the sphere in
+    D = d (N-1) dimensions (exact)."""
+    return math.sqrt(count / (count - 1.0)) * mean_speed_factor(dimension * (count - 1))
 
 
 @checked

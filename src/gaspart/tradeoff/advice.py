@@ -29,6 +29,8 @@ from gaspart.trajectory.recipe import Recipe
 
 ACCURACIES = 1e-8, 1.0
 """The best relative accuracy that float64 sums and the table support, and the worst."""
+FEWEST = 64
+"""Particles of a gas that is like those of the table, to 1 % of Z - 1: fewer have pilots of their own."""
 SpeedOf: TypeAlias = Callable[[int, str, str, int], float]
 """A function as `gaspart.tradeoff.speed.factor`."""
 _PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilibration
@@ -116,6 +118,8 @@ def fluid_of(scene: Scene) -> Gas:
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
     gas, container = plain_gas(scene), scene.container
+    if gas.count < FEWEST:
+        raise SceneError("count", gas.count, f"the table is of gases of {FEWEST} particles or more")
     if not gas.temperature > 0.0:
         raise SceneError("temperature", gas.temperature, "advice is for moving particles")
     if not all(container.periodic):
@@ -229,7 +233,7 @@ def _engines(scene: Scene, gas: Gas) -> Iterator[tuple[Engine, str, float]]:
     for name, model in MODELS.items():
         own = DSMC(model=model).resolved(scene)
         for precision, part in table.steps(gas.dimension, name):
-            yield replace(own, time_step=part * (own.time_step or 0.0)), precision, part
+            yield own.with_step(part * (own.time_step or 0.0)), precision, part
 
 
 def _setting(scene: Scene, gas: Gas, wish: _Wish, made: tuple[Engine, str, float]) -> Setting | None:

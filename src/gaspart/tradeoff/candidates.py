@@ -7,27 +7,20 @@ touch) or the discretisation (time step, cells).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaspart import theory
-from gaspart.analysis.observables import OBSERVABLES, require_told
+from gaspart.analysis.observables import require_told
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
-from gaspart.engines.dsmc.rates import contact_values, rates
 from gaspart.engines.step.limits import missed_contacts
 from gaspart.errors import SceneError
-from gaspart.scene.faces import sliding_faces
-from gaspart.scene.scene import Scene
-from gaspart.state.initial import initial_state
-from gaspart.tradeoff.models import cell_loss
-from gaspart.tradeoff.target import SEED, Target
+from gaspart.state.state import State
+from gaspart.tradeoff.bounds import DENSEST, boltzmann_error, cell_error, enskog_error, require_resolved
+from gaspart.tradeoff.conditions import Conditions
+from gaspart.tradeoff.target import Target
 
-_STATIC = 3e-3
-"""Bound on the error of the Enskog model in Z, the collision rate and pressures (figure
-`dsmc_convergence`)."""
-_DENSEST = 0.4
-"""Packing fraction up to which that is known."""
 _SHARE = 0.125
 """Part of an accuracy that the contacts which time steps miss may take."""
 _SAFE = 2.0
@@ -58,99 +51,94 @@ class Candidate:
         return self.model + self.discretisation
 
 
-def candidates(target: Target, accuracy: float) -> tuple[list[Candidate], dict[str, str]]:
-    """The engines that model a scene, the event-driven one first, and why each other does not. accuracy: of
-    the observable, for which time steps are chosen."""
-    scene, observable = target.scene, target.observable
-    makers = {"event": _event, "step": _step, "dsmc": _boltzmann, "dsmc enskog": _enskog}
+def suited(target: Target) -> tuple[list[str], dict[str, str]]:
+    """The names of the engines that model a scene and an observable, the event-driven one first, and why each
+    other does not."""
     made, refused = [], {}
-    for name, maker in makers.items():
+    for name, (engine, _) in _ENGINES.items():
         try:
-            one = maker(target, accuracy)
-            one.engine.check_features(scene)
-            require_told(observable, scene, one.engine)
-            made.append(one)
+            engine.check_features(target.scene)
+            require_told(target.observable, target.scene, engine)
+            made.append(name)
         except SceneError as error:
             refused[name] = f"{error.key}: {error.rule}"
     return made, refused
 
 
-def _event(target: Target, accuracy: float) -> Candidate:
+def candidates(
+    target: Target, accuracy: float, conditions: Conditions
+) -> tuple[list[Candidate], dict[str, str]]:
+    """The `suited` engines with their settings, and why each other is none. accuracy: of the observable, for
+    which time steps are chosen; conditions: of the steady scene."""
+    names, refused = suited(target)
+    made = []
+    for name in names:
+        try:
+            made.append(_ENGINES[name][1](target, accuracy, conditions))
+        except SceneError as error:
+            refused[name] = f"{error.key}: {error.rule}"
+    return made, refused
+
+
+def exact_candidate() -> Candidate:
+    """The event-driven engine, which has no settings and no error."""
     return Candidate(EventDriven())
 
 
-def _step(target: Target, accuracy: float) -> Candidate:
-    TimeStepped(1.0).check_features(target.scene)
-    missed = missed_contacts(1.0, True, target.start or initial_state(target.scene, SEED))
-    met = rates(target.scene, dense=True).frequency
-    if not missed > 0.0 or not met > 0.0:
+def _event(target: Target, accuracy: float, conditions: Conditions) -> Candidate:
+    return exact_candidate()
+
+
+def _step(target: Target, accuracy: float, conditions: Conditions) -> Candidate:
+    missed = missed_contacts(1.0, True, _as_hot(target.initial, float(conditions.temperature.max())))
+    free = float((conditions.path / np.maximum(conditions.speed, 1e-300)).min())
+    if not missed > 0.0 or not math.isfinite(free):
         raise SceneError("time_step", None, "follows from contacts, which particles at rest do not have")
-    longest = min(math.sqrt(_SHARE * accuracy / (_SAFE * missed)), _LONGEST_STEP / met)
+    longest = min(math.sqrt(_SHARE * accuracy / (_SAFE * missed)), _LONGEST_STEP * free)
     step = float(f"{0.95 * longest:.2g}")  # not above the longest, however it is rounded
     return Candidate(TimeStepped(step), discretisation=_SAFE * missed * step**2, gives_up="exact contacts")
 
 
-def _boltzmann(target: Target, accuracy: float) -> Candidate:
+def _as_hot(state: State, temperature: float) -> State:
+    """A state whose particles have the mean squares of velocities at a temperature."""
+    moving = np.isfinite(state.masses)
+    mean = np.where(moving, np.sqrt(temperature / np.where(moving, state.masses, 1.0)), 0.0)
+    return replace(state, velocities=np.repeat(mean[:, None], state.dimension, axis=1))
+
+
+def _boltzmann(target: Target, accuracy: float, conditions: Conditions) -> Candidate:
     """Pairs in a cell collide as if they were points: without the excluded volume."""
-    scene, observable = target.scene, target.observable
-    engine, model = DSMC(), boltzmann_error(scene)
+    observable = target.observable
+    engine = _resolved(DSMC(), target, conditions)
+    model = boltzmann_error(conditions, observable, target.face)
     gives_up = "excluded volume, positions of pairs"
-    return Candidate(engine, model, _discretisation(engine, scene, observable), gives_up)
+    return Candidate(DSMC(), model, cell_error(engine, conditions, observable), gives_up)
 
 
-def _enskog(target: Target, accuracy: float) -> Candidate:
+def _enskog(target: Target, accuracy: float, conditions: Conditions) -> Candidate:
     """Pairs collide a diameter apart, with the contact value of their density."""
-    scene, observable = target.scene, target.observable
-    filled = scene.packing_fraction
-    if filled > _DENSEST:
-        rule = f"the Enskog model is known up to {_DENSEST:g}"
+    observable, filled = target.observable, float(conditions.filled.max())
+    if filled > DENSEST:
+        rule = f"the Enskog model is known up to {DENSEST:g}, also where the gas is densest"
         raise SceneError("packing_fraction", round(filled, 4), rule)
-    engine, model = DSMC(model="enskog"), enskog_error(scene, observable)
+    engine = _resolved(DSMC(model="enskog"), target, conditions)
+    cells = tuple(np.broadcast_to(np.array(engine.cells_per_side), conditions.free.shape).tolist())
+    model = enskog_error(conditions, observable, cells)
     gives_up = "correlated collisions, positions of pairs"
-    discretisation = _discretisation(engine, scene, observable) + cell_loss(engine, scene)
-    return Candidate(engine, model, discretisation, gives_up)
+    return Candidate(DSMC(model="enskog"), model, cell_error(engine, conditions, observable), gives_up)
 
 
-def boltzmann_error(scene: Scene) -> float:
-    """Bound on the relative error of the Boltzmann equation: what it lacks of the collision rate or of the
-    pressure, whichever is more."""
-    excess, virial = _excess(scene)
-    return max(excess, virial / (1.0 + virial))
+def _resolved(engine: DSMC, target: Target, conditions: Conditions) -> DSMC:
+    """With its cells and step. Raises SceneError where these are too coarse for the local conditions."""
+    resolved = engine.resolved(target.scene)
+    require_resolved(resolved, conditions)
+    return resolved
 
 
-def enskog_error(scene: Scene, observable: str) -> float:
-    """Bound on the relative error of the Enskog equation in an observable."""
-    transported = OBSERVABLES[observable].memory or _flows(scene)
-    return _STATIC + (_memory(scene.packing_fraction, scene.dimension) if transported else 0.0)
-
-
-def _flows(scene: Scene) -> bool:
-    """Whether something drives a flow of heat or of momentum, which transport coefficients govern."""
-    hot = {getattr(face, "temperature", None) for face in scene.faces.values()} - {None}
-    lost = scene.restitution is not None and scene.restitution.dissipative
-    return len(hot) > 1 or lost or bool(sliding_faces(scene))
-
-
-def _discretisation(engine: DSMC, scene: Scene, observable: str) -> float:
-    """The error of cells and steps: in the viscosity, and in what depends on it. Rates and pressures of an
-    even gas have none."""
-    if not OBSERVABLES[observable].memory and not _flows(scene):
-        return 0.0
-    return engine.predictions(scene)["viscosity_error"]
-
-
-def _excess(scene: Scene) -> tuple[float, float]:
-    """(chi - 1, Z - 1) of a gas that fills the container evenly, chi the largest contact value."""
-    kinds = [kind for kind in scene.kinds if kind.count]
-    radius = np.array([kind.radius for kind in kinds])
-    number = np.array([float(kind.count) for kind in kinds]) / scene.container.volume
-    chi = float(contact_values(number, radius, scene.dimension).max())
-    return chi - 1.0, 2.0 ** (scene.dimension - 1) * scene.packing_fraction * chi
-
-
-def _memory(packing_fraction: float, dimension: int) -> float:
-    """|D / Enskog's - 1| of spheres, by which correlated collisions change transport; of discs, whose
-    coefficients grow with the size of the system, the same at this packing fraction, an estimate."""
-    if packing_fraction <= 0.0:
-        return 0.0
-    return abs(float(theory.erpenbeck_wood_ratio(packing_fraction)) - 1.0)
+_Maker = Callable[[Target, float, Conditions], Candidate]
+_ENGINES: dict[str, tuple[Engine, _Maker]] = {
+    "event": (EventDriven(), _event),
+    "step": (TimeStepped(1.0), _step),
+    "dsmc": (DSMC(), _boltzmann),
+    "dsmc enskog": (DSMC(model="enskog"), _enskog),
+}

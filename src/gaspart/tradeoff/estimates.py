@@ -37,7 +37,8 @@ _SAME = 1e-12
 class Component:
     """The value of a face, an axis or a pair, or of all of an observable, from a part `time` of a run.
     spectrum, stored: S and C of its squared error; freedom: degrees of freedom of this; scale: what the error
-    is relative to, the value unless that vanishes on average."""
+    is relative to, the value unless that vanishes on average; places: of a curve, how many are known, and
+    are."""
 
     value: float
     scale: float
@@ -45,6 +46,7 @@ class Component:
     spectrum: float
     stored: float = 0.0
     freedom: float = LEAST_FREEDOM
+    places: tuple[int, int] = (1, 1)
 
     @property
     def estimate(self) -> Estimate:
@@ -74,16 +76,17 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     found = measure(observable, data, start)
     value, error = np.asarray(found.estimate, dtype=float), np.asarray(found.error, dtype=float)
     freedom = float(found.attrs.get("freedom", LEAST_FREEDOM))
-    names = _names(found)
+    names, places = _names(found), (1, 1)
     if names == [""]:  # a scalar, or a curve
         known = np.isfinite(value) & np.isfinite(error)
+        places = int(known.sum()), known.size
         value, error = (np.array(_norm(of[known])) if of.ndim else of for of in (value, error))
     scales = np.abs(np.ravel(value))
     if OBSERVABLES[observable].relative_to == "norm":  # some components vanish on average
         scales[:] = _norm(value)
     parts = zip(names, np.ravel(value), scales, np.ravel(error) ** 2 * time, strict=True)
     return {
-        name: Component(float(one), float(scale), time, float(spectrum), freedom=freedom)
+        name: Component(float(one), float(scale), time, float(spectrum), freedom=freedom, places=places)
         for name, one, scale, spectrum in parts
     }
 

@@ -9,13 +9,13 @@ import hashlib
 import json
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.analysis.observables import KEPT
+from gaspart.analysis.observables import KEPT, TOO_SHORT
 from gaspart.analysis.run import EQUILIBRATION, measured
 from gaspart.engines import Engine, EventDriven, engine_to_dict
 from gaspart.errors import SceneError, SimulationError
@@ -23,11 +23,11 @@ from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
 from gaspart.simulation import Simulation
 from gaspart.tradeoff.estimates import Component, components
-from gaspart.tradeoff.reached import TOO_SHORT, bound
+from gaspart.tradeoff.reached import bound
 from gaspart.tradeoff.target import SEED, Target
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
-from gaspart.trajectory.run import Manner, record
+from gaspart.trajectory.run import Manner, extend, record
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -47,6 +47,10 @@ _UNKNOWN_YET = *TOO_SHORT, "particles at rest", "sample_interval"
 """Keys of errors that a longer run may not have."""
 _SAME = 1e-6
 """Part of a kinetic energy that is rounding."""
+_USUAL, _RANGE = 2.0, 5.0
+"""Standard deviations within which a start is like a steady run, and which that does not go beyond."""
+_CONTINUED = 2
+"""How often a pilot is made twice as long while it is in a transient."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +59,8 @@ class Pilot:
 
     speed: processor seconds per unit of time; seconds: that the pilot took, 0 if it was kept from before;
     component: the one that is known worst, None where the observable could not be measured, for the reason in
-    `rule`; interval: between frames; settled: the time of the first frame after the start at
-    which the kinetic energy reaches its mean of the second half.
+    `rule`; interval: between frames; settled: the time from which on the run is steady (`settling_time`);
+    path: its file, None of a run that failed.
     """
 
     engine: Engine
@@ -66,6 +70,7 @@ class Pilot:
     interval: float = math.inf
     settled: float = 0.0
     rule: str = ""
+    path: Path | None = None
 
     @property
     def measured(self) -> float:
@@ -149,7 +154,7 @@ def _make(
         displacements=displacements, correlations=correlations,
         pairs=target.declared.needs == "pairs", initial=target.start,
     )  # fmt: skip
-    return record(recipe, path, Manner(overwrite=True))
+    return record(recipe, path, Manner(overwrite=True, keep_checkpoint=True))
 
 
 def require_defined(target: Target) -> None:
@@ -179,36 +184,66 @@ def _measured(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | 
 
 def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, left: float = 1.0) -> Pilot:
     """A run of about so many processor seconds, measured; speed: as from `speed_of`; left: the part of the
-    seconds that there is time for, unless a pilot was kept. An observable that it is too short for is not
-    measured. Raises SceneError for one that the scene does not have."""
+    seconds that there is time for, unless a pilot was kept. One that is in a transient is continued, to four
+    times its length at most. An observable that it is too short for is not measured. Raises SceneError for
+    one that the scene does not have."""
     scheduled = target.schedule(engine, left * seconds / speed)
     folder = cache_directory() / "pilots" / _digest(target, engine, seconds)
     folder.mkdir(parents=True, exist_ok=True)
-    took, path = 0.0, folder / "run.nc"
-    if not path.exists():
-        start = time.process_time()
-        try:
+    path, start = folder / "run.nc", time.process_time()
+    kept = path.exists()
+    try:
+        if not kept:
             _make(path, target, engine, scheduled)
-        except SimulationError as error:
-            return Pilot(engine, speed, rule=str(error))
-        took = time.process_time() - start
+        settled = _steadied(path)
+    except SimulationError as error:
+        return Pilot(engine, speed, rule=str(error))
+    took = 0.0 if kept else time.process_time() - start
     with open_trajectory(path) as trajectory:
-        found, settled = _measured(trajectory, target), _settled(trajectory)
+        frames = trajectory["time"].values
+        found = _measured(trajectory, target)
+    blank = Pilot(engine, speed, took, None, float(frames[1] - frames[0]), settled, path=path)
+    if settled > EQUILIBRATION * frames[-1]:
+        found = f"is not steady yet at the time {frames[-1]:.3g}"
     if isinstance(found, str):
-        return Pilot(engine, speed, took, rule=found)
+        return replace(blank, rule=found)
     worst = max(found.values(), key=lambda one: one.accuracy)
-    return Pilot(engine, speed, took, worst, scheduled[1], settled)
+    return replace(blank, component=worst)
 
 
-def _settled(trajectory: xr.Dataset) -> float:
-    """See `Pilot`."""
+def _steadied(path: Path) -> float:
+    """The `settling_time` of a pilot, which is continued while it is not within the part that is not
+    measured."""
+    for last in (False,) * _CONTINUED + (True,):
+        with open_trajectory(path) as trajectory:
+            settled, end = settling_time(trajectory), float(trajectory["time"][-1])
+        if last or settled <= EQUILIBRATION * end:
+            break
+        extend(path, 2.0 * end, Manner(keep_checkpoint=True))
+    return settled
+
+
+def settling_time(trajectory: xr.Dataset) -> float:
+    """The time from which on a run is steady: when the kinetic energy, and the mean place of the particles
+    along each axis with walls, have reached their means of the second half, and have left the range of that
+    for the last time."""
     with measured(trajectory, 0.0, sheared=True) as run:
-        velocities = run.peculiar
-        energy = np.einsum("tnd,tnd,n->t", velocities, velocities, run.masses[run.moving])
-        later = energy[len(energy) // 2 :]
-        beyond = energy - later.mean()
-        reached = (np.abs(beyond) <= _SAME * later.mean()) | (beyond * beyond[0] <= 0.0)
-        return float(run.time[max(1, int(np.argmax(reached)))])
+        velocities, masses = run.peculiar, run.masses[run.moving]
+        series = [np.einsum("tnd,tnd,n->t", velocities, velocities, masses)]
+        places = run.positions[:, run.moving].mean(axis=1)
+        series += [places[:, k] for k in range(run.dimension) if not run.periodic[k]]
+        return max(float(run.time[_settled_at(one)]) for one in series)
+
+
+def _settled_at(series: np.ndarray) -> int:
+    """The number of the frame from which on a series (T,) is steady."""
+    later = series[len(series) // 2 :]
+    beyond = series - later.mean()
+    scatter = max(float(later.std()), _SAME * abs(float(later.mean())))
+    at_start = abs(beyond[0]) <= _USUAL * scatter
+    reached = 1 if at_start else max(1, int(np.argmax(beyond * beyond[0] <= 0.0)))
+    far = np.flatnonzero(np.abs(beyond) > _RANGE * scatter)
+    return min(len(series) - 1, max(reached, int(far[-1]) + 1 if far.size else 0))
 
 
 def _digest(target: Target, engine: Engine, seconds: float) -> str:

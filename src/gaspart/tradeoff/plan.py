@@ -8,37 +8,29 @@ The noise and the processor time of a unit of time come from pilots; the bias is
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
 
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
-from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import number
 from gaspart.tradeoff import PILOT_SECONDS
 from gaspart.tradeoff.accuracy import Accuracy
 from gaspart.tradeoff.advice import ACCURACIES
-from gaspart.tradeoff.candidates import Candidate, candidates
-from gaspart.tradeoff.pilot import Pilot, require_defined, run_pilot, speed_of
-from gaspart.tradeoff.steady import require_steady, temperature_scatter
+from gaspart.tradeoff.candidates import Candidate
+from gaspart.tradeoff.pilot import Pilot
+from gaspart.tradeoff.scatter import Scatter, start_scatter
+from gaspart.tradeoff.steady import require_steady
 from gaspart.tradeoff.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.tradeoff.table import LEAST, QUANTILE
 from gaspart.tradeoff.target import Target, tidy
+from gaspart.tradeoff.trials import Announce, Trials
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.until import Until
 
-_WORTH = 3.0
-"""How many times as cheap as the first engine one must be to have a pilot of its own."""
-_DIFFERS = 2.5
-"""Standard errors by which two pilots differ if one is biased more than theory says."""
 _FRAMES = 384
 """Of a run: 288 independent intervals give an error 17 degrees of freedom, and 15 are required."""
-_PREPARED = 5.0
-"""Processor seconds until pilots begin that are not taken from theirs."""
 _LONGEST = 4.0
 """The longest duration of a run with `--until` over the predicted one: two examinations, and an error that
 chance made too small in the pilot."""
@@ -46,7 +38,6 @@ _SETTLED = 2.0
 """The part of a run that is not measured, over the time in which the energy came to its mean in the pilot."""
 _CROSSINGS = 10.0
 """How often a particle crosses a container with walls at least in a run."""
-Announce: TypeAlias = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -67,7 +58,8 @@ class Option:
 class Plan:
     """The advice for a scene. options: of each engine, the best first; refused: why others cannot run it;
     value: of the observable by the pilots; pilots: their results; affordable: whether the best reaches the
-    accuracy within the budget."""
+    accuracy within the budget; differing: pilots that differ from that of the exact engine by more than their
+    bounds; places: of a curve, how many the pilots know, of which the accuracy is, and how many there are."""
 
     target: Target
     accuracy: float
@@ -76,6 +68,8 @@ class Plan:
     value: float
     pilots: tuple[Pilot, ...]
     affordable: bool
+    differing: tuple[Pilot, ...] = ()
+    places: tuple[int, int] = (1, 1)
 
     @property
     def best(self) -> Option:
@@ -83,10 +77,9 @@ class Plan:
         return self.options[0]
 
     @property
-    def scatter(self) -> float:
-        """Relative standard deviation of the observable from run to run by that of the energy, beyond the
-        interval."""
-        return self.target.declared.power * temperature_scatter(self.target.scene)
+    def scatter(self) -> Scatter:
+        """Of the observable from run to run by that of the energy at the start, beyond the interval."""
+        return start_scatter(self.target)
 
     @property
     def longest_interval(self) -> float:
@@ -137,96 +130,49 @@ def plan(
     measure`; of the pressure on one wall as `pressure:x low`.
 
     budget: processor time in seconds of the run; if it does not suffice, the most accurate run within it is
-    advised. pilot_seconds: of all pilots together; up to half of it goes to what comes before them, if that
-    takes more than 5 s, as to compress particles.
+    advised. pilot_seconds: of the two pilots that most scenes have, or of the only one; up to half of it goes
+    to what comes before them, if that takes more than 5 s, as to compress particles. More is needed where a
+    third engine turns out to be the best, and by a pilot in a transient, which is continued.
     announce(text): is called before each pilot.
 
     Raises SceneError for a scene without a steady state, and for an observable that it does not have, or of
     which the pilots are too short to say anything.
     """
     low, high = ACCURACIES
-    target, begun = Target.named(scene, observable), time.process_time()
+    target = Target.named(scene, observable)
     accuracy = number("accuracy", accuracy, f"must be from {low:g} to {high:g}", least=low, most=high)
     if budget is not None:
         budget = number("budget", budget, "must be positive", above=0.0)
     pilot_seconds = number("pilot", pilot_seconds, "must be positive", above=0.0)
     require_steady(scene)
-    timed, refused = _timed(target, accuracy, announce)
-    spent = time.process_time() - begun
-    left = min(1.0, max(0.5, 1.0 - (spent - _PREPARED) / pilot_seconds))
-    pilots = _run_pilots(target, timed, pilot_seconds, left, announce)
-    biases = {one.engine: one.bias for one, _ in timed}
-    measured = [one for one in pilots if 0.0 < one.accuracy < math.inf]
-    faithful = [one for one in measured if biases[one.engine] < accuracy] or measured
-    if not faithful:
-        rule = f"{pilots[0].rule or 'does not change in the pilot run'}; allow longer pilots"
-        if target.observable == "pressure" and not target.face:
-            rule += f", or state a wall, as in pressure:{scene.container.walls[0]}"
-        raise SceneError("observable", observable, rule)
-    longest = max(faithful, key=lambda one: one.measured)
+    trials = Trials(target, accuracy, pilot_seconds, announce)
+    trials.begin()
+    options = _options(trials, budget)
+    while not trials.has_pilot(options[0].candidate.engine):  # none is advised without one
+        best = options[0].candidate
+        found = trials.make(best)
+        if not found.measured:
+            trials.refuse(best, found.rule)
+        options = _options(trials, budget)
+    reached = options[0].half_width <= accuracy * (1.0 + 1e-6)
+    pilots = tuple(trials.pilots)
+    reference = trials.reference
+    places = reference.component.places if reference.component else (1, 1)
+    shown = trials.refused, reference.value, pilots, reached, trials.differing, places
+    return Plan(target, accuracy, tuple(options), *shown)
 
-    def limits(engine: Engine, speed: float) -> tuple[float, float]:
+
+def _options(trials: Trials, budget: float | None) -> list[Option]:
+    """What each candidate needs, the best first. Raises SceneError if no pilot has measured the
+    observable."""
+    target, accuracy, longest = trials.target, trials.accuracy, trials.reference
+    options = []
+    for one, speed in trials.speeds.items():
         affordable = math.inf if budget is None else budget / speed
         most = min(affordable, _longest(target, longest), target.span[1])
-        return _least(target, engine, longest), most
-
-    options = [
-        _option(one, speed, _bias(one, measured), longest, accuracy, limits(one.engine, speed))
-        for one, speed in timed
-    ]
-    options.sort(key=lambda one: (max(one.half_width, accuracy * (1.0 + 1e-9)), one.seconds))
-    reached = options[0].half_width <= accuracy * (1.0 + 1e-6)
-    return Plan(target, accuracy, tuple(options), refused, longest.value, tuple(pilots), reached)
-
-
-def _timed(
-    target: Target, accuracy: float, announce: Announce
-) -> tuple[list[tuple[Candidate, float]], dict[str, str]]:
-    """The candidates with their processor times of a unit of time, and why other engines are none. Raises
-    SceneError if there is none, and for an observable that the scene does not have."""
-    able, refused = candidates(target, accuracy)
-    if able:
-        require_defined(target)
-    timed = []
-    for one in able:
-        announce(f"timing the {one.engine.title} engine")
-        try:
-            timed.append((one, speed_of(target, one.engine)))
-        except SceneError as error:  # as of particles from which the engine cannot start
-            refused[one.name] = f"{error.key}: {error.rule}"
-    if not timed:
-        rule = f"no engine runs this scene: {'; '.join(refused.values())}"
-        raise SceneError("engine", ", ".join(refused), rule)
-    return timed, refused
-
-
-def _run_pilots(
-    target: Target, timed: list[tuple[Candidate, float]], seconds: float, left: float, announce: Announce
-) -> list[Pilot]:
-    """A pilot of the first engine, and of the cheapest one if that is much cheaper; left: see `run_pilot`."""
-    chosen = timed[:1]
-    cheapest = min(timed, key=lambda one: one[1])
-    if cheapest[1] * _WORTH < timed[0][1]:
-        chosen.append(cheapest)
-    pilots = []
-    for one, speed in chosen:
-        announce(f"a pilot run, {one.engine.title} engine, {left * seconds / len(chosen):.2g} s")
-        pilots.append(run_pilot(target, one.engine, seconds / len(chosen), speed, left))
-    return pilots
-
-
-def _bias(candidate: Candidate, measured: list[Pilot]) -> float:
-    """The bound on a candidate's bias: that of theory, or what its pilot differs by from the exact
-    engine's."""
-    own = [one for one in measured if one.engine == candidate.engine]
-    exact = [one for one in measured if one.engine.name == "event"]
-    if candidate.engine.name == "event" or not own or not exact:
-        return candidate.bias
-    difference = abs(own[0].value / exact[0].value - 1.0)
-    error = math.hypot(own[0].accuracy, exact[0].accuracy)
-    if difference <= candidate.bias + _DIFFERS * error:
-        return candidate.bias
-    return difference + QUANTILE * error
+        limits = _least(target, one.engine, longest), most
+        options.append(_option(one, speed, trials.bias(one), longest, accuracy, limits))
+    return sorted(options, key=lambda one: (max(one.half_width, accuracy * (1.0 + 1e-9)), one.seconds))
 
 
 def _option(

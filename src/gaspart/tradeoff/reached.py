@@ -24,11 +24,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT
 from gaspart.errors import SceneError
 from gaspart.tradeoff.estimates import LEAST_FREEDOM, components
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
-from gaspart.trajectory.until import Requirement, examined_before
+from gaspart.trajectory.until import Requirement, Until, examined_before
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,8 +39,8 @@ if TYPE_CHECKING:
 _DOUBT = 0.1
 """Probability with which the true error exceeds its bound."""
 _CONFIDENCE = 0.95
-TOO_SHORT = ("frames", "duration", "collisions", "start", "D")
-"""Keys of the errors of an analysis that a longer run may not have."""
+IDLE = 16384
+"""Frames without any contact after which a run ends that has no longest duration."""
 
 
 @dataclass(frozen=True)
@@ -137,12 +138,16 @@ class Examiner:
         self._report = report
         self._known: dict[tuple[Requirement, int], dict[str, Estimate] | str] = {}
 
-    def __call__(self, path: Path, accuracies: tuple[Requirement, ...], frames: int) -> float:
-        """The largest error over the required one, by the first frames of a file."""
+    def __call__(self, path: Path, until: Until, frames: int) -> float:
+        """The largest error over the required one, by the first frames of a file; 0 for a run without a
+        longest duration that is given up, since nothing happens that could be measured."""
         with open_trajectory(path) as data:
-            reached = self.examine(data, accuracies, frames)
+            reached = self.examine(data, until.accuracies, frames)
+            collisions = float(data["collisions"][frames - 1])
         if self._report:
             self._report(reached)
+        if until.at_most is None and frames >= IDLE and _is_idle(reached, collisions):
+            return 0.0
         return max(one.excess for one in reached)
 
     def examine(self, data: xr.Dataset, accuracies: tuple[Requirement, ...], frames: int) -> list[Reached]:
@@ -184,6 +189,14 @@ class Examiner:
                     raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
                 self._known[key] = f"{error.key}: {error.rule}"
         return self._known[key]
+
+
+def _is_idle(reached: list[Reached], collisions: float) -> bool:
+    """Whether an observable is made of contacts of which there was none."""
+    return any(
+        one.value == 0.0 if OBSERVABLES[one.asked.observable].along == ("face",) else collisions == 0.0
+        for one in reached
+    )
 
 
 def _measure(data: xr.Dataset, asked: Requirement) -> dict[str, Estimate]:

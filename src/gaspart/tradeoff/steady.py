@@ -34,14 +34,25 @@ def is_driven(scene: Scene) -> bool:
 
 def at_temperature(scene: Scene) -> bool:
     """Whether a face gives particles the velocities of a temperature."""
-    return any(getattr(face, "temperature", None) for face in scene.faces.values())
+    return bool(face_temperatures(scene))
+
+
+def face_temperatures(scene: Scene) -> set[float]:
+    """Those that faces have."""
+    found = {getattr(face, "temperature", None) for face in scene.faces.values()}
+    return {float(one) for one in found if one}
+
+
+def keeps_energy(scene: Scene) -> bool:
+    """Whether a run keeps the energy of its start."""
+    law = scene.restitution
+    return not is_driven(scene) and (law is None or not law.dissipative)
 
 
 def temperature_scatter(scene: Scene) -> float:
-    """Relative standard deviation, from run to run, of the temperature of a scene whose energy is conserved:
-    velocities that are drawn have that of their species only on average."""
+    """Relative standard deviation, from run to run, of the temperature of an even scene whose energy is
+    conserved: velocities that are drawn have that of their species only on average."""
     drawn = any(kind.temperature is not None and not kind.exact_temperature for kind in scene.species)
-    law = scene.restitution
-    if not drawn or is_driven(scene) or (law is not None and law.dissipative):
+    if not drawn or not keeps_energy(scene):
         return 0.0
     return math.sqrt(2.0 / (scene.dimension * scene.count))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -19,6 +19,7 @@ from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
 from gaspart.state.state import State
+from gaspart.tradeoff.conditions import Conditions, known_conditions
 from gaspart.trajectory.correlator import Correlations
 
 SEED = 0
@@ -40,11 +41,12 @@ _COLLIDED = 40.0
 @dataclass(frozen=True)
 class Target:
     """An observable of `gaspart measure` of a scene; face: of the pressure, the wall (`x low`), by default
-    each of them."""
+    each of them; settled: a state in which the scene has become steady, if one is known."""
 
     scene: Scene
     observable: str
     face: str | None = None
+    settled: State | None = field(default=None, compare=False)
 
     @classmethod
     def named(cls, scene: Scene, name: str) -> Target:
@@ -62,17 +64,31 @@ class Target:
 
     @cached_property
     def start(self) -> State | None:
-        """The state at time 0 of particles that are compressed, which takes long; None of others."""
+        """The state from which pilots start: one that is settled, or that at time 0 of particles that are
+        compressed, which takes long; None of others."""
+        if self.settled is not None:
+            return self.settled
         compressed = any(kind.arrangement == "compressed" for kind in self.scene.species if kind.count)
         return initial_state(self.scene, SEED) if compressed and not self.scene.vibrates else None
 
     @cached_property
+    def initial(self) -> State:
+        """That state, or the one at time 0 of the pilots' seed."""
+        return self.start or initial_state(self.scene, SEED)
+
+    @cached_property
+    def conditions(self) -> Conditions | None:
+        """The local density and temperature of the steady scene, None where theory does not know them."""
+        return known_conditions(self.scene, self.initial)
+
+    @cached_property
     def frequency(self) -> float:
-        """Collisions of a particle per time: by theory in a gas as hot as at the start, or, if its particles
-        start at rest, in the second half of a short run."""
+        """Collisions of a particle per time: by theory in a gas as hot as at the start, or in the column that
+        it becomes; or, if its particles start at rest, in the second half of a short run."""
         found = rates(self.scene, dense=True).frequency
         if found > 0.0:
-            return found
+            gas = self.conditions
+            return found if gas is None or gas.columns is None else found * gas.quickened
         simulation = Simulation(self.scene, EventDriven(), SEED, initial=self.start)
         times, counts = [0.0], [0.0]
         while times[-1] < _FALL * self.crossing and counts[-1] < _COLLIDED * self.scene.count:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from gaspart.analysis.needs import require_of
 from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept, require_told
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
@@ -16,6 +17,7 @@ from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.tradeoff.accuracy import Accuracy
 from gaspart.tradeoff.reached import Examiner, Reached
+from gaspart.tradeoff.steady import require_steady
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
 from gaspart.trajectory.correlator import Correlations
@@ -65,12 +67,11 @@ def run(
     Defaults of engines follow from the scene's `speed` or `temperature` all the same.
 
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
-    examined at 64, 96, 128, 192 ... frames, or at_most after so long (`gaspart.reached_accuracy`). The
-    sample_interval is then by default the mean time between collisions; for D displacements are kept.
+    examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
+    without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
-    examination. SIGINT and SIGTERM take effect after a checkpoint was written: the handlers of the program
-    that calls this are then called, of which Python's own raises KeyboardInterrupt.
+    examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
 
     Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
     SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
@@ -78,6 +79,7 @@ def run(
     wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, engine, follow, correlations)
+        _require_end(asked, scene, at_most, initial is not None)
         displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
@@ -166,17 +168,39 @@ def require_measurable(
     an engine says nothing, or for which this run does not keep what it needs."""
     walls, declared = scene.container.walls, OBSERVABLES[asked.observable]
     kept = ("fluxes",) if correlations is not None and correlations.stress else ()
+    counted = declared.along == ("face",) or declared.needs == "fluxes"
     try:
         require_defined(asked.observable, scene)
         require_kept(asked.observable, kept)
         require_told(asked.observable, scene, engine)
+        if follow is None or follow >= scene.count or counted:
+            require_of(asked.observable, scene, correlations=correlations, displacements=True, follow=follow)
     except SceneError as error:
         raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
     if asked.face not in (None, *walls):
         raise SceneError("until", asked.name, f"the walls are {', '.join(walls)}")
-    counted = declared.along == ("face",) or declared.needs == "fluxes"
     if follow is not None and follow < scene.count and not counted:
         raise SceneError("until", asked.name, "needs all particles in the file, without follow")
+
+
+def _require_end(asked: Requirement, scene: Scene, at_most: float | None, given: bool) -> None:
+    """Raise SceneError for a run in which nothing ever happens, and, without a longest duration, for one that
+    comes to no steady state. given: whether it starts from a given state."""
+    kinds = [kind for kind in scene.kinds if kind.count]
+    if not kinds:
+        return  # which the recipe refuses
+    moving = given or any(kind.initial_temperature(scene.dimension) > 0.0 for kind in kinds)
+    driven = scene.gravity or scene.thermostat or any(face.moves for face in scene.faces.values())
+    if not moving and not driven:
+        raise SceneError("until", asked.name, "never becomes known: nothing moves")
+    if scene.count == 1 and OBSERVABLES[asked.observable].along != ("face",):
+        raise SceneError("until", asked.name, "never becomes known: a single particle meets no other")
+    if at_most is None:
+        try:
+            require_steady(scene)
+        except SceneError as error:
+            rule = f"{error.key}: {error.rule}, or a longest one (at_most)"
+            raise SceneError("until", asked.name, rule) from None
 
 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:

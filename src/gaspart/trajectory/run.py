@@ -32,10 +32,11 @@ from gaspart.trajectory.opening import check_frames, checked
 from gaspart.trajectory.partial import TRAJECTORY, UNFINISHED, is_blank, locked, partial_path, writing
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
 from gaspart.trajectory.recording import Examine, Progress, Recording
-from gaspart.trajectory.until import Requirement, is_examined
+from gaspart.trajectory.until import Until, is_examined
 
-Examiner: TypeAlias = Callable[[Path, tuple[Requirement, ...], int], float]
-"""What examines the first frames of a file: the largest error over the required one, inf if unknown."""
+Examiner: TypeAlias = Callable[[Path, Until, int], float]
+"""What examines the first frames of a file: the largest error over the required one, inf if unknown, 0 to
+give up."""
 
 
 @dataclass(frozen=True)
@@ -208,7 +209,7 @@ def _examination(wanted: Recipe, path: Path, examiner: Examiner | None) -> Exami
         return None
     if examiner is None:
         raise ValueError("examiner: None (a run that ends when it is accurate needs one)")
-    return lambda frames: examiner(path, until.accuracies, frames)
+    return lambda frames: examiner(path, until, frames)
 
 
 def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:

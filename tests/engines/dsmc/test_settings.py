@@ -31,12 +31,12 @@ def test_cells_are_a_third_of_a_path_or_hold_sixteen_or_eight():
     ):
         container = gp.Container((side,) * 3, "periodic")
         scene = gp.Scene(container, [gp.Species(count, 0.001)])
-        assert cells_for(gp.DSMC(), scene, Rates(1.0 / path, 1.0)) == (cells,) * 3
+        assert cells_for(gp.DSMC(), scene, Rates(1.0 / path, 1.0, path)) == (cells,) * 3
 
 
 def test_the_predicted_error_is_that_of_the_literature():
     scene = gas(3, 1000, 0.001)
-    found = Rates(1.0, math.sqrt(8.0 / math.pi))
+    found = Rates(1.0, math.sqrt(8.0 / math.pi), math.sqrt(8.0 / math.pi))
     side = scene.container.lengths[0]
     cells = 4
     width = side / cells / found.path

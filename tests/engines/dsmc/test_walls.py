@@ -82,3 +82,82 @@ def test_a_corner_reflects_both_components():
     assert sim.state.positions[0] == pytest.approx((8.0, 8.5))
     assert sim.state.velocities[0] == pytest.approx((-1.0, -1.0))
     assert sim.tally.wall_hits.tolist() == [0, 1, 0, 1]
+
+
+def light_in_a_hundred(seed=1):
+    """A hundred particles that hardly move and one of the mass 1e-12, so small that nothing collides."""
+    kinds = [gp.Species(100, 1e-6, temperature=1.0), gp.Species(1, 1e-6, 1e-12, temperature=1.0)]
+    return gp.Simulation(gp.Scene(gp.Container((10.0, 10.0, 10.0)), kinds), gp.DSMC(), seed)
+
+
+def test_a_light_particle_flies_the_whole_step():
+    """It meets walls thousands of times in a step; each component keeps its size, and gives 2 m v for each
+    crossing."""
+    sim = light_in_a_hundred()
+    start = sim.initial_state
+    sim.advance(duration=200 * sim.engine.time_step)
+    assert np.abs(sim.state.velocities) == pytest.approx(np.abs(start.velocities), rel=1e-15)
+    width = 10.0 - 2e-6
+    hits = np.abs(start.velocities[-1]) * sim.time / width
+    assert hits.sum() > 64 * 200
+    heavy = np.abs(start.velocities[:-1]).sum(axis=0) * sim.time / width
+    assert sim.tally.wall_hits.reshape(3, 2).sum(axis=1) == pytest.approx(hits, abs=2.0 * heavy.max() + 2.0)
+
+
+@pytest.mark.parametrize("gravity", [None, (0.0, 0.0, -1e-3)])
+def test_a_step_of_thirty_crossings_gives_the_whole_pressure(gravity):
+    """The momentum given to the walls is that of free flights: exact, whatever the step."""
+    scene = gp.Scene(
+        gp.Container((10.0, 10.0, 10.0)), [gp.Species(100, 1e-7, temperature=1.0)], gravity=gravity
+    )
+    sims = [gp.Simulation(scene, gp.DSMC(time_step=step), 4) for step in (300.0, 1.0)]
+    for sim in sims:
+        sim.advance(duration=3000.0)
+    long, short = sims
+    assert long.state.positions == pytest.approx(short.state.positions, abs=1e-7)
+    assert np.array_equal(long.tally.wall_hits, short.tally.wall_hits)
+    assert long.tally.wall_impulse == pytest.approx(short.tally.wall_impulse, rel=1e-10)
+    square = (long.initial_state.velocities[:, 0] ** 2).sum()
+    assert long.tally.wall_impulse[:2] == pytest.approx(square / 10.0 * 3000.0, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "law", [None, gp.Restitution(0.9), gp.Restitution(1.0, 0.3), gp.Restitution(0.7, -0.5)]
+)
+@pytest.mark.parametrize("step", [5.0, 100.0])
+def test_the_floor_carries_the_weight_of_a_cold_gas(law, step):
+    """Of particles that bounce thousands of times in a step, or come to rest on the floor."""
+    kinds = [gp.Species(50, 1e-4, speed=1e-3)]
+    container = gp.Container((10.0, 10.0, 10.0), ("periodic", "periodic", "wall"))
+    scene = gp.Scene(container, kinds, gravity=(0.0, 0.0, -1.0), restitution=law)
+    sim = gp.Simulation(scene, gp.DSMC(time_step=step), 2)
+    before = sim.state.momentum[2]
+    for _ in range(4):
+        sim.advance(duration=500.0)
+        sim.check_invariants()
+    low, high = sim.tally.wall_impulse[4:]
+    assert low - high - 50.0 * sim.time == pytest.approx(sim.state.momentum[2] - before, abs=1e-7 * sim.time)
+    if law is None:
+        assert sim.tally.dissipated_energy == 0.0
+        assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-9)
+
+
+def test_particles_on_the_floor_stay_there():
+    particle = gp.Particle((5.0, 0.5), (0.3, 0.0), 0.5)
+    container = gp.Container((10.0, 10.0), ("periodic", "wall"))
+    scene = gp.Scene(container, particles=[particle], gravity=(0.0, -1.0))
+    sim = advanced(scene, 100, time_step=0.7, cells_per_side=1)
+    assert sim.state.positions[0] == pytest.approx(((5.0 + 21.0) % 10.0, 0.5))
+    assert sim.tally.wall_impulse[2] == pytest.approx(sim.time * sim.state.masses[0])
+
+
+def test_images_that_cannot_be_counted_end_a_run_with_a_line():
+    particle = gp.Particle((0.5, 0.5), (1e9, 0.0), 0.01)
+    scene = gp.Scene(gp.Container((1.0, 1.0), "periodic"), particles=[particle])
+    sim = gp.Simulation(scene, gp.DSMC(time_step=1.0), 1)
+    sim.advance(until=2.0)
+    assert sim.state.images[0, 0] == 2e9
+    with pytest.raises(
+        gp.SimulationError, match=r"at time 3 a particle has crossed the container 2\^31 times"
+    ):
+        sim.advance(until=3.0)

@@ -5,11 +5,14 @@ from pathlib import Path
 
 import pytest
 
+from gaspart.cli import main
 from gaspart.errors import SceneError
 from gaspart.reproduction.config import check
 from gaspart.reproduction.families import installed, registry
+from gaspart.yaml_text import dump_yaml
 
 FAMILY = '''"""Paths."""
+from gaspart.cli import main
 from gaspart.errors import SceneError
 from gaspart.kinds import positive
 
@@ -161,3 +164,26 @@ def test_only_a_kind_that_a_config_has_is_imported(install):
     assert registry.known_kinds() == ["observable", "flights", "paths"]
     assert "gas_paths" not in sys.modules
     check(configured())
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"no section\n[gaspart.families]\npaths\n",
+        b"\xff\xfe[gaspart.configs]\n",
+        b"[gaspart.configs]\ncheck = gas_paths:nothing\nverify = gas_paths:nothing\n",
+        b"[gaspart.configs]\ncheck = \nverify = :::\n= a b\n[gaspart.families]\n= :::\n",
+    ],
+)
+@pytest.mark.parametrize("words", [["check", "own.yaml"], ["verify", "own.zip"]])
+def test_broken_entry_points_of_another_package_end_no_command(
+    install, tmp_path, monkeypatch, capsys, text, words
+):
+    monkeypatch.chdir(tmp_path)
+    install("gas-paths", {})
+    (tmp_path / "gas_paths-0.3.dist-info/entry_points.txt").write_bytes(text)
+    (tmp_path / "own.yaml").write_text(dump_yaml(CONFIG))
+    assert main(words) == (0 if words[0] == "check" else 2)
+    out, err = capsys.readouterr()
+    assert (out.startswith("ok") or "1 experiments of 1 points" in out) if words[0] == "check" else not out
+    assert err.count("\n") == (words[0] == "verify") and "Traceback" not in err

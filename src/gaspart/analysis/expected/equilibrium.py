@@ -167,6 +167,6 @@ def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expe
     kinetic energy does not change, so that the law of this number of particles is exact."""
     if mass is None:
         return None
-    law = theory.maxwell_cdf(edges, run.dimension, run.temperature, mass, run.freedom if fixed else None)
+    law = theory.maxwell_cdf(edges, run.dimension, run.temperature, mass, int(run.freedom) if fixed else None)
     source = f"Maxwell's distribution{', of this number at fixed energy' if fixed else ''}"
     return np.diff(law) / np.diff(edges), 0.0, source

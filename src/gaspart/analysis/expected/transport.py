@@ -19,6 +19,9 @@ from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
 from gaspart.theory.dsmc import diffusion_by_modes
 
+_WINDOW = 12.0, 24.0
+"""Collisions of a particle from which the slope of D is taken, see `analysis.diffusion`."""
+
 
 def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) -> Expected | None:
     """(lag,) by an exponential velocity correlation; axes: along each of them."""
@@ -54,7 +57,8 @@ def diffusion(run: Run) -> Expected | None:
 def diffusion_in_cube(gas: Gas, side: float, engine: Engine | None, scene: Scene | None) -> Expected | None:
     """D of spheres in a periodic cube, by the engine that moves them in a scene, by default an exact one.
 
-    Of spheres that touch it is Erpenbeck and Wood's, less the shift of Yeh and Hummer. Of a kinetic equation
+    Of spheres that touch it is Erpenbeck and Wood's, less the shift of Yeh and Hummer, and less what modes of
+    the container add after the slope was taken, of which a half is uncertain. Of a kinetic equation
     it is that of this equation, and what the flow in the container adds, which its cells resolve. Half of
     shift and addition, and the bias of the engine, are its uncertainty. None for discs, and spheres denser
     than the fluid.
@@ -63,7 +67,8 @@ def diffusion_in_cube(gas: Gas, side: float, engine: Engine | None, scene: Scene
         return None
     if engine is None or scene is None or engine.equation == EXACT:
         value, error = theory.diffusion_in_cube(gas.packing_fraction, side, **gas.particle)
-        return value, error, "Erpenbeck and Wood, Yeh and Hummer"
+        late = _after_window(gas)
+        return value + late, math.hypot(error, 0.5 * late), "Erpenbeck and Wood, Yeh and Hummer"
     value = bulk.diffusion(gas, engine.equation)
     density = float(theory.number_density(gas.packing_fraction, 3, gas.diameter))
     spreading = bulk.shear_viscosity(gas, engine.equation) / (gas.mass * density) + value
@@ -71,6 +76,15 @@ def diffusion_in_cube(gas: Gas, side: float, engine: Engine | None, scene: Scene
     added = diffusion_by_modes(side, gas.count, 3, engine.cells_along(scene), path, spreading)
     error = math.hypot(0.5 * added, engine.bias(scene, "paths") * value)
     return value + added, error, f"{SOURCES[engine.equation]}, with the flow that its cells resolve"
+
+
+def _after_window(gas: Gas) -> float:
+    """What D(t) at the collisions of a particle between which its slope is taken lacks of its limit, by the
+    hydrodynamic modes of the container (`theory.diffusion_modes`)."""
+    unit = gas.diameter / gas.thermal_speed
+    times = np.linspace(*_WINDOW, 9) / bulk.collision_rate(gas, EXACT) / unit
+    lacking = theory.diffusion_modes(times, gas.packing_fraction, 3, gas.count) - times / gas.count
+    return float(lacking.mean()) * gas.diameter**2 / unit
 
 
 def mutual_diffusion(run: Run) -> Expected | None:

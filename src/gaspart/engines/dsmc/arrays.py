@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaspart.engines.dsmc.rates import accessible
 from gaspart.engines.features.faces import WALL_DRAWS, kinds_and_levels, sliding_velocities
-from gaspart.engines.features.masses import largest_terms
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Tools
 from gaspart.kernels.dsmc.stress import Stress
 from gaspart.kernels.model import ContactLaw, flight_dtype
+from gaspart.kernels.physics.exact_sum import WIDTH
 from gaspart.scene.scene import Scene
 from gaspart.state.drift import drift_of
 from gaspart.state.random import key_of
@@ -68,8 +67,6 @@ def tools_for(engine: DSMC, scene: Scene, state: State, step: float, seed: int |
     """What a step works with."""
     kinds, which = kinds_of(state)
     threads, faces, d = engine.threads, 2 * scene.dimension, scene.dimension
-    momentum, energy = largest_terms(scene, state, 1.0)
-    sigma = 2.0 ** math.frexp(2.0 * scene.largest_radius)[1]
     radius, mass, inertia = (np.ascontiguousarray(column) for column in kinds.T)
     return Tools(
         margin=float(not scene.centres_to_walls),
@@ -88,24 +85,20 @@ def tools_for(engine: DSMC, scene: Scene, state: State, step: float, seed: int |
         pair_spins=np.zeros((threads, 2, 3)),
         sums=np.zeros((threads, 2, 2)),
         counts=np.zeros((threads, PADDED), np.int64),
-        virial=np.zeros((threads, 2), np.int64),
-        loss=np.zeros((threads, 2), np.int64),
+        virial=np.zeros((threads, WIDTH), np.int64),
+        loss=np.zeros((threads, WIDTH), np.int64),
         wall_hits=np.zeros((threads, faces), np.int64),
-        wall_impulse=np.zeros((threads, faces, 2), np.int64),
-        wall_heat=np.zeros((threads, faces, 2), np.int64),
-        scales=np.array([momentum, energy, momentum * sigma]),
+        wall_impulse=np.zeros((threads, faces, WIDTH), np.int64),
+        wall_heat=np.zeros((threads, faces, WIDTH), np.int64),
     )
 
 
 def stress_for(scene: Scene, state: State, threads: int) -> Stress:
     """The sums of the stress tensor and the heat flux, at zero."""
     d = scene.dimension
-    momentum, energy = largest_terms(scene, state, 1.0)
-    length = 2.0 ** math.frexp(max(scene.container.lengths))[1]
     number = 2 * d * d + d
-    sums, cell = np.zeros((threads, number, 2), np.int64), np.zeros((threads, number))
-    scales = np.array([momentum * length, energy * length])
-    return Stress(sums, cell, np.zeros((threads, 2, d + 1)), scales, drift_of(scene, state))
+    sums, cell = np.zeros((threads, number, WIDTH), np.int64), np.zeros((threads, number))
+    return Stress(sums, cell, np.zeros((threads, 2, d + 1)), drift_of(scene, state))
 
 
 TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")
@@ -117,7 +110,7 @@ def faces_for(scene: Scene, threads: int) -> Faces | None:
     if not scene.faces:
         return None
     velocities = sliding_velocities(scene)
-    shear = None if velocities is None else np.zeros((threads, *velocities.shape, 2), np.int64)
+    shear = None if velocities is None else np.zeros((threads, *velocities.shape, WIDTH), np.int64)
     return Faces(*kinds_and_levels(scene), velocities, shear)
 
 

@@ -22,9 +22,23 @@ MOST_KINDS = 16
 
 def is_uniform(scene: Scene) -> bool:
     """Whether the density is the same everywhere and stays so: it is known then."""
+    return all(scene.container.periodic) and spreads(scene)
+
+
+def spreads(scene: Scene) -> bool:
+    """Whether nothing in a scene brings particles together."""
     spread = all(kind.arrangement != "slab" and kind.region is None for kind in scene.species)
     elastic = scene.restitution is None or not scene.restitution.dissipative
-    return all(scene.container.periodic) and spread and elastic
+    return spread and elastic
+
+
+def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:
+    """(2, cells) the fields of one grid on another: those of the cells in which its centres are."""
+    per_side = tuple(after.per_side)
+    centres = np.stack(np.unravel_index(np.arange(len(after.starts) - 1), per_side)) + 0.5
+    ratio = (before.per_side / after.per_side)[:, None]
+    places = np.minimum((centres * ratio).astype(np.int64), before.per_side[:, None] - 1)
+    return fields[:, np.ravel_multi_index(tuple(places), tuple(before.per_side))]
 
 
 def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:

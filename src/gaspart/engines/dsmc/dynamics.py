@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.engines.dsmc.defaults import cells_for, step_for, warn_if_coarse
-from gaspart.engines.dsmc.limits import check_scene
-from gaspart.engines.dsmc.rates import rates
+from gaspart.engines.belonging import check_parts
+from gaspart.engines.dsmc.crowding import EPOCH, HIGHEST
+from gaspart.engines.dsmc.limits import check_made, check_scene
+from gaspart.engines.dsmc.pace import FINEST
 from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.part import Part, arrays_of, write_parts
 from gaspart.engines.features.thermostat import step_kicks
 from gaspart.errors import SceneError
+from gaspart.kernels.physics.running_sum import net
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.state.tally import Tally, tallied_fluxes
@@ -24,54 +26,57 @@ if TYPE_CHECKING:
     from gaspart.engines.event_log import EventLog
 
 _MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
+_WHOLE = 2**FINEST
+"""Parts of a step, in which the place within it is counted."""
 
 
 class DsmcDynamics:
     """A scene under way; its time is a whole number of steps.
 
-    cells_per_side (d,), time_step: what was chosen.
+    time_step: what was chosen. A step may be made in parts, and cells may become narrower: see `pace` and
+    `crowding`.
     """
 
     def __init__(
         self, engine: DSMC, scene: Scene, state: State, seed: int | tuple[int, ...], stress: bool
     ) -> None:
         from gaspart.engines.dsmc import arrays
+        from gaspart.engines.dsmc.resolution import Resolution
         from gaspart.kernels.dsmc import loop, model
         from gaspart.kernels.model import Space
-        from gaspart.kernels.physics import running_sum
+        from gaspart.kernels.physics import exact_sum
 
         engine.check_features(scene)
         check_scene(scene, state)
-        found = rates(scene, engine.model == "enskog")
-        self.cells_per_side = cells_for(engine, scene, found)
-        self.time_step = step_for(engine, scene, found)
-        warn_if_coarse(engine, self.cells_per_side, self.time_step, scene, found)
+        self._resolution = Resolution(engine, scene, state, len(arrays.kinds_of(state)[0]))
+        self.time_step = self._resolution.step
         self._engine, self._scene, self._reference = engine, scene, state
-        self._arrays, self._loop, self._layout, self._sums = arrays, loop, model, running_sum
+        self._arrays, self._loop, self._layout, self._sums = arrays, loop, model, exact_sum
         self._particles = arrays.empty_particles(state)
-        self._grid = arrays.grid_for(scene, state, self.cells_per_side, engine.threads)
         self._tools = arrays.tools_for(engine, scene, state, self.time_step, seed)
-        space = Space(scene.container.lengths, scene.container.periodic, self._tools.margin)
-        self._setting = model.Setting(space, self._tools, 0)
+        self._space = Space(scene.container.lengths, scene.container.periodic, self._tools.margin)
         self._gravity = scene.gravity
         law = contact_law(scene, state)
         self._faces, self._law = arrays.faces_for(scene, engine.threads), arrays.law_for(law)
-        self._dense = None
-        if engine.model == "enskog":
-            from gaspart.engines.dsmc.dense import dense_for
-
-            self._dense = dense_for(scene, state, self._grid, len(self._tools.radius))
         self._stress = arrays.stress_for(scene, state, engine.threads) if stress else None
         self._kicks = step_kicks(scene, self.time_step, seed)
-        parts = (
-            LawPart(law) if law else None,
-            Part({"fields": self._dense.fields}) if self._dense else None,
-            Part({"given": self._kicks.given}) if self._kicks else None,
-        )
+        parts = (LawPart(law) if law else None, Part({"given": self._kicks.given}) if self._kicks else None)
         self._parts = [part for part in parts if part]
         self._place(np.arange(state.count), state.positions, state.velocities, state.images)
         self._lost = np.zeros(2)  # net and gross, before the tally began
-        self._start, self._since = state.time, 0
+        self._start, self._steps, self._place_in_step, self._since = state.time, 0, 0, np.zeros(2, np.int64)
+        self._look()
+
+    @property
+    def cells_per_side(self) -> tuple[int, ...]:
+        """(d,) the cells along each axis at present."""
+        return self._resolution.cells
+
+    def _look(self) -> None:
+        """Let the cells fit the density that the gas has now."""
+        if self._resolution.crowds:
+            particles = self._particles
+            self._resolution.look(particles.data[particles.rows[: self._scene.dimension]].T, self.time)
 
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
@@ -99,14 +104,9 @@ class DsmcDynamics:
         return self._particles.numbers[self._particles.rows[-1]]
 
     @property
-    def _steps(self) -> int:
-        """How many steps have been made."""
-        return int(self._tools.clock[0])
-
-    @property
     def time(self) -> float:
         """The time reached, at the end of a step."""
-        return self._start + self._steps * self.time_step
+        return self._start + (self._steps + self._place_in_step / _WHOLE) * self.time_step
 
     def advance(
         self, until: float, most: int | None = None, log: EventLog | None = None, work: int | None = None
@@ -114,7 +114,7 @@ class DsmcDynamics:
         """Step to the last whole step not after `until` (to within 1e-9 of a step).
 
         Raises SceneError for what only the event-driven engine can do, count or record events, and for a time
-        that is not within 2^53 steps.
+        that is not within 2^53 steps; SimulationError if the particles come to be too fast for a step.
         """
         wanted = {"max_events": most, "max_work": work, "record_events": None if log is None else True}
         for key, value in wanted.items():
@@ -129,43 +129,63 @@ class DsmcDynamics:
 
             set_num_threads(min(self._engine.threads, config.NUMBA_NUM_THREADS))
         while self._steps < target:
-            stop = target if self._kicks is None else min(target, self._kicks.next_step(self._steps))
-            self._run(stop - self._steps)
-            if self._kicks is not None:
-                self._kicks.happen(self._particles, self._tools, self._steps)
+            epoch = self._steps - self._steps % EPOCH + EPOCH
+            self._make(min(target, epoch) if self._resolution.crowds else target)
+            if self._steps % EPOCH == 0:
+                self._look()
+        self._resolution.warn_of_speed(self.time)
 
-    def _run(self, steps: int) -> None:
-        """Let the kernel make so many steps."""
+    def _make(self, stop: int) -> None:
+        """Make all steps up to one."""
+        while self._steps < stop:
+            level = self._resolution.level(self._particles, self._place_in_step, self.time)
+            part, at = _WHOLE >> level, self._steps * _WHOLE + self._place_in_step
+            number = (stop * _WHOLE - at) // part
+            if self._kicks is not None:
+                number = min(number, self._kicks.until(at / _WHOLE, 0.5**level))
+            at += part * self._run(level, number)
+            self._steps, self._place_in_step = divmod(at, _WHOLE)
+            if self._kicks is not None:
+                self._kicks.happen(self._particles, self._tools, at / _WHOLE, 0.5**level)
+            check_made(self._tools.counts, self.time)
+
+    def _run(self, level: int, number: int) -> int:
+        """Let the kernel make so many parts of a step of a level. Returns how many it has made."""
         threads = self._engine.threads if self._engine.threads > 1 else None
-        options = self._gravity, self._faces, self._law, self._dense, self._stress
-        self._loop.run_steps(self._particles, self._grid, self._setting, steps, threads, options)
+        now = self._resolution
+        pace = now.pace and now.pace._replace(level=level)
+        tools = self._tools._replace(dt=math.ldexp(self.time_step, -level))
+        setting = self._layout.Setting(self._space, tools, 0)
+        options = self._gravity, self._faces, self._law, now.dense, self._stress, pace
+        return self._loop.run_steps(self._particles, now.grid, setting, number, threads, options)
 
     def reset_tally(self) -> None:
         """Begin to count anew."""
         self._lost = np.array([self.dissipated, self.exchanged])
-        for key in self._arrays.TALLY:
-            getattr(self._tools, key)[...] = 0
+        for array in self._counted.values():
+            array[...] = 0
         if self._kicks is not None:
             self._kicks.given[:] = 0.0
-        for sums in self._optional.values():
-            sums[...] = 0
-        self._since = self._steps
+        self._since[:] = self._steps, self._tools.clock[0]
 
     @property
-    def _optional(self) -> dict[str, np.ndarray]:
-        """Sums (threads, ...) of what not every scene has, by their names in a checkpoint."""
+    def _counted(self) -> dict[str, np.ndarray]:
+        """The arrays (threads, ...) that count, by their names in a checkpoint."""
+        found = {key: getattr(self._tools, key) for key in self._arrays.TALLY}
         stress, shear = self._stress and self._stress.sums, self._faces and self._faces.shear
-        return {key: sums for key, sums in {"stress": stress, "shear": shear}.items() if sums is not None}
+        return found | {
+            key: sums for key, sums in {"stress": stress, "shear": shear}.items() if sums is not None
+        }
 
     @property
     def _heat(self) -> np.ndarray:
         """(2d, 2) what each face was given by particles that left it at its temperature, in two parts."""
-        return self._sums.whole_parts(self._tools.wall_heat.sum(axis=0), self._tools.scales[1])
+        return self._sums.exact_parts(self._tools.wall_heat)
 
     @property
     def _loss(self) -> np.ndarray:
         """(2,) the energy that contacts have taken, likewise."""
-        return self._sums.whole_parts(self._tools.loss.sum(axis=0), self._tools.scales[1])
+        return self._sums.exact_parts(self._tools.loss)
 
     @property
     def _given(self) -> np.ndarray:
@@ -175,22 +195,19 @@ class DsmcDynamics:
     @property
     def dissipated(self) -> float:
         """The energy that contacts and thermal walls have taken since time 0, less what kicks have given."""
-        return float(self._lost[0]) + self._sums.net(self._loss, self._heat, -self._given)
+        return float(self._lost[0]) + net(self._loss, self._heat, -self._given)
 
     @property
     def exchanged(self) -> float:
         """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
-        gross = self._sums.net(self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
-        return float(self._lost[1]) + gross + abs(self._sums.net(self._given))
+        gross = net(self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
+        return float(self._lost[1]) + gross + abs(net(self._given))
 
     @property
     def flux_sums(self) -> np.ndarray:
         """(2 d^2 + d,) the sums of the stress tensor, of its collisional part and of the heat flux."""
         assert self._stress is not None
-        sums, (action, heat) = self._stress.sums.sum(axis=0), self._stress.scales
-        found = self._sums.whole_parts(sums, action).sum(axis=-1)
-        found[-self._scene.dimension :] *= heat / action  # powers of two
-        return found
+        return self._sums.exact_parts(self._stress.sums)[:, 0]
 
     @property
     def state(self) -> State:
@@ -209,57 +226,69 @@ class DsmcDynamics:
     @property
     def tally(self) -> Tally:
         """What was counted since the last `reset_tally`."""
-        tools, layout = self._tools, self._layout
+        tools, layout, value = self._tools, self._layout, self._sums.exact_parts
         more: dict[str, Any] = {}
         if self._stress is not None:
             more = tallied_fluxes(self.flux_sums, self._stress.drift)
-        if (shear := self._optional.get("shear")) is not None:
-            parts = self._sums.whole_parts(shear.sum(axis=0), tools.scales[layout.MOMENTUM])
-            more["wall_shear"] = parts.sum(axis=-1)
+        if self._faces is not None and self._faces.shear is not None:
+            more["wall_shear"] = value(self._faces.shear)[..., 0]
         counts = tools.counts.sum(axis=0)
-        impulse = self._sums.whole_parts(tools.wall_impulse.sum(axis=0), tools.scales[layout.MOMENTUM])
-        virial = self._sums.whole_parts(tools.virial.sum(axis=0), tools.scales[layout.ACTION])
         return Tally(
-            time=(self._steps - self._since) * self.time_step,
+            time=(self._steps - int(self._since[0])) * self.time_step,
             collisions=int(counts[layout.COLLISIONS]),
             wall_hits=tools.wall_hits.sum(axis=0),
-            wall_impulse=impulse.sum(axis=-1),
-            wall_energy=self._heat.sum(axis=1),
-            virial_sum=self._sums.net(virial),
+            wall_impulse=value(tools.wall_impulse)[..., 0],
+            wall_energy=self._heat[:, 0],
+            virial_sum=float(value(tools.virial)[0]),
             pair_tests=int(counts[layout.TRIALS]),
             box_visits=0,
-            dissipated_energy=self._sums.net(self._loss),
-            thermostat_energy=self._sums.net(self._given),
-            steps=self._steps - self._since,
+            dissipated_energy=float(self._loss[0]),
+            thermostat_energy=net(self._given),
+            steps=int(tools.clock[0] - self._since[1]),
             **more,
         )
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Everything that a continuation to the same bits needs."""
         return {
-            "steps": np.array(self._steps),
-            "since": np.array(self._since),
+            "steps": np.array([self._steps, self._place_in_step, self._tools.clock[0]]),
+            "since": self._since.copy(),
+            "crowded": np.array(self._resolution.crowded),
             "lost": self._lost.copy(),
             "positions": self._by_particle(0),
             "velocities": self._by_particle(self._scene.dimension),
             "images": self._particles.images.T.copy(),
             "slots": self._slots.copy(),
-            **{key: getattr(self._tools, key).sum(axis=0) for key in self._arrays.TALLY},
+            **{key: self._over_threads(array) for key, array in self._counted.items()},
             **{key: array.copy() for key, array in arrays_of(self._parts).items()},
-            **{key: sums.sum(axis=0) for key, sums in self._optional.items()},
+            **({"fields": dense.fields.copy()} if (dense := self._resolution.dense) else {}),
         }
 
+    def _over_threads(self, array: np.ndarray) -> np.ndarray:
+        """The sum over threads of an array (threads, ...) that counts."""
+        exact = array.shape[-1] == self._sums.WIDTH
+        return self._sums.joined(array) if exact else array.sum(axis=0)
+
     def restore(self, parts: dict[str, np.ndarray]) -> None:
-        """Go on from a checkpoint of the same scene and engine, by whatever number of threads."""
+        """Go on from a checkpoint of the same scene and engine, by whatever number of threads. Raises
+        SceneError, with nothing changed, for one that lacks an array."""
+        check_parts(parts, {"crowded": np.array(0)})
+        crowded = int(parts["crowded"])
+        if not 0 <= crowded <= HIGHEST:
+            raise SceneError("checkpoint", crowded, "is no level of density: the checkpoint is damaged")
+        wanted, resolution = self.checkpoint(), self._resolution
+        if "fields" in wanted:
+            wanted["fields"] = np.empty((len(wanted["fields"]), math.prod(resolution.cells_of(crowded))))
+        check_parts(parts, wanted)
+        if crowded != resolution.crowded:
+            resolution.set(crowded)
         self._place(*(parts[key] for key in ("slots", "positions", "velocities", "images")))
-        for key in self._arrays.TALLY:
-            array = getattr(self._tools, key)
+        for key, array in self._counted.items():
             array[...] = 0
             array[0] = parts[key]
         for key, array in arrays_of(self._parts).items():
             array[...] = parts[key]
-        for key, sums in self._optional.items():
-            sums[...] = 0
-            sums[0] = parts[key]
-        self._tools.clock[0], self._since = int(parts["steps"]), int(parts["since"])
-        self._lost = parts["lost"].copy()
+        if resolution.dense:
+            resolution.dense.fields[...] = parts["fields"]
+        self._steps, self._place_in_step, self._tools.clock[0] = map(int, parts["steps"])
+        self._since, self._lost = parts["since"].copy(), parts["lost"].copy()

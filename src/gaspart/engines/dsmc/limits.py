@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from gaspart.engines.step.limits import oversized_particles
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
@@ -20,3 +22,19 @@ def check_scene(scene: Scene, state: State) -> None:
         raise SceneError("radius", scene.largest_radius, _OVERSIZED)
     if state.count > MOST_PARTICLES:
         raise SceneError("count", state.count, f"the DSMC engine takes {MOST_PARTICLES} particles at most")
+
+
+def check_made(counts: np.ndarray, time: float) -> None:
+    """Raise SimulationError for steps that could not be finished; counts: see `kernels.dsmc.model`."""
+    from gaspart.kernels.dsmc.model import FAR, UNFINISHED
+
+    if counts[:, UNFINISHED].any():
+        raise SimulationError(
+            f"at time {time:g} a particle has met faces of the container more than 2^24 times in a step,"
+            " which is not finished: give a shorter time_step"
+        )
+    if counts[:, FAR].any():
+        raise SimulationError(
+            f"at time {time:g} a particle has crossed the container 2^31 times along a periodic axis,"
+            " more often than is counted"
+        )

@@ -21,16 +21,16 @@ _HIGHEST = 0.7  # packing fraction up to which contact values are evaluated
 
 @dataclass(frozen=True)
 class Rates:
-    """frequency: collisions of a particle per time; speed: the mean speed; path: the mean free path, infinite
-    if nothing collides."""
+    """frequency: collisions of a particle per time; speed: the mean speed; path: the mean free path with all
+    kinds of particles at one temperature, infinite if nothing collides."""
 
     frequency: float
     speed: float
+    path: float
 
-    @property
-    def path(self) -> float:
-        """The mean path between collisions."""
-        return self.speed / self.frequency if self.frequency > 0.0 else math.inf
+    def crowded(self, times: float) -> Rates:
+        """Those where the density is so many times as high."""
+        return Rates(times * self.frequency, self.speed, self.path / times)
 
 
 def accessible(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
@@ -55,12 +55,33 @@ def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: i
 
 def rates(scene: Scene, dense: bool) -> Rates:
     """Those of a scene at its start, or as hot as its faces; dense: with contact values of a dense gas."""
-    d = scene.dimension
-    kinds = [kind for kind in scene.kinds if kind.count and not kind.fixed]
-    if not kinds:
-        return Rates(0.0, 0.0)
+    d, kinds = scene.dimension, _moving(scene)
     heat = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
-    square = np.array([max(_square(kind, d), heat / kind.mass) for kind in kinds])
+    if not kinds:
+        return Rates(0.0, 0.0, math.inf)
+    squares = [max(_square(kind, d), heat / kind.mass) for kind in kinds]
+    often, speed = _rates(scene, dense, [1.0 / kind.mass for kind in kinds])
+    return Rates(*_rates(scene, dense, squares), path=speed / often if often > 0.0 else math.inf)
+
+
+def highest_speed(scene: Scene) -> float:
+    """The highest mean speed that particles can come to have with the energy of the start, all of it shared
+    so that each has the same momentum."""
+    kinds = _moving(scene)
+    energy = sum(
+        0.5 * kind.count * kind.mass * scene.dimension * _square(kind, scene.dimension) for kind in kinds
+    )
+    inverse, number = sum(kind.count / kind.mass for kind in kinds), sum(kind.count for kind in kinds)
+    return math.sqrt(2.0 * energy * inverse) / max(1, number)
+
+
+def _moving(scene: Scene) -> list[Species | Particle]:
+    return [kind for kind in scene.kinds if kind.count and not kind.fixed]
+
+
+def _rates(scene: Scene, dense: bool, squares: list[float]) -> tuple[float, float]:
+    """Frequency and speed of kinds with these mean squares of a velocity component."""
+    d, kinds, square = scene.dimension, _moving(scene), np.array(squares)
     radius = np.array([kind.radius for kind in kinds])
     number = np.array([float(kind.count) for kind in kinds])
     lower, upper = accessible(scene)
@@ -72,7 +93,7 @@ def rates(scene: Scene, dense: bool) -> Rates:
     pairs = density[:, None] * (number - np.eye(len(number)))
     contact = contact_values(density, radius, d) if dense else 1.0
     frequency = float((np.maximum(pairs, 0.0) * section * relative * contact).sum() / number.sum())
-    return Rates(frequency, float((number * np.sqrt(mean * square)).sum() / number.sum()))
+    return frequency, float((number * np.sqrt(mean * square)).sum() / number.sum())
 
 
 def _square(kind: Species | Particle, dimension: int) -> float:

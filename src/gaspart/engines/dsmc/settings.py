@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from gaspart.engines.engine import Engine, register
 from gaspart.scene.keys import PER_SIDE, POSITIVE, choice, count, declared
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from gaspart.state.state import State
 
 MODELS = ("boltzmann", "enskog")
+ADAPTED = ("nothing", "steps", "cells", "both")
 
 
 @register
@@ -24,8 +25,9 @@ class DSMC(Engine):
 
     time_step: in the scene's time unit; cells_per_side: a number of cells or one per axis. By default both
     follow from the mean free time and path of the scene. model: "boltzmann", a dilute gas; or "enskog", a
-    dense one, in which partners are a diameter apart and meet the more often the denser the gas. threads: how
-    many share the work.
+    dense one, in which partners are a diameter apart and meet the more often the denser the gas. adapt: what
+    follows the gas where speeds or densities change: "nothing", "steps", which are divided, "cells" or
+    "both"; by default what is not given. threads: how many share the work.
 
     The result is the same, bit for bit, for any number of threads. Errors: docs/dsmc.md.
     """
@@ -44,6 +46,14 @@ class DSMC(Engine):
     model: str = field(
         default="boltzmann",
         metadata=declared(choice(*MODELS), "`boltzmann`, a dilute gas, or `enskog`, a dense one"),
+    )
+    adapt: str | None = field(
+        default=None,
+        metadata=declared(
+            choice(*ADAPTED),
+            "what follows a gas whose speeds or densities change: `nothing`, `steps`, which are divided,"
+            " `cells`, or `both`; by default what is not given",
+        ),
     )
     threads: int = field(
         default=1, metadata=declared(count(least=1), "number of threads that share a run's work")
@@ -66,6 +76,16 @@ class DSMC(Engine):
         return self.model
 
     @property
+    def adapts_steps(self) -> bool:
+        """Whether steps are divided where speeds rise."""
+        return self.time_step is None if self.adapt is None else self.adapt in ("steps", "both")
+
+    @property
+    def adapts_cells(self) -> bool:
+        """Whether cells become narrower where particles gather."""
+        return self.cells_per_side is None if self.adapt is None else self.adapt in ("cells", "both")
+
+    @property
     def quantum(self) -> float | None:
         """A step, once it is known."""
         return self.time_step
@@ -79,7 +99,19 @@ class DSMC(Engine):
         step = step_for(self, scene, found)
         if self.time_step is None and interval is not None:
             step = interval / math.ceil(interval / step * (1.0 - 1e-9))
-        return replace(self, time_step=step, cells_per_side=cells_for(self, scene, found))
+        cells = cells_for(self, scene, found)
+        return self._with(time_step=step, cells_per_side=cells, adapts=(self.adapts_steps, self.adapts_cells))
+
+    def with_step(self, step: float) -> DSMC:
+        """With steps of this length, which are not divided."""
+        return self._with(time_step=step, adapts=(False, self.adapts_cells))
+
+    def _with(self, adapts: tuple[bool, bool], **settings: Any) -> DSMC:
+        """With these settings; adapts: whether steps and cells do, which is stated unless it follows."""
+        plain = replace(self, **settings, adapt=None)
+        if adapts == (plain.adapts_steps, plain.adapts_cells):
+            return plain
+        return replace(plain, adapt=ADAPTED[adapts[0] + 2 * adapts[1]])
 
     def predictions(self, scene: Scene) -> dict[str, float]:
         """By how much its cells and steps make the shear viscosity too high, relatively."""
@@ -111,11 +143,14 @@ class DSMC(Engine):
 
     def variant(self, scene: Scene) -> str:
         """The model, and whether threads share the work."""
-        return self.model + ("-threads" if self.threads > 1 else "")
+        from gaspart.engines.dsmc.pace import may_speed_up
+
+        paced = "-paced" if may_speed_up(scene) else ""
+        return self.model + paced + ("-threads" if self.threads > 1 else "")
 
     def for_few(self, scene: Scene) -> DSMC:
         """With one cell, and the step for the full scene."""
-        return replace(self.resolved(scene), cells_per_side=1)
+        return self.resolved(scene)._with(cells_per_side=1, adapts=(self.adapts_steps, False))
 
     def start(
         self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0, stress: bool = False

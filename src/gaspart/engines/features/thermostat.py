@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from gaspart.kernels.dsmc import model as dsmc
     from gaspart.kernels.model import Model, Particles, Tally
 
+_MOST_NUMBERS = 2**63 - 1  # of kicks, before they begin anew
 _KICK_DRAWS = 3  # the purpose of their random numbers, after those of thermal walls
 
 
@@ -88,26 +89,28 @@ class StepKicks:
         self._key = key_of(seed, _KICK_DRAWS)
         self.given = np.zeros((1, 2))
 
-    def _due(self, steps: int) -> int:
+    def _due(self, steps: float) -> int:
         """How many kicks are due by the end of so many steps."""
         return math.floor(steps * self._per_step * (1.0 + 4e-16) + 1e-9)
 
-    def next_step(self, steps: int) -> int:
-        """The first of the steps after so many that ends with a kick."""
+    def until(self, steps: float, part: float) -> int:
+        """The number of the next parts of a step, of such a length, of which the last ends with a kick."""
         due = self._due(steps)
-        step = max(steps + 1, math.floor((due + 1) / self._per_step) - 1)
-        while self._due(step) <= due:
-            step += 1
-        return step
+        number = max(1, math.floor(((due + 1) / self._per_step - steps) / part) - 1)
+        while self._due(steps + number * part) <= due:
+            number += 1
+        return number
 
-    def happen(self, particles: dsmc.Particles, tools: dsmc.Tools, steps: int) -> None:
-        """Kick all particles if that is due after so many steps."""
+    def happen(self, particles: dsmc.Particles, tools: dsmc.Tools, steps: float, part: float) -> None:
+        """Kick all particles if that is due after so many steps, the last `part` of which has just been
+        made."""
         from gaspart.kernels.dsmc.kicks import kick_all
 
         due = self._due(steps)
-        number = due - self._due(steps - 1)
+        number = due - self._due(steps - part)
         if number > 0:
-            kick_all(particles, tools, self._width * math.sqrt(number), (self._key, due), self.given)
+            counter = self._key, due & _MOST_NUMBERS
+            kick_all(particles, tools, self._width * math.sqrt(number), counter, self.given)
 
 
 def step_kicks(scene: Scene, time_step: float, seed: int | tuple[int, ...]) -> StepKicks | None:

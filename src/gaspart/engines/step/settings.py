@@ -91,6 +91,10 @@ class TimeStepped(Engine):
         """A step."""
         return self.time_step
 
+    def with_step(self, step: float) -> TimeStepped:
+        """With steps of this length."""
+        return replace(self, time_step=step)
+
     def variant(self, scene: Scene) -> str:
         """The search, the precision, and whether threads share the work."""
         search = "list" if self.boxes_per_side is None else "boxes"

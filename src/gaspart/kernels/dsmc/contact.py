@@ -13,10 +13,10 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.dsmc.draws import fraction, words_of
-from gaspart.kernels.dsmc.model import ENERGY, number_at, open_space, velocity_row
+from gaspart.kernels.dsmc.model import number_at, open_space, velocity_row
 from gaspart.kernels.model import LOSS, ContactLaw
 from gaspart.kernels.physics.collision import collide_by_law
-from gaspart.kernels.physics.running_sum import add_whole
+from gaspart.kernels.physics.exact_sum import add_exact
 
 
 class Sums(NamedTuple):
@@ -146,7 +146,7 @@ def give_back(particles, slot, place, setting, law):
 def count_loss(setting):
     """Move the energy that the law has taken from the thread's room to its tally."""
     tools, sums = setting.tools, setting.tools.sums[setting.part]
-    add_whole(tools.loss[setting.part], sums[LOSS, 0] + sums[LOSS, 1], tools.scales[ENERGY])
+    add_exact(tools.loss[setting.part], sums[LOSS, 0] + sums[LOSS, 1])
     sums[LOSS, 0] = sums[LOSS, 1] = 0.0
 
 

@@ -24,7 +24,6 @@ from gaspart.kernels.dsmc.contact import (
 )
 from gaspart.kernels.dsmc.draws import below, fraction, waiting_time, words_of
 from gaspart.kernels.dsmc.model import (
-    ACTION,
     COLLISIONS,
     EXCEEDED,
     TRIALS,
@@ -33,7 +32,7 @@ from gaspart.kernels.dsmc.model import (
     velocity_row,
 )
 from gaspart.kernels.dsmc.stress import add_contact, add_flights, finish_cell, note_pair
-from gaspart.kernels.physics.running_sum import add_whole
+from gaspart.kernels.physics.exact_sum import add_exact
 
 FILLED, SURFACE = range(2)
 KIND_BLOCK = 255  # of a trial's random words: the partner's kind
@@ -217,7 +216,7 @@ def collide_at(particles, pair, kinds, direction, sigma, setting, law, stress):
     if stress is not None:
         apart = -sigma * direction[0], -sigma * direction[1], -sigma * direction[2]
         add_contact(particles, pair, apart, setting, stress, law)
-    add_whole(tools.virial[setting.part], sigma * passed, tools.scales[ACTION])
+    add_exact(tools.virial[setting.part], sigma * passed)
 
 
 @inner_helper

@@ -26,6 +26,7 @@ from gaspart.kernels.dsmc.cells import (
 from gaspart.kernels.dsmc.enskog import collide_dense
 from gaspart.kernels.dsmc.model import Setting
 from gaspart.kernels.dsmc.motion import move
+from gaspart.kernels.dsmc.pace import still_fits
 from gaspart.kernels.dsmc.stress import add_flights
 from gaspart.kernels.model import Space
 from gaspart.kernels.step.model import part_of
@@ -132,11 +133,15 @@ def collide_all(particles, grid, setting, threads, law, dense, stress):
 
 @allocating_kernel
 def run_steps(particles, grid, setting, steps, threads, options):
-    """Make so many steps. threads: their number, or None for one; options: gravity (d,), the faces with a
-    kind, the law, what a dense gas needs, and the sums of the stress; each may be None."""
-    gravity, faces, law, dense, stress = options
-    for _ in range(steps):
+    """Make so many steps, or fewer if their length no longer fits. threads: their number, or None for one;
+    options: gravity (d,), the faces with a kind, the law, what a dense gas needs, the sums of the stress, and
+    the lengths that fit; each may be None. Returns how many steps it has made, at least one."""
+    gravity, faces, law, dense, stress, pace = options
+    for n in range(steps):
+        if n > 0 and not still_fits(particles, pace):
+            return n
         move_all(particles, grid, setting, threads, gravity, faces, law)
         sort_all(particles, grid, threads)
         collide_all(particles, grid, setting, threads, law, dense, stress)
         setting.tools.clock[0] += 1
+    return steps

@@ -1,8 +1,8 @@
 """What the DSMC engine's kernels pass to one another: particles, grid, kinds, room, tally.
 
 A *slot* is a particle's present place in memory, the slots being in the order of the cells; `numbers` gives
-the particle's number. What several threads add up are whole numbers (`running_sum.add_whole`), so that the
-sums do not depend on the order of adding. The structures hold arrays and plain numbers only, because numba
+the particle's number. What several threads add up is exact (`physics.exact_sum`), so that the sums
+do not depend on the order of adding. The structures hold arrays and plain numbers only, because numba
 passes nothing else to threads.
 """
 
@@ -13,8 +13,7 @@ import numpy as np
 from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.model import Space
 
-COLLISIONS, TRIALS, EXCEEDED = range(3)
-MOMENTUM, ENERGY, ACTION = range(3)
+COLLISIONS, TRIALS, EXCEEDED, UNFINISHED, FAR = range(5)
 PADDED = 8  # counts of a thread, a cache line
 
 
@@ -59,8 +58,7 @@ class Tools(NamedTuple):
     (threads, 2, 3); sums (threads, 2, 2).
 
     The tally, by thread: counts (threads, 8), see the names at the module's top; virial and loss (threads,
-    2); wall_hits (threads, 2d); wall_impulse and wall_heat (threads, 2d, 2). scales (3,): the powers of two
-    that few terms exceed.
+    WIDTH); wall_hits (threads, 2d); wall_impulse and wall_heat (threads, 2d, WIDTH), see `exact_sum`.
     """
 
     margin: float
@@ -84,13 +82,12 @@ class Tools(NamedTuple):
     wall_hits: np.ndarray
     wall_impulse: np.ndarray
     wall_heat: np.ndarray
-    scales: np.ndarray
 
 
 class Faces(NamedTuple):
     """Of the container's faces (2d,): kind and temperature of those that are thermal, see `kernels.model`;
-    velocity (2d, d), and by thread shear (threads, 2d, d, 2), the momentum that they were given along each
-    axis, both None if no face slides."""
+    velocity (2d, d), and by thread shear (threads, 2d, d, WIDTH), the momentum that they were given along
+    each axis, both None if no face slides."""
 
     kind: np.ndarray
     level: np.ndarray

@@ -9,16 +9,18 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.dsmc.cells import count, locate
-from gaspart.kernels.dsmc.model import kind_in, number_at, position_row, velocity_row
+from gaspart.kernels.dsmc.model import FAR, kind_in, number_at, position_row, velocity_row
 from gaspart.kernels.dsmc.walls import fly_among_faces
 from gaspart.kernels.step.motion import fall, fly
 
 _BLOCK = 128
+_FURTHEST = 2.0**31  # periodic images are counted in 32 bits
 
 
 @inner_helper
-def wrap(particles, slot, axis, length):
-    """Bring a particle back into the container on a periodic axis."""
+def wrap(particles, slot, axis, length, setting):
+    """Bring a particle back into the container on a periodic axis. Notes one that is too far away to be
+    counted."""
     x = particles.data[position_row(particles, axis), slot]
     images = np.floor(x / length)
     if images != 0.0:
@@ -27,7 +29,11 @@ def wrap(particles, slot, axis, length):
             x -= length
             images += 1
         particles.data[position_row(particles, axis), slot] = x
-        particles.images[axis, number_at(particles, slot)] += np.int32(images)
+        total = particles.images[axis, number_at(particles, slot)] + images
+        if abs(total) < _FURTHEST:
+            particles.images[axis, number_at(particles, slot)] = np.int32(total)
+        else:
+            setting.tools.counts[setting.part, FAR] += 1
 
 
 @inner_helper
@@ -76,12 +82,12 @@ def bring_back_from_walls(particles, slots, setting, gravity, faces, law):
 
 
 @inner_helper
-def wrap_all(particles, slots, axis, length):
+def wrap_all(particles, slots, axis, length, setting):
     """Bring the particles in some slots back into the container on a periodic axis."""
     row = position_row(particles, axis)
     for slot in range(slots[0], slots[1]):
         if not 0.0 <= particles.data[row, slot] < length:
-            wrap(particles, slot, axis, length)
+            wrap(particles, slot, axis, length, setting)
 
 
 @inner_helper
@@ -117,6 +123,6 @@ def move(particles, slots, grid, setting, gravity, faces, law):
             hits = bring_back_from_walls(particles, block, setting, gravity, faces, law)
         for k in range(len(space.lengths)):
             if space.periodic[k] and crossed[3 - len(space.lengths) + k] + hits > 0:
-                wrap_all(particles, block, k, space.lengths[k])
+                wrap_all(particles, block, k, space.lengths[k], setting)
         locate(particles, block[0], block[1], grid)
     count(slots[0], slots[1], setting.part, grid)

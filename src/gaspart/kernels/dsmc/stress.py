@@ -7,7 +7,7 @@ rotation. Velocities v are about that of the centre of mass, which is conserved,
 whole has the sums of one at rest. A particle's velocity is constant in a step without walls and pull, so
 nothing is approximated. The collisions' part of S is summed by itself too.
 
-The sums of a cell are made by one thread and added as whole numbers, so that they do not depend on threads.
+The sums of a cell are made by one thread and added exactly, so that they do not depend on threads.
 """
 
 from typing import NamedTuple
@@ -16,19 +16,17 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.dsmc.model import kind_in, number_at, velocity_row
-from gaspart.kernels.physics.running_sum import add_whole
+from gaspart.kernels.physics.exact_sum import add_exact
 
 
 class Stress(NamedTuple):
-    """By thread: sums (threads, 2 d^2 + d, 2), those of S, by rows, of its part from collisions, and of Q;
-    cell (threads, 2 d^2 + d), what the present cell adds; before (threads, 2, d + 1), velocity and energy of
-    two particles before they collide. scales (2,): the powers of two that few terms of S and Q exceed; drift
-    (d,): the velocity of the centre of mass."""
+    """By thread: sums (threads, 2 d^2 + d, WIDTH), those of S, by rows, of its part from collisions, and of
+    Q; cell (threads, 2 d^2 + d), what the present cell adds; before (threads, 2, d + 1), velocity and energy
+    of two particles before they collide. drift (d,): the velocity of the centre of mass."""
 
     sums: np.ndarray
     cell: np.ndarray
     before: np.ndarray
-    scales: np.ndarray
     drift: np.ndarray
 
 
@@ -73,9 +71,9 @@ def add_flight(particles, slot, setting, stress, law):
 @inner_helper
 def finish_cell(setting, stress):
     """Move the sums of the present cell to those of its thread."""
-    cell, sums, d = stress.cell[setting.part], stress.sums[setting.part], len(setting.space.lengths)
+    cell, sums = stress.cell[setting.part], stress.sums[setting.part]
     for n in range(len(cell)):
-        add_whole(sums[n], cell[n], stress.scales[0] if n < 2 * d * d else stress.scales[1])
+        add_exact(sums[n], cell[n])
         cell[n] = 0.0
 
 

@@ -1,23 +1,30 @@
 """Particles at the container's faces: hard by the law of contacts, or thermal.
 
 Only a particle that a step has brought beyond a face comes here. It is put back to where the step began and
-flies from face to face until the step ends, under gravity on parabolas.
+flies from face to face until the step ends, under gravity on parabolas. However many hits that takes, all are
+made: those of smooth, elastic particles by whole periods if they are many, and bounces of others on a floor
+until they are too short to matter.
 """
 
-from math import inf, sqrt
+from math import floor, inf, sqrt
+
+import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.dsmc.contact import Sums, count_loss, law_of, return_spin, take_spin
-from gaspart.kernels.dsmc.model import ENERGY, MOMENTUM, open_space
+from gaspart.kernels.dsmc.model import UNFINISHED, open_space
 from gaspart.kernels.model import HARD, NONE, THERMAL
 from gaspart.kernels.physics.ballistic import flown
 from gaspart.kernels.physics.collision import collide_wall_by_law
+from gaspart.kernels.physics.exact_sum import add_exact
 from gaspart.kernels.physics.rng import flux_speed, normal_pair
-from gaspart.kernels.physics.running_sum import add_whole
 
-_HITS = 64
-"""At most so many of a particle in a step; the rest of its bounces on a floor would be shorter than a few
-hundredths of the step, and it stays there until the step ends."""
+_FEW = 64
+"""Hits of a particle in a step that are made one by one in any case, and have draws of their own."""
+_MOST = 2**24
+"""At most so many hits that have no closed form; a step in which a particle has more is not finished."""
+_REST = 2.0**-20
+"""Of a step: the longest bounce of an inelastic or rough particle on a face that is taken for rest there."""
 
 
 @inner_helper
@@ -37,37 +44,58 @@ def time_to_face(y, u, a):
 
 
 @inner_helper
-def next_face(flights, radius, space, gravity):
+def along(axis, upper, flights, radius, space, gravity):
+    """Height of a particle over a face, its speed and its acceleration, all inward."""
+    inset = space.margin * radius
+    x, v, a = flights[0].position[axis], flights[0].velocity[axis], 0.0
+    if gravity is not None:
+        a = gravity[axis]
+    if upper:
+        return space.lengths[axis] - inset - x, -v, -a
+    return x - inset, v, a
+
+
+@inner_helper
+def next_face(flights, radius, space, gravity, resting):
     """The next face that a particle comes to: (time from now, face, speed towards it); NONE if there is
-    none."""
+    none. resting: bits of the axes along which it rests."""
     first, face, speed = inf, NONE, 0.0
     for k in range(len(space.lengths)):
-        if space.periodic[k]:
+        if space.periodic[k] or resting >> k & 1:
             continue
-        inset = space.margin * radius
-        x, v = flights[0].position[k], flights[0].velocity[k]
-        a = 0.0
-        if gravity is not None:
-            a = gravity[k]
-        time, w = time_to_face(x - inset, v, a)
-        if time < first:
-            first, face, speed = time, 2 * k, w
-        time, w = time_to_face(space.lengths[k] - inset - x, -v, -a)
-        if time < first:
-            first, face, speed = time, 2 * k + 1, w
+        for side in range(2):
+            y, u, a = along(k, side == 1, flights, radius, space, gravity)
+            time, w = time_to_face(y, u, a)
+            if time < first:
+                first, face, speed = time, 2 * k + side, w
     return first, face, speed
 
 
 @inner_helper
-def fly(flights, time, space, gravity):
+def fly_along(axis, flights, time, gravity):
+    """Move a particle along one axis of its flight."""
+    x, v = flights[0].position[axis], flights[0].velocity[axis]
+    if gravity is None:
+        flights[0].position[axis] = x + v * time
+    else:
+        flights[0].position[axis] = flown(x, v, gravity[axis], time)
+        flights[0].velocity[axis] = v + gravity[axis] * time
+
+
+@inner_helper
+def fly(flights, time, space, gravity, resting):
     """Move a particle along its flight."""
     for k in range(len(space.lengths)):
-        if gravity is None:
-            flights[0].position[k] += flights[0].velocity[k] * time
-        else:
-            x, v = flights[0].position[k], flights[0].velocity[k]
-            flights[0].position[k] = flown(x, v, gravity[k], time)
-            flights[0].velocity[k] = v + gravity[k] * time
+        if not resting >> k & 1:
+            fly_along(k, flights, time, gravity)
+
+
+@inner_helper
+def put_at_face(face, speed, flights, radius, space):
+    """Put a particle at a face, with its speed towards it."""
+    axis, upper, inset = face // 2, face % 2 == 1, space.margin * radius
+    flights[0].position[axis] = space.lengths[axis] - inset if upper else inset
+    flights[0].velocity[axis] = speed if upper else -speed
 
 
 @inner_kernel
@@ -94,7 +122,7 @@ def add_shear(face, mass, setting, shear):
         for k in range(shear.shape[2]):
             if k != face // 2:
                 given = mass * tools.flights[part, 0].velocity[k]
-                add_whole(shear[part, face, k], given, tools.scales[MOMENTUM])
+                add_exact(shear[part, face, k], given)
 
 
 @inner_helper
@@ -133,8 +161,8 @@ def leave_thermal(i, face, which, number, setting, faces, law):
                 given = draw_spin(i, level, inertia, key, (components, number, block), law.spins)
     for k in range(d):
         square -= flights[0].velocity[k] * flights[0].velocity[k]
-    add_whole(tools.wall_impulse[part, face], impulse, tools.scales[MOMENTUM])
-    add_whole(tools.wall_heat[part, face], 0.5 * mass * square + given, tools.scales[ENERGY])
+    add_exact(tools.wall_impulse[part, face], impulse)
+    add_exact(tools.wall_heat[part, face], 0.5 * mass * square + given)
 
 
 @inner_kernel
@@ -154,30 +182,122 @@ def bounce(i, face, which, setting, law):
         )
         return_spin(i, 0, setting, law)
         count_loss(setting)
-    add_whole(tools.wall_impulse[part, face], impulse, tools.scales[MOMENTUM])
+    add_exact(tools.wall_impulse[part, face], impulse)
+
+
+@inner_helper
+def bounce_often(face, times, speed, mass, setting):
+    """Count that many elastic bounces of a smooth particle at a face, at one speed."""
+    tools, part = setting.tools, setting.part
+    tools.wall_hits[part, face] += np.int64(times)
+    add_exact(tools.wall_impulse[part, face], 2.0 * mass * speed * times)
+
+
+@inner_helper
+def lean(face, axis, mass, left, setting, gravity):
+    """Let a particle rest at a face for a time: the face carries its weight."""
+    setting.tools.flights[setting.part, 0].velocity[axis] = 0.0
+    add_exact(setting.tools.wall_impulse[setting.part, face], mass * abs(gravity[axis]) * left)
+
+
+@inner_kernel
+def finish_axis(axis, left, which, setting, gravity):
+    """Let a smooth, elastic particle in a thread's room fly along one axis, on which nothing depends, for a
+    time. Between the first bounce and the last ones whole periods of its motion are made at once."""
+    space, tools = setting.space, setting.tools
+    flights, radius, mass = tools.flights[setting.part], tools.radius[which], tools.mass[which]
+    skipped = False
+    while True:
+        first, face, speed = inf, NONE, 0.0
+        for side in range(2):
+            y, u, a = along(axis, side == 1, flights, radius, space, gravity)
+            time, w = time_to_face(y, u, a)
+            if time < first:
+                first, face, speed = time, 2 * axis + side, w
+        if not first <= left:
+            fly_along(axis, flights, left, gravity)
+            return
+        left -= first
+        put_at_face(face, -speed, flights, radius, space)
+        bounce_often(face, 1.0, speed, mass, setting)
+        if skipped:
+            continue
+        y, u, a = along(axis, face % 2 == 0, flights, radius, space, gravity)
+        time, w = time_to_face(y, u, a)  # to the face across
+        across, period = time < inf, 2.0 * time
+        if not across:
+            period = 2.0 * speed / a  # the pull is towards this face, away from that one
+        if gravity is not None:
+            if not period > left * 2.0**-53:
+                lean(face, axis, mass, left, setting, gravity)
+                return
+        number = floor(left / period)
+        left = max(left - number * period, 0.0)
+        bounce_often(face, number, speed, mass, setting)
+        if across:
+            bounce_often(face ^ 1, number, w, mass, setting)
+        skipped = True
+
+
+@inner_helper
+def finish_axes(left, which, setting, gravity, resting):
+    """The same along all axes."""
+    space = setting.space
+    for k in range(len(space.lengths)):
+        if space.periodic[k]:
+            fly_along(k, setting.tools.flights[setting.part], left, gravity)
+        elif not resting >> k & 1:
+            finish_axis(k, left, which, setting, gravity)
+
+
+@inner_helper
+def comes_to_rest(face, speed, left, which, setting, gravity, law):
+    """Whether a particle in a thread's room that comes to a hard face with a speed rests there: its bounces
+    are too short, and would be shorter still. Counts what it loses and what the face carries."""
+    tools, axis = setting.tools, face // 2
+    pull = gravity[axis] if face % 2 else -gravity[axis]  # towards the face
+    shortest = 0.0
+    if law is not None:
+        shortest = _REST * tools.dt
+    if not (pull > 0.0 and 2.0 * speed <= pull * shortest):
+        return False
+    mass = tools.mass[which]
+    add_exact(tools.loss[setting.part], 0.5 * mass * speed * speed)
+    add_exact(tools.wall_impulse[setting.part, face], mass * speed)
+    lean(face, axis, mass, left, setting, gravity)
+    return True
 
 
 @inner_kernel
 def fly_among_faces(i, which, setting, gravity, faces, law):
     """Let particle i, of a kind, in its place in a thread's room, fly for a step."""
-    space, left, part = setting.space, setting.tools.dt, setting.part
-    flights, radius = setting.tools.flights[part], setting.tools.radius[which]
-    for hit in range(_HITS):
-        time, face, speed = next_face(flights, radius, space, gravity)
+    space, tools, part = setting.space, setting.tools, setting.part
+    flights, radius, left = tools.flights[part], tools.radius[which], tools.dt
+    resting, clock = 0, np.int64(tools.clock[0])
+    for hit in range(_MOST):
+        time, face, speed = next_face(flights, radius, space, gravity, resting)
         if not time <= left:
-            fly(flights, left, space, gravity)
+            fly(flights, left, space, gravity, resting)
             return
-        fly(flights, time, space, gravity)
+        if faces is None and law is None:
+            if hit >= _FEW:
+                finish_axes(left, which, setting, gravity, resting)
+                return
+        fly(flights, time, space, gravity, resting)
         left -= time
-        axis, upper = face // 2, face % 2 == 1
-        inset = space.margin * radius
-        flights[0].position[axis] = space.lengths[axis] - inset if upper else inset
-        flights[0].velocity[axis] = speed if upper else -speed
-        setting.tools.wall_hits[part, face] += 1
+        put_at_face(face, speed, flights, radius, space)
         hard = True
         if faces is not None:
             hard = faces.kind[face] == HARD
-            if not hard:
-                leave_thermal(i, face, which, setting.tools.clock[0] * _HITS + hit, setting, faces, law)
+        if gravity is not None:
+            if hard and comes_to_rest(face, speed, left, which, setting, gravity, law):
+                resting |= 1 << (face // 2)
+                continue
+        tools.wall_hits[part, face] += 1
         if hard:
             bounce(i, face, which, setting, law)
+        if faces is not None:
+            if not hard:
+                number = clock * _FEW + hit if hit < _FEW else -1 - (clock * _MOST + hit)
+                leave_thermal(i, face, which, number, setting, faces, law)
+    tools.counts[part, UNFINISHED] += 1

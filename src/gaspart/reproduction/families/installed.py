@@ -16,7 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, entry_points_of
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -30,10 +30,8 @@ _PARTS = ("measure", "claims", "figure")
 @cache
 def _entry_points() -> dict[str, list[EntryPoint]]:
     """The entry points of each kind, of which there should be one."""
-    from importlib.metadata import entry_points  # 0.02 s
-
     found: dict[str, list[EntryPoint]] = {}
-    for entry_point in entry_points(group=GROUP):
+    for entry_point in entry_points_of(GROUP):
         others = found.setdefault(entry_point.name, [])
         if entry_point not in others:  # a package that is on the path twice
             others.append(entry_point)

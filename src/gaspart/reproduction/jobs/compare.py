@@ -24,6 +24,7 @@ from gaspart.reproduction.jobs.stretches import (
     SLACK,
     stretches,
 )
+from gaspart.state.tally import compressibility_factor
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -124,12 +125,12 @@ def _run(scene: Scene, engine: Engine, state: State, duration: float) -> dict:
     dynamics.advance(state.time + duration)
     tally, after = dynamics.tally, dynamics.state
     memory = float((state.velocities * after.velocities).sum() / (state.velocities**2).sum())
-    temperature = 2.0 * state.kinetic_energy / (state.dimension * (state.count - 1))
+    virial, time = tally.virial_sum, tally.time
     return {
         "collisions": tally.collisions,
-        "virial": tally.virial_sum,
+        "virial": virial,
         "memory": memory,
-        "z": 1.0 + tally.virial_sum / (state.dimension * state.count * temperature * tally.time),
+        "z": float(compressibility_factor(virial, state.count, state.dimension, state.temperature, time)),
         "energy_drift": after.kinetic_energy / state.kinetic_energy - 1.0,
         "deepest_overlap": tally.deepest_overlap,
         "pair_tests": tally.pair_tests,

@@ -15,13 +15,17 @@ Record: TypeAlias = Callable[[dict, tuple[int, ...], Path, bool], None]
 
 
 def write_replicas(
-    record: Record, parameters: dict, folder: Path, report: Callable[[str], None] | None = None
+    record: Record,
+    parameters: dict,
+    folder: Path,
+    report: Callable[[str], None] | None = None,
+    overwrite: bool = True,
 ) -> None:
     """Write a trajectory for each seed of the parameters; report(line) is called for each.
 
     They lie beside `folder`, which Snakemake deletes before a rerun, until all are complete: an interrupted
-    run resumes there. Raises SceneError for a folder there in which anything else lies: only what gaspart
-    wrote is removed.
+    run resumes there. overwrite: whether they replace the remainder of a run with other parameters. Raises
+    SceneError for a folder there in which anything else lies: only what gaspart wrote is removed.
     """
     partial = Path(f"{folder}.partial")
     _make(partial)
@@ -30,7 +34,7 @@ def write_replicas(
     for path, seed in zip(paths, parameters["seeds"], strict=True):
         if report:
             report(f"{path}: seed {seed}")
-        record(parameters, tuple(seed), path, True)  # replaces the remainder of a run with other parameters
+        record(parameters, tuple(seed), path, overwrite)
     for leftover in _remainders(partial, paths):
         leftover.unlink()
     try:

@@ -33,12 +33,12 @@ def scanned(point: Point) -> list[Engine]:
         single: Any = point.engine
         if single.quantum is None:
             raise point.refused(scan, f"has no meaning with engine: {single.name}")
-        return [replace(single, time_step=step) for step in values]
+        return [single.with_step(step) for step in values]
     if scans == ["scan_step_parts"]:
         whole: Any = point.engine.resolved(point.scene)
         if whole.quantum is None:
             raise point.refused(scan, f"has no meaning with engine: {whole.name}")
-        return [replace(whole, time_step=part * whole.time_step) for part in values]
+        return [whole.with_step(part * whole.time_step) for part in values]
     if len(scans) > 1 or "boxes_per_side" in settings or "boxes_per_particle" in settings:
         raise point.refused(scan, "a scan excludes every other choice of boxes")
     if not values:

@@ -149,7 +149,7 @@ def _made(point: Point) -> Scene:
 
 
 def _read(point: Point) -> Scene:
-    """The scene of the scene file, with the values that the settings replace."""
+    """The scene of the scene file, or of what such a file holds, with the values that settings replace."""
     from gaspart.scene.scene import Scene
 
     settings = point.settings
@@ -157,21 +157,26 @@ def _read(point: Point) -> Scene:
         if key in settings:
             rule = f"has no meaning beside a scene file, of which {PREFIX}... replaces single values"
             raise point.refused(key, rule)
-    path = settings["scene"]
+    replaced = [key for key in settings if key.startswith(PREFIX)]
+    stated = settings["scene"]
+    content, unchanged = (stated, None) if isinstance(stated, dict) else _of_file(point, stated)
+    if not replaced:
+        return unchanged or Scene.from_dict(content)
+    content = deepcopy(content)
+    for key in replaced:
+        _replace(content, key, point)
+    return Scene.from_dict(content)
+
+
+def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
+    """What the scene file of a point holds, and the scene that it is by itself."""
     try:
         changed = Path(path).stat().st_mtime_ns
     except OSError as error:
         raise point.refused("scene", f"cannot be read: {error.strerror}") from None
     except ValueError:  # a NUL, or a character that no file name can hold
         raise point.refused("scene", "is not a file name") from None
-    content, unchanged = _file(path, changed)
-    replaced = [key for key in settings if key.startswith(PREFIX)]
-    if not replaced:
-        return unchanged
-    content = deepcopy(content)
-    for key in replaced:
-        _replace(content, key, point)
-    return Scene.from_dict(content)
+    return _file(path, changed)
 
 
 @cache

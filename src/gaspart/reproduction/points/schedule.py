@@ -23,12 +23,16 @@ _SIZES = 64  # of a polydisperse gas, by which its collision rate is estimated
 
 @dataclass(frozen=True)
 class Schedule:
-    """When a run is sampled, in the scene's time; the first ``equilibration_frames`` frames are dropped."""
+    """When a run is sampled, in the scene's time; the first ``equilibration_frames`` frames are dropped.
+
+    samples_per_frame: where the run correlates more samples than it keeps frames.
+    """
 
     duration: float
     sample_interval: float
     equilibration_frames: int
     samples: int
+    samples_per_frame: int = 1
 
     @property
     def equilibration(self) -> float:
@@ -40,7 +44,7 @@ def schedule(point: Point) -> Schedule:
     """Duration and sampling of a point's runs, in the scene's time.
 
     The length is divided into ``samples`` intervals (whole time steps with the step engine); the
-    equilibration, rounded up to complete intervals, precedes it.
+    equilibration, rounded up to complete intervals, precedes it, with ``frames`` to those between frames.
     """
     settings = point.settings
     lengths = [key for key in LENGTHS if key in settings]
@@ -61,8 +65,11 @@ def schedule(point: Point) -> Schedule:
     if not before < _MOST_INTERVALS:
         rule = f"makes {before:g} sample intervals, which must be less than {_MOST_INTERVALS:g}"
         raise point.refused("equilibration", rule)
-    dropped = math.ceil(before * (1.0 - 1e-12))
-    return Schedule(interval * (dropped + samples), interval, dropped, samples)
+    each, rest = divmod(samples, settings.get("frames", samples))
+    if rest:
+        raise point.refused("frames", f"must be a divisor of samples, {samples}")
+    dropped = each * math.ceil(before / each * (1.0 - 1e-12))
+    return Schedule(interval * (dropped + samples), interval, dropped, samples, each)
 
 
 def _unit_of_time(point: Point, unit: str) -> float:

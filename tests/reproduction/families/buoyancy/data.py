@@ -29,7 +29,7 @@ def stretch(positions, displaced):
     energies = np.ones((frames, particles))
     energies[:, 0] = 0.0
     weight = STRENGTH * (particles - 1)
-    return Stretch(positions, energies, weight + 2.0 + displaced * STRENGTH, 2.0, 0.0)
+    return Stretch(positions, energies, weight + 2.0 + displaced * STRENGTH, 2.0, 0.0, 1.0)
 
 
 def measurement(error=0.03):

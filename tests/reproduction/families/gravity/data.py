@@ -27,7 +27,9 @@ def ideal_column(rng, frames, masses, height=4.0, width=3.0, strength=1.0, tempe
     )  # the pressure there times the width
     place = Field(strength, width, height, 0.01, masses, (masses > masses.min()).astype(int), False)
     floor = float(ceiling + place.weight)
-    return place, Stretch(np.stack([across, heights], axis=-1), energies, floor, float(ceiling), 0.0)
+    return place, Stretch(
+        np.stack([across, heights], axis=-1), energies, floor, float(ceiling), 0.0, temperature
+    )
 
 
 def columns(kinds=1, error=0.002):

@@ -48,6 +48,7 @@ SETTINGS = {
         },
     ],
 }
+POWER = {"that": "exponent", "value": 1.0, "tolerance": 0.1, "source": "a", "fails_if": "b"}
 CONFIG = {
     "title": "a user's own",
     "seed": 1,
@@ -174,7 +175,7 @@ def test_an_observable_with_names_has_a_series_for_each(simulated, monkeypatch):
     values, errors = np.array([1.0, 2.0]), np.array([0.1, 0.2])
     one = made("pressure", faces, values, errors, units="1", long_name="pressure", theory=(1.5, np.nan))
     found = sweep_table.Measured({"pressure": [one, one]}, [1.0, 1.0])
-    monkeypatch.setattr(measure, "measured", lambda *_, **__: found)
+    monkeypatch.setattr(measure, "measured", lambda *_, **__: (found, {}))
     dataset = measured(simulated, observable="pressure")
     assert dataset["series"].values.tolist() == ["y high"] * 2 + ["y low"] * 2
     assert dataset["value"].values.tolist() == [1.0, 1.0, 2.0, 2.0]
@@ -209,6 +210,20 @@ def test_a_caption_without_a_finding_gets_a_title():
         ),
         ({"claims": [{"that": "theory", "required": 0.1}]}, "claims.0.fails_if", "is required"),
         ({"colour": "red"}, "colour", "unknown key"),
+        (
+            {"claims": [{**SETTINGS["claims"][2], "between": [0.2, 0.4]}]},
+            "claims.0.between",
+            "there is none of the points, which are from 0.05 to 0.1",
+        ),
+        (
+            {"claims": [{**POWER, "between": [0.1, 0.05]}]},
+            "claims.0.between",
+            "there is none",
+        ),
+        ({"claims": [POWER]}, "claims.0", "needs 3 points or more; there are 2"),
+        ({"observable": "shear_viscosity"}, "observable", "needs a run with correlations of the stress"),
+        ({"observable": "pressure", "claims": []}, "observable", "has no walls"),
+        ({"observable": "pair_rates", "claims": []}, "observable", "must count collisions by pairs"),
     ],
 )
 def test_a_mistake_is_one_line_before_any_job(settings, key, rule):
@@ -224,3 +239,27 @@ def test_a_name_of_the_package_is_not_one_of_ones_own():
     with pytest.raises(SceneError, match="kind: observable"):
         check({**CONFIG, "figures": {"my_gas": {"experiments": ["gas"]}}})
     check({**CONFIG, "figures": {}})
+
+
+def test_a_viscosity_needs_frames_of_a_run_with_correlations_of_the_stress(tmp_path):
+    """Its point is measured as `gaspart.sweep` would; without `frames` the file has two, and no error."""
+    config = copy.deepcopy(CONFIG)
+    config["figures"]["my_gas"] = {**SETTINGS, "observable": "shear_viscosity", "claims": []}
+    point = config["experiments"]["gas"]["point"]
+    point |= {"samples": 640, "equilibration": 3, "lags": 20, "stress": True, "replicas": 1}
+    with pytest.raises(SceneError, match=r"my_gas.observable = 'shear_viscosity': .*: frames: .*keep more"):
+        check(config)
+    for frames, rule in ((60, "divisor of samples"), (1000, "divisor of samples")):
+        point["frames"] = frames
+        with pytest.raises(SceneError, match=rf"gas.frames = {frames}: must be a {rule}"):
+            check(config)
+    point["frames"] = 64
+    (one, _) = figure_points(config, "my_gas", check(config))
+    assert one.schedule.equilibration_frames == 70  # whole intervals between frames, of 10 samples
+    one = type(one).from_dict({**one.to_dict(), "root": str(tmp_path)})
+    write_replicas(simulate.record, one.parameters, Path(one.path))
+    found = measured([one], observable="shear_viscosity")
+    direct = gp.analysis.shear_viscosity(one.replica_path(0), start=one.schedule.equilibration)
+    assert float(found["value"][0]) == float(direct.estimate) and found["value_error"][0] > 0.0
+    with gp.open_trajectory(one.replica_path(0)) as trajectory:
+        assert trajectory.sizes["frame"] == 72 and trajectory["correlated_samples"][-1] == 640

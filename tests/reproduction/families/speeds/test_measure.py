@@ -82,8 +82,9 @@ def test_the_smaller_group_takes_the_scatter_of_both():
 def test_other_scenes_or_times_are_refused(stored):
     rng = np.random.default_rng(4)
     one, other = point(), point(experiment="other", count=100)
-    for path in one.replica_paths + other.replica_paths:
-        stored[path] = trajectory(mixture(rng, 0.5, count=100)[[0, 1, 1]], [0.0, 1.0, 2.0])
+    for made, count in ((one, 200), (other, 100)):
+        for path in made.replica_paths:
+            stored[path] = trajectory(mixture(rng, 0.5, count=count)[[0, 1, 1]], [0.0, 1.0, 2.0])
     with pytest.raises(SceneError, match="scene and times"):
         speeds.speed_relaxation([one, other], RELAXATION)
     with pytest.raises(SceneError, match="sampled time"):

@@ -57,11 +57,11 @@ def test_the_force_and_the_drift_are_taken_exactly(tmp_path):
         "time": ("frame", 2.0 * frames),
     })  # fmt: skip
     run = Run(made.scene, made_up["time"].values, made_up)
-    force, temperature, count = module._replica(run, np.array([True, False]), 2.0)
+    pressure, temperature, count = module._replica(run)
     # energy about the drift: 34 - 25 = 9 = (4 - 1) / 2 k T
     assert temperature == pytest.approx(6.0)
     assert count == 64
-    assert force == pytest.approx(np.full((32, 1), 6.0 / 2.0 * 2.0 / 6.0))
+    assert pressure == pytest.approx(np.full(32, 6.0 / 2.0 / 8.0))  # the walls are 8 long
 
 
 def test_a_container_without_walls_is_refused(tmp_path):

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.bins import Grid
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import jackknife
 from gaspart.reproduction.families.shared.rows import entries, from_rows
@@ -242,7 +243,8 @@ def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings
     leaving = ~held & (above < settings["near"]) & (velocity > 0.0)
     speed = velocity[leaving] / np.sqrt(holder.temperature / holder.mass)
     # a particle is near for a time proportional to 1 / speed
-    flux = np.histogram(speed, settings["bins"], (0.0, _REACH), weights=speed)[0]
+    grid = Grid.line(0.0, _REACH, settings["bins"])
+    flux = grid.sums(grid.cells(speed[:, None]), speed)
     frames = len(height)
     parts = held.sum(), (~held).sum(), far.sum(), speed[speed < slow].sum(), flux
     return tuple(part / frames for part in parts)

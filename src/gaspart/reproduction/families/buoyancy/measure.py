@@ -12,13 +12,13 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.bins import Grid
 from gaspart.analysis.statistics import jackknife
 from gaspart.reproduction.families.shared.columns import (
     Field,
     Stretch,
     field,
     stretches,
-    temperature,
 )
 from gaspart.reproduction.families.shared.rows import entries
 from gaspart.reproduction.points.point import Point
@@ -74,9 +74,9 @@ def _far(place: Field, stretch: Stretch, radius: float, settings: dict) -> np.nd
     across = np.abs(stretch.positions[..., 0] - stretch.positions[:, :1, 0])
     distance = radius + settings["far"] * place.diameter
     far = np.minimum(across, place.width - across) > distance
-    counts, _ = np.histogram(stretch.heights[far], settings["bins"], (0.0, place.height))
-    area = (place.width - 2.0 * distance) * place.height / settings["bins"]
-    return counts / (len(stretch.heights) * area)
+    grid = Grid.line(0.0, place.height, settings["bins"])
+    counts = grid.sums(grid.cells(stretch.heights[far][:, None]))
+    return counts / (len(stretch.heights) * (place.width - 2.0 * distance) * grid.volume)
 
 
 def _fluid(
@@ -102,7 +102,7 @@ def _fixed(point: Point, settings: dict) -> dict:
     unit = place.masses[-1] * place.strength
     force = np.array([s.floor - s.ceiling - place.weight - s.gain for s in found])
     density = np.array([_far(place, stretch, radius, settings) for stretch in found])
-    temperatures = np.array([temperature(place, stretch) for stretch in found])
+    temperatures = np.array([stretch.temperature for stretch in found])
     # The undisturbed density where the disc is: its mean over the disc's area.
     z = (np.arange(settings["bins"]) + 0.5) * place.height / settings["bins"]
     chord = np.sqrt(np.maximum(radius**2 - (z - height) ** 2, 0.0))
@@ -160,7 +160,7 @@ def _free(point: Point, settings: dict) -> dict:
     ratio = 2.0 * radius / place.diameter
     mass = point.scene.particles[0].mass
     heights = np.array([[s.heights[:, 0].mean(), (s.heights[:, 0] ** 2).mean()] for s in found])
-    warm = float(np.mean([temperature(place, stretch) for stretch in found]))
+    warm = float(np.mean([stretch.temperature for stretch in found]))
     fluid = _fluid(place, np.mean([_far(place, s, radius, settings) for s in found], axis=0), warm, settings)
     margin = radius - 0.5 * place.diameter
     z = np.linspace(margin, place.height - margin, 2001)

@@ -16,9 +16,10 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
+from gaspart.analysis.series import Blocks, face_pressures
 from gaspart.analysis.statistics import fit_linear, jackknife
 from gaspart.reproduction.families.couette.uniform import uniform
-from gaspart.reproduction.families.heat.gap import Gap, sums
+from gaspart.reproduction.families.heat.gap import Gap
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.transport.measure import coefficient
@@ -120,7 +121,7 @@ def _coarseness(point: Point, gap: Gap, path: float) -> float:
 
 
 @dataclass(frozen=True)
-class Blocks:
+class Averages:
     """Averages over K blocks of time: stress (K,) on the walls and pressure (K,) on them; density (K, B) of
     particles in bins, flow (K, B), their momentum, and squares (K, B, d) of their velocities, per volume;
     changes (K, 2), of the momentum of all particles and of its first moment."""
@@ -140,34 +141,30 @@ class Blocks:
         return self.stress - design[:, 1:] @ fit_linear(design, self.stress).values[1:]
 
 
-def _blocks(point: Point, gap: Gap, blocks: int, bins: int) -> Blocks:
+def _blocks(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
     """Averages over the measured part of all replicas, each cut into `blocks`."""
     found = [_blocks_of(run, gap, blocks, bins) for run in runs(point)]
-    return Blocks(*(np.concatenate([getattr(one, key) for one in found]) for key in vars(found[0])))
+    return Averages(*(np.concatenate([getattr(one, key) for one in found]) for key in vars(found[0])))
 
 
-def _blocks_of(run: Run, gap: Gap, blocks: int, bins: int) -> Blocks:
-    length = run.block_length(blocks)
-    used = length * blocks
-    ends = slice(None, used + 1, length)
-    time, volume = np.diff(run.time[ends])[:, None], length * gap.area * gap.length / bins
-    shear, push = (np.diff(run.data[name].values[ends], axis=0) for name in ("wall_shear", "wall_impulse"))
-    places, velocities = run.positions[:, :, 0], run.velocities
-    radius = run.scene.smallest_radius
-    along = velocities[ends, :, 1]
-    moment = (along * (places[ends] - radius - 0.5 * gap.length)).sum(axis=1)
-    bin_of = gap.bin_of(places[1 : used + 1] - radius, bins)
+def _blocks_of(run: Run, gap: Gap, blocks: int, bins: int) -> Averages:
+    parts, grid, walls = Blocks(run, blocks), gap.grid(bins), slice(0, 2)
+    volume, radius = parts.length * gap.area * grid.volume, run.scene.smallest_radius
+    places, velocities = run.positions[:, :, 0] - radius, run.velocities
+    along = velocities[parts.ends, :, 1]
+    moment = (along * (places[parts.ends] - 0.5 * gap.length)).sum(axis=1)
+    cells = grid.cells(places[..., None], inside=True)
+    shear = parts.growth("wall_shear")[:, walls, 1]
 
     def total(weights: np.ndarray | None) -> np.ndarray:
-        return sums(bin_of, weights, blocks, bins) / volume
+        return parts.sums(grid, cells, weights) / volume
 
-    moving = velocities[1 : used + 1]
-    return Blocks(
-        stress=0.5 * (shear[:, 0, 1] - shear[:, 1, 1]) / (time[:, 0] * gap.area),
-        pressure=0.5 * push[:, :2].sum(axis=1) / (time[:, 0] * gap.area),
+    return Averages(
+        stress=0.5 * (shear[:, 0] - shear[:, 1]) / gap.area,
+        pressure=parts.means(face_pressures(run)[:, walls].mean(axis=1)),
         density=total(None),
-        flow=total(moving[:, :, 1]),
-        squares=np.stack([total(moving[:, :, k] ** 2) for k in range(gap.dimension)], axis=2),
+        flow=total(velocities[:, :, 1]),
+        squares=np.stack([total(velocities[:, :, k] ** 2) for k in range(gap.dimension)], axis=2),
         changes=np.diff(np.column_stack([along.sum(axis=1), moment]), axis=0),
     )
 

@@ -10,11 +10,11 @@ import numpy as np
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
+from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import jackknife
 from gaspart.reproduction.families.shared.rows import entries
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
-from gaspart.scene.shear import flow
 
 _AXES = {"y": 0, "x": 1, "z": 2}  # of the container, by name as of walls across x: x is that of the gradient
 
@@ -40,22 +40,12 @@ def uniform(point: Point, blocks: int) -> dict:
 
 def _blocks(run: Run, blocks: int) -> tuple[np.ndarray, np.ndarray]:
     """(K, d, d) the pressure tensor of stretches of a run, and (K,) the stress that Enskog states."""
-    length, scene = run.block_length(blocks), run.scene
-    used = length * blocks
-    sums = run.data["stress_sum"].values[: used + 1 : length]
-    time = np.diff(run.time[: used + 1 : length])
-    pressures = np.diff(sums, axis=0) / (scene.container.volume * time)[:, None, None]
-    root = np.sqrt(_temperatures(run)[: used + 1])
+    parts, scene = Blocks(run, blocks), run.scene
+    pressures = parts.growth("stress_sum") / scene.container.volume
+    root = np.sqrt(run.temperatures)
     unit = float(theory.enskog_viscosity(scene.packing_fraction, 3, 2.0 * scene.smallest_radius))
-    viscosity = unit * 0.5 * (root[1:] + root[:-1])
     assert scene.shear_rate is not None
-    return pressures, scene.shear_rate * viscosity.reshape(blocks, length).mean(axis=1)
-
-
-def _temperatures(run: Run) -> np.ndarray:
-    """(T,) of each frame, from the velocities about the flow, without momentum."""
-    relative = run.velocities - flow(run.scene, run.positions)
-    return (relative**2).sum(axis=(1, 2)) / (3 * (run.count - 1))
+    return pressures, scene.shear_rate * parts.means(unit * 0.5 * (root[1:] + root[:-1]))
 
 
 def _numbers(pressures: np.ndarray, expected: float) -> np.ndarray:

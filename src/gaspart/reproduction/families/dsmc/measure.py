@@ -26,6 +26,7 @@ from gaspart.reproduction.families.shared.pressure import series_of
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
+from gaspart.theory.enskog import approach_factor
 from gaspart.theory.heat import free_molecular_flux
 from gaspart.trajectory.reading import open_trajectory
 
@@ -147,16 +148,17 @@ def _paths(point: Point, settings: dict) -> dict:
 
 def _dense(point: Point, settings: dict) -> dict:
     """Z, the collision rate and D of the Enskog model, over those of Carnahan and Starling's contact value,
-    which it is given. It has N (N - 1) pairs where the equation of state has N^2."""
+    which it is given. It has N (N - 1) pairs where the equation of state has N^2, and a fixed energy."""
     gas = plain_gas(point.scene)
     eta, partners = gas.packing_fraction, 1.0 - 1.0 / gas.count
+    approach = approach_factor(3, gas.count)
     excess = float(theory.carnahan_starling(eta)) - 1.0
     contact = excess / (4.0 * eta)
     rate = float(theory.collision_rate(eta, 3) / theory.contact_value(eta, 3)) * contact
     found = [series_of(run) for run in _runs(point)]
     samples: dict[str, Sequence[float] | np.ndarray] = {
         "excess": [(one.z.mean() - 1.0) / (partners * excess) for one in found],
-        "rate": [one.rate.mean() / (partners * rate) for one in found],
+        "rate": [one.rate.mean() / (partners * approach * rate) for one in found],
         "diffusion": _running_diffusion(point) * contact,
     }
     return {"packing_fraction": eta, **_means(samples)}

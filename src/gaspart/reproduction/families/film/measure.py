@@ -9,8 +9,10 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.analysis.bins import Grid
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
+from gaspart.analysis.series import face_pressures
 from gaspart.analysis.statistics import average, correlated_mean, fit_polynomial, mean_of, means_of
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
@@ -121,29 +123,26 @@ def _truncation(place: np.ndarray, density: np.ndarray) -> float:
 
 def slit_of(run: Run) -> Slit:
     """That of a run of spheres between walls across the third axis. Raises SceneError for any other scene."""
-    gas = plain_gas(run.scene)
-    # Momentum along the walls is conserved: the temperature is that of the motion about it.
-    drift = run.data["velocities"][0].values.astype(float).mean(axis=0)[:2]
-    energy = float(run.data["kinetic_energy"].mean()) - 0.5 * gas.mass * gas.count * (drift @ drift)
-    temperature = 2.0 * energy / (3 * gas.count - 2)
-    diameter, positions = gas.diameter, run.positions[1:] / gas.diameter
-    sides = np.array(run.scene.container.lengths) / diameter
-    area = sides[0] * sides[1]
-    force = run.increments("wall_impulse")[:, 4:6].sum(axis=1) / (2.0 * run.interval)
+    diameter = plain_gas(run.scene).diameter
+    positions, sides = run.positions[1:] / diameter, np.array(run.scene.container.lengths) / diameter
+    pressure = face_pressures(run)[:, 4:6].mean(axis=1) * diameter**3 / run.temperature
     height = np.minimum(positions[..., 2], sides[2] - positions[..., 2]) - 0.5
-    return Slit(
-        force * diameter / (temperature * area), height, float(sides[2]), float(area), positions, sides
-    )
+    return Slit(pressure, height, float(sides[2]), float(sides[0] * sides[1]), positions, sides)
+
+
+def _densities(slit: Slit, grid: Grid) -> np.ndarray:
+    """(blocks, bins) density in bins of height above both walls, in blocks of frames."""
+    block = np.arange(len(slit.heights)) * _BLOCKS // len(slit.heights)
+    counts = grid.sums(grid.cells(slit.heights[..., None]), blocks=block)
+    return counts / (np.bincount(block)[:, None] * 2.0 * slit.area * grid.volume)
 
 
 def _contact(slit: Slit) -> Estimate:
     """Density extrapolated to the contact plane, with the scatter of blocks of frames as its error."""
-    edges = np.linspace(0.0, NEAR, _BINS + 1)
-    blocks = []
-    for frames in np.array_split(slit.heights, _BLOCKS):
-        counts = np.histogram(frames, edges)[0] / (len(frames) * 2.0 * slit.area * edges[1])
-        blocks.append(fit_polynomial(edges[:-1] + 0.5 * edges[1], counts, powers=range(4)).values[0])
-    return mean_of(blocks)
+    grid = Grid.line(0.0, NEAR, _BINS)
+    (middles,) = grid.middles
+    fits = [fit_polynomial(middles, counts, powers=range(4)) for counts in _densities(slit, grid)]
+    return mean_of([fit.values[0] for fit in fits])
 
 
 def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> Estimate:
@@ -174,16 +173,12 @@ def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> Estimate
 
 def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr.Dataset:
     """Density above the nearer wall of the widest slit, to its middle, and its mean around the middle."""
-    edges = np.linspace(0.0, 0.5 * (slits[0].width - 1.0), 4 * _BINS * round(slits[0].width / 4.0) + 1)
-    blocks, middle = [], []
-    for slit in slits:
-        for frames in np.array_split(slit.heights, _BLOCKS):
-            counts = np.histogram(frames, edges)[0]
-            blocks.append(counts / (len(frames) * 2.0 * slit.area * edges[1]))
-            inner = frames > edges[-1] - 1.0
-            middle.append(inner.sum() / (len(frames) * 2.0 * slit.area))
-    density, error = means_of(blocks)
-    centre = edges[:-1] + 0.5 * edges[1]
+    top = 0.5 * (slits[0].width - 1.0)
+    grid = Grid.line(0.0, top, 4 * _BINS * round(slits[0].width / 4.0))
+    density, error = means_of(np.concatenate([_densities(slit, grid) for slit in slits]))
+    inner = Grid.line(top - 1.0, top, 1)
+    middle = np.concatenate([_densities(slit, inner)[:, 0] for slit in slits])
+    (centre,) = grid.middles
     return xr.Dataset(
         {
             "place": ("bin", centre),

@@ -10,6 +10,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis import order as structure
+from gaspart.analysis.bins import Grid
 from gaspart.analysis.coexistence import plateau
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import correlated_mean, mean_of
@@ -250,15 +251,16 @@ def _slab(points: list[Point]) -> xr.Dataset:
     # A bin for each cell of the crystal, so that its layers fall into bins evenly.
     cell = (4.0 / theory.COEXISTENCE_DENSITY[3][1]) ** (1.0 / 3.0) * diameter
     bins = round(lengths[axis] / cell)
+    grid = Grid.line(0.0, lengths[axis], bins)
     pressures, orders, densities, fractions = [], [], [], []
     for run in runs(point):
         pressures.append(series_of(run).z * scene.number_density * diameter**3)
         frames = run.data["coordinates"].values[1:]
         local = np.array([structure.local_steinhardt(frame, lengths) for frame in frames])
-        place = np.minimum((frames[..., axis] / lengths[axis] * bins).astype(int), bins - 1)
+        place = grid.cells(frames[..., axis, None], inside=True)
         for half in np.array_split(np.arange(len(frames)), 2):
-            found = np.bincount(place[half].ravel(), minlength=bins)
-            orders.append(np.bincount(place[half].ravel(), local[half].ravel(), minlength=bins) / found)
+            found = grid.sums(place[half])
+            orders.append(grid.sums(place[half], local[half]) / found)
             densities.append(found / len(half) * bins / scene.container.volume * diameter**3)
             fractions.append((local[half] > LOCAL_CRYSTAL).mean())
     parts = np.array([_halves(pressure) for pressure in pressures])

@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.analysis.bins import Grid
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import average, bootstrap, correlated_mean, fit_polynomial, mean_of, means_of
@@ -219,10 +220,11 @@ def _clusters(point: Point, cells: int) -> dict:
 
 def _number_variance(run: Run, cells: int) -> np.ndarray:
     """(T,) variance of the number of particles in a cell, over its mean: 1 for independent particles."""
+    lengths = run.scene.container.lengths
+    grid = Grid((0.0,) * len(lengths), lengths, (cells,) * len(lengths))
     # Single precision may put a particle that is about to leave on the boundary itself.
-    place = np.minimum((run.positions / run.scene.container.lengths * cells).astype(int), cells - 1)
-    cell = place @ cells ** np.arange(place.shape[2])
-    counts = np.stack([np.bincount(frame, minlength=cells ** place.shape[2]) for frame in cell])
+    where = grid.cells(run.positions, inside=True)
+    counts = grid.sums(where, blocks=np.arange(len(where))).reshape(len(where), grid.size)
     return counts.var(axis=1) / counts.mean(axis=1)
 
 

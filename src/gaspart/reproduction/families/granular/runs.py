@@ -26,9 +26,7 @@ class Temperatures:
 def temperatures(run: Run, first: int) -> Temperatures:
     """Temperatures in all frames of a run of like particles from number `first` on."""
     count, dimension, mass = run.count, run.dimension, run.scene.species[0].mass
-    total = mass * (run.velocities**2).sum(axis=(1, 2))
-    drift = run.velocities.mean(axis=1)
-    translation = (total - mass * count * (drift**2).sum(axis=1)) / (dimension * (count - 1))
+    total, translation = mass * (run.velocities**2).sum(axis=(1, 2)), run.temperatures
     spins = {2: 1, 3: 3}[dimension]
     rotation = (2.0 * run.data["kinetic_energy"].values - total) / (spins * count)
     return Temperatures(

@@ -20,7 +20,6 @@ from gaspart.reproduction.families.shared.columns import (
     field,
     profile,
     stretches,
-    temperature,
 )
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
@@ -197,7 +196,7 @@ def _column(point: Point, settings: dict) -> dict:
     pressure = np.array([part.pressure for part in parts])
     # A block without particles in a bin has no temperature there, and weight 0.
     energy = np.array([np.nan_to_num(part.temperature) * part.density.sum(axis=0) for part in parts])
-    warm = np.array([temperature(place, stretch) for stretch in found])
+    warm = np.array([stretch.temperature for stretch in found])
     own = [place.species == n for n in range(bins.masses.size)]
     heights = np.array([[stretch.heights[:, kind].mean() for kind in own] for stretch in found])
     kinetic = np.array([[stretch.energies[:, kind].mean() for kind in own] for stretch in found])

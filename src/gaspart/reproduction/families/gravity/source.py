@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import curve_fit
 
+from gaspart.analysis.bins import Grid
 from gaspart.reproduction.families.shared.columns import field, stretches
 from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.reading import open_trajectory
@@ -58,10 +59,8 @@ def shares(point: Point, layers: int) -> dict[str, np.ndarray]:
     are those of the composition of a layer. The source has one frame.
     """
     place, [sample] = field(point), stretches(point, 1)
-    edges = np.linspace(-0.5, 0.5, layers + 1) * (place.height + place.diameter) + 0.5 * place.height
-    first, second = (
-        np.histogram(sample.heights[:, place.species == kind], edges)[0] / len(sample.heights)
-        for kind in (0, 1)
-    )
+    grid = Grid.line(-0.5 * place.diameter, place.height + 0.5 * place.diameter, layers)
+    cells = grid.cells(sample.heights[..., None])
+    first, second = (grid.sums(cells[:, place.species == kind]) / len(cells) for kind in (0, 1))
     share = first / (first + second)
     return {"share": share, "share_error": np.sqrt(share * (1.0 - share) / (first + second))}

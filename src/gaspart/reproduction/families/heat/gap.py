@@ -11,7 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gaspart.analysis.bins import Grid
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import steady_mean
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
@@ -38,20 +40,9 @@ class Gap:
         area = float(np.prod(scene.container.lengths[1:]))
         return cls(upper[0] - lower[0], area, *walls, scene.dimension)
 
-    def bin_of(self, positions: np.ndarray, bins: int) -> np.ndarray:
-        """Which of equal bins across the gap each position lies in."""
-        return np.clip((positions * (bins / self.length)).astype(int), 0, bins - 1)
-
-
-def sums(bin_of: np.ndarray, weights: np.ndarray | None, blocks: int, bins: int) -> np.ndarray:
-    """(blocks, bins): the sum of weights (or the number) of particles in each bin, over each block of frames.
-
-    bin_of, weights: (T, N), of T frames in all.
-    """
-    block = np.repeat(np.arange(blocks), len(bin_of) // blocks)[:, None]
-    slot = (bin_of + block * bins).ravel()
-    found = np.bincount(slot, None if weights is None else weights.ravel(), minlength=blocks * bins)
-    return found.reshape(blocks, bins)
+    def grid(self, bins: int) -> Grid:
+        """Equal bins across the gap."""
+        return Grid.line(0.0, self.length, bins)
 
 
 @dataclass(frozen=True)
@@ -92,24 +83,20 @@ def averages(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
     """
     radius = point.scene.smallest_radius
     heats, densities, energies, missing, stored, conducted = [], [], [], [], [], 0.0
+    grid = gap.grid(bins)
     for run in runs(point):
-        time, heat, kinetic = run.time, run.data["wall_energy"].values, run.data["kinetic_energy"].values
-        places = run.data["coordinates"].values[:, :, 0]
-        squares = (run.data["velocities"].values.astype(float) ** 2).sum(axis=2)
-        length = run.block_length(blocks)
-        used = length * blocks
-        ends = heat[: used + 1 : length, :2]
-        heats.append(np.diff(ends, axis=0) / np.diff(time[: used + 1 : length])[:, None] / gap.area)
-        through = heat - heat[0]
+        parts, kinetic = Blocks(run, blocks), run.data["kinetic_energy"].values
+        places = run.positions[:, :, 0] - radius
+        squares = (run.velocities**2).sum(axis=2)
+        heats.append(parts.growth("wall_energy")[:, :2] / gap.area)
+        through = run.data["wall_energy"].values - run.data["wall_energy"].values[0]
         missing.append(abs(through.sum(axis=1) + kinetic - kinetic[0]).max() / abs(through[-1]).max())
-        moment = 0.5 * (squares * (places - radius - 0.5 * gap.length)).sum(axis=1)
-        stored.append(np.stack([kinetic, moment], axis=1)[: used + 1 : length])
-        conducted += abs(ends[-1] - ends[0]).mean()
-        places, squares = places[1:], squares[1:]
-        bin_of = gap.bin_of(places[:used] - radius, bins)
-        volume = length * gap.area * gap.length / bins
-        densities.append(sums(bin_of, None, blocks, bins) / volume)
-        energies.append(sums(bin_of, squares[:used] / gap.dimension, blocks, bins) / volume)
+        moment = 0.5 * (squares * (places - 0.5 * gap.length)).sum(axis=1)
+        stored.append(np.stack([kinetic, moment], axis=1)[parts.ends])
+        conducted += abs(np.ptp(through[parts.ends, :2][[0, -1]], axis=0)).mean()
+        cells, volume = grid.cells(places[..., None], inside=True), parts.length * gap.area * grid.volume
+        densities.append(parts.sums(grid, cells) / volume)
+        energies.append(parts.sums(grid, cells, squares / gap.dimension) / volume)
     given, taken = np.concatenate(heats).T
     profiles = np.concatenate(densities), np.concatenate(energies)
     return Averages(-given, taken, *profiles, float(max(missing)), np.array(stored), float(conducted))

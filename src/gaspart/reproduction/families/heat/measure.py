@@ -9,12 +9,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import fit_polynomial, jackknife
 from gaspart.reproduction.families.heat.approach import NO_APPROACH, approach
 from gaspart.reproduction.families.heat.gap import (
     Gap,
     averages,
-    sums,
 )
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
@@ -149,18 +149,15 @@ def _metal(point: Point, settings: dict) -> dict:
     bins, blocks = settings["bins"], settings["blocks"] if point.replicas == 1 else 1
     capacity = 0.5 * gap.dimension * np.sum(~fixed) + np.sum(fixed)
     tables, totals, squares, heats, modes = [], [], [], [], []
+    grid = gap.grid(bins)
     for run in runs(point):
-        time, heat = run.time, run.data["wall_energy"].values[:, :2]
-        places = run.data["coordinates"].values[1:, :, 0]
-        speeds = (run.data["velocities"].values[1:, ~fixed].astype(float) ** 2).sum(axis=2)
-        vibrations = run.data["vibrations"].values[1:, fixed].astype(float)
-        length = run.block_length(blocks)
-        used = length * blocks
-        bin_of = gap.bin_of(places[:used] - scene.smallest_radius, bins)
-        here, there = bin_of[:, ~fixed], bin_of[:, fixed]
-        speeds, vibrations = speeds[:used], vibrations[:used]
+        parts = Blocks(run, blocks)
+        cells = grid.cells(run.positions[:, :, :1] - scene.smallest_radius, inside=True)
+        here, there = cells[:, ~fixed], cells[:, fixed]
+        speeds = (run.velocities[:, ~fixed] ** 2).sum(axis=2)
+        vibrations = run.data["vibrations"].values[:, fixed].astype(float)
         table = [
-            sums(where, weights, blocks, bins)
+            parts.sums(grid, where, weights)
             for where, weights in (
                 (here, None),
                 (here, speeds / gap.dimension),
@@ -169,12 +166,11 @@ def _metal(point: Point, settings: dict) -> dict:
             )
         ]
         tables.append(np.stack(table, axis=1))
-        energy = (0.5 * speeds.sum(axis=1) + vibrations.sum(axis=1)).reshape(blocks, length)
-        totals.append(energy.mean(axis=1))
-        squares.append(((energy - capacity * gap.hot) ** 2).mean(axis=1))
-        modes.append(vibrations.mean(axis=1).reshape(blocks, length).mean(axis=1))
-        ends = slice(None, used + 1, length)
-        heats.append(np.diff(heat[ends], axis=0) / np.diff(time[ends])[:, None] / gap.area)
+        energy = 0.5 * speeds.sum(axis=1) + vibrations.sum(axis=1)
+        totals.append(parts.means_of_frames(energy))
+        squares.append(parts.means_of_frames((energy - capacity * gap.hot) ** 2))
+        modes.append(parts.means_of_frames(vibrations.mean(axis=1)))
+        heats.append(parts.growth("wall_energy")[:, :2] / gap.area)
     particles, kinetic, scatterers, vibrating = np.moveaxis(np.concatenate(tables), 1, 0)
     given, taken = np.concatenate(heats).T
     total, square, mode = (np.concatenate(values) for values in (totals, squares, modes))

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.statistics import fit_polynomial, mean_of
+from gaspart.analysis.statistics import fit_polynomial, jackknife, mean_of
 from gaspart.reproduction.points.point import Point
 
 SAMPLES = 24
@@ -178,19 +178,16 @@ def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, 
         result[:, k] = (
             states[bin_of == k][tried].mean() * fill.particle,
             ratio,
-            max(own, _jackknife(lost, won)),
+            max(own, _ratio_error(lost, won)),
         )
     return result[0], result[1], result[2]
 
 
-def _jackknife(numerator: np.ndarray, denominator: np.ndarray) -> float:
+def _ratio_error(numerator: np.ndarray, denominator: np.ndarray) -> float:
     """Standard error of sum(numerator) / sum(denominator) over replicas; 0 if undetermined."""
-    count = len(numerator)
-    left = denominator.sum() - denominator
-    if np.any(left == 0):  # all successes in one replica, or only one replica: nothing to omit
+    if np.any(denominator == denominator.sum()):  # all successes in one replica: nothing to omit
         return 0.0
-    without = (numerator.sum() - numerator) / left
-    return float(np.sqrt((count - 1) / count * np.sum((without - without.mean()) ** 2)))
+    return float(jackknife(lambda lost, won: lost / won, numerator, denominator)[1])
 
 
 def saturation(fill: Fill, window: float) -> tuple[float, float, float]:
@@ -216,10 +213,8 @@ def approach_exponent(fill: Fill, window: float) -> tuple[float, float]:
             return np.nan
         return -fit_polynomial(np.log(times), np.log(mean_gap)).values[1]
 
-    count = len(gap)
-    without = np.array([exponent((gap.sum(axis=0) - one) / (count - 1)) for one in gap])
-    error = np.sqrt((count - 1) / count * np.sum((without - without.mean()) ** 2))
-    return float(exponent(gap.mean(axis=0))), float(error)
+    value, error = jackknife(exponent, gap)
+    return float(value), float(error)
 
 
 def dilute_failures(fill: Fill, up_to: float) -> tuple[float, float]:

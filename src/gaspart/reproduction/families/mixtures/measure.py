@@ -15,6 +15,7 @@ from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.mixtures import contact_scales, estimates_of, rate_scales
 from gaspart.analysis.run import Run
+from gaspart.analysis.series import compressibility
 from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.rows import entries, from_rows
@@ -83,9 +84,7 @@ def _joined(found: list[dict]) -> list[tuple[str, list]]:
 
 def _of_run(run: Run, two: bool) -> dict[str, list[Estimate]]:
     """Z, and of two sizes what the collisions of each pair of species give."""
-    scale = run.dimension * run.count * run.temperature
-    z = 1.0 + run.increments("virial_sum") / (scale * np.diff(run.time))
-    found = {"Z": [correlated_mean(z).estimate]}
+    found = {"Z": [correlated_mean(compressibility(run)).estimate]}
     if two:
         found["virial"] = [_virial(run)]
         found["contact"] = estimates_of(run, contact_scales(run))

@@ -31,7 +31,10 @@ def observable(points: list[Point], settings: dict) -> xr.Dataset:
     name = settings["observable"]
     rows, source = [], ""
     for point in points:
-        (replicas,) = measured(point, [name], part=False).observables.values()
+        found, refused = measured(point, [name], part=False)
+        if refused:
+            raise refused[name]
+        replicas = found.observables[name]
         if settings.get("place") is not None:
             (dim,) = replicas[0].estimate.dims
             replicas = [one.sel({dim: settings["place"]}, method="nearest") for one in replicas]

@@ -7,6 +7,7 @@ from typing import Any
 
 from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept
 from gaspart.errors import SceneError
+from gaspart.reproduction.points.measurable import distinct, require_observable
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 
 NEEDED = {
@@ -17,6 +18,8 @@ NEEDED = {
     "exponent": ("value", "tolerance", "source"),
 }
 """What a claim of each kind must state."""
+_LEAST = 3
+"""Points through which a power law is fitted."""
 _UNUSED = {
     "theory": ("value", "source"),
     "at_least": ("tolerance",),
@@ -44,8 +47,28 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
     place = settings.get("place")
     if place is not None and not curve:
         raise SceneError(f"{where}.place", place, "has a meaning for a curve only")
+    for point in distinct(points):
+        try:
+            require_observable(settings["observable"], point)
+        except SceneError as error:
+            rule = f"cannot be measured at {point.path}: {error.key}: {error.rule}"
+            raise SceneError(f"{where}.observable", settings["observable"], rule) from None
+    at = sorted({float(point.settings[against]) for point in points})
     for number, claim in enumerate(settings.get("claims", ())):
         _claim(f"{where}.claims.{number}", claim, curve and place is None)
+        _check_between(f"{where}.claims.{number}", claim, at)
+
+
+def _check_between(where: str, claim: Mapping[str, Any], at: Sequence[float]) -> None:
+    """Refuse a claim about no point, and an exponent of fewer than three. at: places of the points."""
+    between = claim.get("between")
+    low, high = (at[0], at[-1]) if between is None else between
+    chosen = [one for one in at if low <= one <= high]
+    stated = f"there is none of the points, which are from {at[0]:g} to {at[-1]:g}"
+    if not chosen:
+        raise SceneError(f"{where}.between", between, stated)
+    if claim["that"] == "exponent" and len(chosen) < _LEAST:
+        raise SceneError(where, "exponent", f"needs {_LEAST} points or more; there are {len(chosen)}")
 
 
 def _require_measurable(where: str, name: str, point: Point) -> None:

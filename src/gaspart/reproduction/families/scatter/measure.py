@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from scipy.special import ndtr
 
+from gaspart.analysis.bins import Grid
 from gaspart.reproduction.claims import read
 
 BINS = 10
@@ -36,7 +37,8 @@ def claims_scatter(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
     )
     scattered = scattered.astype(bool)
     own = [deviation[scattered & (figure == n)] for n in range(len(found))]
-    counts = np.histogram(ndtr(deviation[scattered]), BINS, (0.0, 1.0))[0]
+    grid = Grid.line(0.0, 1.0, BINS)
+    counts = grid.sums(grid.cells(ndtr(deviation[scattered])[:, None]))
     units = {"units": "1"}
     return xr.Dataset(
         {

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gaspart.analysis.bins import Grid
+from gaspart.analysis.series import Blocks
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.species import Particle, Species
@@ -65,7 +67,8 @@ class Stretch:
 
     positions (T, N, 2), the second one the height; energies (T, N), kinetic ones, without the centre of
     mass's motion along a periodic axis; floor, ceiling: mean forces on them; gain: mean rate at which the
-    particles' upward momentum grew.
+    particles' upward momentum grew; temperature: twice the mean kinetic energy per degree of freedom (one is
+    lost with a conserved momentum).
     """
 
     positions: np.ndarray
@@ -73,6 +76,7 @@ class Stretch:
     floor: float
     ceiling: float
     gain: float
+    temperature: float
 
     @property
     def heights(self) -> np.ndarray:
@@ -88,48 +92,21 @@ def stretches(point: Point, number: int) -> list[Stretch]:
     """
     place, found = field(point), []
     for run in runs(point):
-        impulse = run.data["wall_impulse"].values[:, 2:4]
-        length = run.block_length(number)
-        for start in range(0, number * length, length):
-            stop = start + length
-            duration = run.time[stop] - run.time[start]
-            forces = (impulse[stop] - impulse[start]) / duration
-            frames = slice(start + 1, stop + 1)
-            ends = run.velocities[[start, stop], :, 1]
-            parts = run.positions[frames], run.velocities[frames], ends, forces, duration
-            found.append(_stretch(place, *parts))
+        blocks = Blocks(run, number)
+        energies = np.zeros(run.positions.shape[:2])
+        energies[:, run.moving] = 0.5 * run.motion.energies(run.masses[run.moving])
+        positions = run.positions - [0.0, 0.5 * place.diameter]
+        momentum = run.velocities[blocks.ends, run.moving, 1] @ run.masses[run.moving]
+        columns = (
+            blocks.growth("wall_impulse")[:, 2],
+            blocks.growth("wall_impulse")[:, 3],
+            np.diff(momentum) / blocks.durations,
+            blocks.means_of_frames(run.temperatures),
+        )
+        frames = (np.split(values[blocks.frames], number) for values in (positions, energies))
+        parts = zip(*frames, *(column.tolist() for column in columns), strict=True)
+        found += [Stretch(*part) for part in parts]
     return found
-
-
-def _stretch(
-    place: Field,
-    positions: np.ndarray,
-    velocities: np.ndarray,
-    ends: np.ndarray,
-    forces: np.ndarray,
-    duration: float,
-) -> Stretch:
-    moving = np.isfinite(place.masses)
-    masses = np.where(moving, place.masses, 0.0)
-    drift = np.zeros((len(velocities), 1))
-    if place.across and moving.all():  # a fixed particle takes momentum away
-        drift = (velocities[..., 0] @ masses / masses.sum())[:, None]
-    energies = 0.5 * masses * ((velocities[..., 0] - drift) ** 2 + velocities[..., 1] ** 2)
-    heights = positions[..., 1] - 0.5 * place.diameter
-    return Stretch(
-        positions=np.stack([positions[..., 0], heights], axis=-1),
-        energies=energies,
-        floor=float(forces[0]),
-        ceiling=float(forces[1]),
-        gain=float((ends[1] - ends[0]) @ masses / duration),
-    )
-
-
-def temperature(place: Field, stretch: Stretch) -> float:
-    """Twice the mean kinetic energy per degree of freedom (one is lost with a conserved momentum)."""
-    moving = np.isfinite(place.masses)
-    freedom = 2 * moving.sum() - (place.across and moving.all())
-    return 2.0 * float(stretch.energies.sum(axis=1).mean()) / freedom
 
 
 @dataclass(frozen=True)
@@ -149,24 +126,22 @@ def profile(place: Field, stretch: Stretch, bins: int) -> Profile:
     sum of m g over particles above z) / width (exact; no equation of state is used).
     """
     frames, count = stretch.heights.shape
-    scaled = stretch.heights.ravel() * (bins / place.height)
-    bin_of = np.clip(scaled.astype(int), 0, bins - 1)
-    masses = np.tile(place.masses, frames)
-    kinds = int(place.species.max()) + 1
-    places = np.tile(place.species, frames) * bins + bin_of
-    counts = np.bincount(places, minlength=kinds * bins).reshape(kinds, bins)
+    grid = Grid.line(0.0, place.height, bins)
+    cells = grid.cells(stretch.heights[..., None], inside=True)
+    counts = np.array([
+        grid.sums(cells[:, place.species == kind]) for kind in range(int(place.species.max()) + 1)
+    ])  # fmt: skip
     total = counts.sum(axis=0)
-    energy = np.bincount(bin_of, stretch.energies.ravel(), minlength=bins)
     # In a bin's average over z, a particle within it counts for the part of the bin that lies below it.
-    mass = np.bincount(bin_of, masses, minlength=bins)
-    within = np.bincount(bin_of, masses * np.clip(scaled - bin_of, 0.0, 1.0), minlength=bins)
+    below = np.clip(stretch.heights * (bins / place.height) - cells, 0.0, 1.0)
+    mass, within = grid.sums(cells, place.masses), grid.sums(cells, place.masses * below)
     above = np.cumsum(mass[::-1])[::-1] - mass + within
-    area = place.width * place.height / bins
     lost = 2.0 * count / (2.0 * count - place.across)  # the momentum that is conserved
     with np.errstate(invalid="ignore"):
-        temperature = np.where(total > 0, lost * energy / np.maximum(total, 1), np.nan)
+        energies = lost * grid.sums(cells, stretch.energies)
+        temperature = np.where(total > 0, energies / np.maximum(total, 1), np.nan)
     return Profile(
-        density=counts / (frames * area),
+        density=counts / (frames * place.width * grid.volume),
         temperature=temperature,
         pressure=(stretch.ceiling + place.strength * above / frames) / place.width,
     )

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.analysis.bins import Grid
 from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.rows import from_rows
@@ -26,7 +27,7 @@ class Velocities:
     """Velocities in a run of T frames, N particles, d axes.
 
     time (T,); collisions (T,), per particle since the start; velocities (T, N, d), single precision as
-    stored; temperature (T,), 2 E / (d N) from the energy in double precision.
+    stored; temperature (T,), between walls 2 E / (d N) from the energy in double precision.
     """
 
     time: np.ndarray
@@ -48,7 +49,7 @@ def read(point: Point, first: int | None = None) -> list[Velocities]:
             time=run.time,
             collisions=2.0 * run.data["collisions"].values / run.count,
             velocities=run.data["velocities"].values,
-            temperature=2.0 * run.data["kinetic_energy"].values / (run.dimension * run.count),
+            temperature=run.temperatures,
         )
         for run in runs(point, first)
     ]
@@ -98,7 +99,8 @@ def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
     time = groups[0][0].time
     _require_alike(points, groups)
     shown = np.array([_frame_at(time, chosen) for chosen in settings["times"]])
-    edges = np.linspace(0.0, settings["highest"], settings["bins"] + 1)
+    grid = Grid.line(0.0, settings["highest"], settings["bins"])
+    (edges,) = grid.edges
 
     dataset = xr.Dataset(
         coords={
@@ -120,7 +122,7 @@ def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
         "collisions": lambda run: run.collisions,
         "kurtosis": lambda run: kurtosis(run.speeds),
         "never_hit": lambda run: never_hit(run.velocities),
-        "density": lambda run: np.stack([_density(speeds, edges) for speeds in run.speeds[shown]]),
+        "density": lambda run: np.stack([_density(speeds, grid) for speeds in run.speeds[shown]]),
         "temperature_drift": lambda run: np.abs(run.temperature / run.temperature[0] - 1.0),
     }
     for name, function in measures.items():
@@ -180,9 +182,9 @@ def _frame_at(time: np.ndarray, chosen: float) -> int:
     return frame
 
 
-def _density(speeds: np.ndarray, edges: np.ndarray) -> np.ndarray:
+def _density(speeds: np.ndarray, grid: Grid) -> np.ndarray:
     """Fraction of the speeds per bin and width; those beyond the last edge count in the norm."""
-    return np.histogram(speeds, edges)[0] / speeds.size / np.diff(edges)
+    return grid.sums(grid.cells(speeds[..., None])) / speeds.size / grid.volume
 
 
 def _initial_slope(s: np.ndarray, values: np.ndarray) -> float:
@@ -216,9 +218,10 @@ def distribution(points: list[Point], settings: dict) -> xr.Dataset:
     energy, so <u^2> = 1 exactly in every snapshot, which takes one degree of freedom from chi-square.
     """
     dimension = points[0].settings["dimension"]
-    edges = np.linspace(0.0, settings["highest"], settings["bins"] + 1)
+    grid = Grid.line(0.0, settings["highest"], settings["bins"])
+    (edges,) = grid.edges
     steps = np.linspace(0.0, settings["highest"], 201)
-    rows = [_distribution(point, dimension, edges, steps, settings["classes"]) for point in points]
+    rows = [_distribution(point, dimension, grid, steps, settings["classes"]) for point in points]
     inner = {**dict.fromkeys(("density", "expected", "residual"), ("bin",)), "difference": ("step",)}
     dataset = from_rows("point", rows, inner, units={}).assign_coords(
         lower=("bin", edges[:-1], {"units": "root-mean-square speed"}),
@@ -228,15 +231,15 @@ def distribution(points: list[Point], settings: dict) -> xr.Dataset:
     return dataset.assign_attrs(dimension=dimension)
 
 
-def _distribution(point: Point, dimension: int, edges: np.ndarray, steps: np.ndarray, classes: int) -> dict:
+def _distribution(point: Point, dimension: int, grid: Grid, steps: np.ndarray, classes: int) -> dict:
     """The numbers of one point. Speeds are over the root-mean-square speed: Maxwell's temperature is 1/d."""
     temperature = 1.0 / dimension
     found = read(point)
     speeds = np.concatenate([run.speeds.ravel() for run in found])
     cumulative = lambda u: theory.maxwell_cdf(u, dimension, temperature)  # noqa: E731
-    chance = np.diff(cumulative(edges))
-    share = np.histogram(speeds, edges)[0] / speeds.size
-    width = np.diff(edges)
+    chance = np.diff(cumulative(grid.edges[0]))
+    width = grid.volume
+    share = _density(speeds, grid) * width
     deviation = np.sqrt(chance * (1.0 - chance) / speeds.size)
     test = histogram_chi_square(speeds, cumulative, classes)
     ordered = np.sort(speeds)

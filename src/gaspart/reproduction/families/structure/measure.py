@@ -21,6 +21,7 @@ from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.order import radial_distribution
 from gaspart.analysis.run import Run
+from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import fit_polynomial, jackknife, means_of
 from gaspart.analysis.waves import admitted, factors, in_shells, shells_of
 from gaspart.reproduction.families.shared.pressure import series_of
@@ -48,7 +49,7 @@ BINS, SHELLS, WAVES = 160, 80, 24
 
 
 @dataclass(frozen=True)
-class Blocks:
+class Averages:
     """Means over blocks of frames, of all runs of a point: low (B, M), S at the longest waves; near (B, n),
     g at contact; g (B, BINS) and s (B, shells), the curves; z, rate (B,)."""
 
@@ -87,7 +88,7 @@ def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict
     furthest = min(settings["furthest"], 0.499 * float(lengths.min()))
     curves = waves, shell, furthest
     parts = [_blocks(run, gas, low, curves, settings["frames"]) for run in runs(point)]
-    one = Blocks(*(np.concatenate([getattr(part, key.name) for part in parts]) for key in fields(Blocks)))
+    one = Averages(*(np.concatenate([getattr(part, key.name) for part in parts]) for key in fields(Averages)))
     distance = furthest * (np.arange(BINS) + 0.5) / BINS
     numbers = _numbers(one, gas, size)
     numbers["state_s0"] = Estimate(1.0) / states[dimension].inverse_compressibility(eta)
@@ -107,7 +108,7 @@ def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict
     }
 
 
-def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Blocks:
+def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Averages:
     """Those of one run. Lengths are divided by the diameter; curves: wave vectors, their shells, and the
     furthest distance, of those that are made of about `most` frames."""
     lengths = np.array(run.scene.container.lengths) / gas.diameter
@@ -117,7 +118,7 @@ def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Bl
     near = round(1.5 / WIDTH)
     pairs = gas.count / (gas.count - 1.0)
     waves, shell, furthest = curves
-    found: dict[str, list] = {key.name: [] for key in fields(Blocks)}
+    found: dict[str, list] = {key.name: [] for key in fields(Averages)}
     series = series_of(run)
     for start in range(0, BLOCKS * length, length):
         part = frames[start : start + length]
@@ -129,12 +130,12 @@ def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Bl
         found["s"].append(
             in_shells(np.mean([factors(frame, lengths, waves) for frame in few], axis=0), shell)
         )
-        found["z"].append(series.z[start : start + length].mean())
-        found["rate"].append(series.rate[start : start + length].mean())
-    return Blocks(**{name: np.array(values, dtype=float) for name, values in found.items()})
+    parts = Blocks(run, BLOCKS)
+    found |= {"z": [*parts.means(series.z)], "rate": [*parts.means(series.rate)]}
+    return Averages(**{name: np.array(values, dtype=float) for name, values in found.items()})
 
 
-def _numbers(one: Blocks, gas: Gas, size: np.ndarray) -> dict[str, Estimate]:
+def _numbers(one: Averages, gas: Gas, size: np.ndarray) -> dict[str, Estimate]:
     """The compressibility, from S at the wave numbers size (M,), and the contact values."""
     unit = 1.0 / (2.0 ** (gas.dimension - 1) * gas.packing_fraction)
     per_rate = _contact_per_rate(gas)

@@ -25,7 +25,8 @@ from gaspart.reproduction.families.tradeoff.relaxation import FREE_TIMES
 from gaspart.reproduction.families.tradeoff.uniform import BOUND
 from gaspart.reproduction.points.point import Point
 from gaspart.theory.dsmc import cell_factor, step_factor
-from gaspart.tradeoff.candidates import boltzmann_error, enskog_error
+from gaspart.tradeoff.bounds import boltzmann_error, enskog_error
+from gaspart.tradeoff.conditions import even_conditions
 
 FLOWS = ("heat_flux", "relaxation")
 SETTLED = 5.0
@@ -156,7 +157,8 @@ def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
     )
     step = _step(point) * found.speed / math.sqrt(8.0 / math.pi) * math.sqrt(2.0)
     grown = cell_factor(coefficient, width / found.path) * step_factor(coefficient, step / found.path)
-    model = boltzmann_error(scene) if name == "boltzmann" else enskog_error(scene, "D")
+    bound = boltzmann_error if name == "boltzmann" else enskog_error
+    model = bound(even_conditions(scene, 1.0), "D")
     return model, float(grown) - 1.0
 
 

@@ -23,6 +23,7 @@ from gaspart.reproduction.families.shared.pressure import series_of
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.tradeoff.choices import Choice
 from gaspart.reproduction.points.point import Point
+from gaspart.theory.enskog import approach_factor
 from gaspart.tradeoff import table
 from gaspart.tradeoff.models import cell_loss, model_error, step_error
 from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS
@@ -125,7 +126,7 @@ def cells_of(point: Point) -> Cells:
     fraction, count = point.scene.packing_fraction, point.scene.count
     contact = (float(theory.carnahan_starling(fraction)) - 1.0) / (4.0 * fraction)
     expected = float(theory.collision_rate(fraction, 3) / theory.contact_value(fraction, 3)) * contact
-    expected *= 1.0 - 1.0 / count
+    expected *= (1.0 - 1.0 / count) * approach_factor(3, count)
     contacts = 0.5 * count * expected * found.interval
     variances = {
         name: float(series.var(ddof=1) / series.mean() ** 2) * contacts

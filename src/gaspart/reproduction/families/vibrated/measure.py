@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
+from gaspart.analysis.bins import Grid
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import means_of
 from gaspart.reproduction.families.shared.rows import entries, from_rows
@@ -29,14 +29,13 @@ def vibrated_bed(points: list[Point], settings: dict) -> xr.Dataset:
     height above the floor's lowest place times g over the vertical temperature; and over (bed, bin) density,
     the share of discs in a bin over its width, in units of T/g, at `place`. All with errors from replicas.
     """
-    edges = _edges(settings)
     units = {"temperature": "energy", **dict.fromkeys(("speed", "given", "lost"), "length / time")}
     beds = from_rows("bed", [_bed(point, settings) for point in points], ("bin",), units)
-    return beds.assign_coords(place=("bin", 0.5 * (edges[1:] + edges[:-1])))
+    return beds.assign_coords(place=("bin", _grid(settings).middles[0]))
 
 
-def _edges(settings: dict) -> np.ndarray:
-    return np.linspace(0.0, settings["highest"], settings["bins"] + 1)
+def _grid(settings: dict) -> Grid:
+    return Grid.line(0.0, settings["highest"], settings["bins"])
 
 
 def _bed(point: Point, settings: dict) -> dict[str, Any]:
@@ -67,12 +66,12 @@ def means(run: Run, settings: dict) -> dict[str, Any]:
     across, along = (run.velocities**2).mean(axis=(0, 1))
     temperature = 0.5 * (across + along)
     weight = scene.count * gravity
-    edges = _edges(settings)
-    counts, _ = np.histogram(heights * gravity / temperature, edges)
+    grid = _grid(settings)
+    counts = grid.sums(grid.cells((heights * gravity / temperature)[..., None]))
     return {
         "temperature": temperature,
         "given": -run.growth("wall_energy")[_FLOOR] / weight,
         "lost": run.growth("dissipated_energy") / weight,
         "height": heights.mean() * gravity / along,
-        "density": counts / (heights.size * np.diff(edges)),
+        "density": counts / (heights.size * grid.volume),
     }

@@ -1,8 +1,7 @@
 """Pressure from the momentum transferred to the walls of the container.
 
 Everything is in reduced units: the particles' diameter, mass and temperature are 1. Along a periodic axis the
-total momentum is conserved: the temperature is that of the motion about it, k_B T = 2 E' / (d N - p) with p
-periodic axes.
+total momentum is conserved: the temperature is that of the motion about it.
 """
 
 from __future__ import annotations
@@ -12,6 +11,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.run import Run
+from gaspart.analysis.series import face_pressures
 from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.rows import entries, from_rows
@@ -45,9 +45,8 @@ def _row(point: Point) -> dict:
     touched = np.where(walled, lengths - 1.0, lengths)
     length, axes = float(lengths[walled][0]), int(walled.sum())
     expected = theory.wall_pressure(length, count / touched.prod(), count, dimension, axes)
-    replicas = [_replica(run, walled, diameter) for run in runs(point)]
-    # Mean over walls of force over area, per replica: an area is the volume over the length across it.
-    accessible = [(force * touched[walled]).mean(axis=1) / touched.prod() for force, _, _ in replicas]
+    replicas = [_replica(run) for run in runs(point)]
+    accessible = [pressures * diameter**dimension / temperature for pressures, temperature, _ in replicas]
     pressure = average([correlated_mean(one).estimate for one in accessible])
     share = touched.prod() / touched[walled][0] * lengths[walled][0] / lengths.prod()
     density = count / float(lengths.prod())
@@ -67,16 +66,8 @@ def _row(point: Point) -> dict:
     }
 
 
-def _replica(run: Run, walled: np.ndarray, diameter: float) -> tuple[np.ndarray, float, int]:
-    """One replica: (samples, w) force on a wall of each walled axis, in reduced units; the temperature in
-    the scene's; the number of hits."""
-    dimension, count = run.dimension, run.count
-    impulse = run.increments("wall_impulse")[:, : 2 * dimension]
-    hits = run.increments("wall_hits")[:, : 2 * dimension].sum()
-    drift = run.data["velocities"][0].values[:, :dimension].astype(float).mean(axis=0)
-    drift = np.where(walled, 0.0, drift)
-    energy, mass = float(run.data["kinetic_energy"].mean()), run.scene.species[0].mass
-    freedom = dimension * count - int((~walled).sum())
-    temperature = (2.0 * energy - mass * count * float(drift @ drift)) / freedom
-    mean = 0.5 * impulse.reshape(len(impulse), dimension, 2).sum(axis=2)[:, walled]
-    return mean / run.interval * diameter / temperature, temperature, hits
+def _replica(run: Run) -> tuple[np.ndarray, float, int]:
+    """One replica: (samples,) mean pressure on the walls; the temperature; the number of hits."""
+    walled = np.repeat(~run.periodic, 2)
+    hits = run.increments("wall_hits")[:, : 2 * run.dimension].sum()
+    return face_pressures(run)[:, walled].mean(axis=1), run.temperature, hits

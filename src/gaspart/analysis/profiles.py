@@ -1,0 +1,162 @@
+"""Sums in cells, frame by frame: density, flow and temperature, and the errors of their means.
+
+What is in a cell is correlated over many frames, near the top of a bed of grains for tens of its collision
+times. So the frames are joined to blocks, at most 256, and the error of a ratio of two sums over the run, R =
+sum A / sum B, is that of the mean of the correlated series (A - R B) / mean B, of each cell for itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from gaspart.analysis.bins import Grid
+from gaspart.analysis.flow import Peculiar, about_cells, about_the_flow
+from gaspart.analysis.observable import Observable
+from gaspart.analysis.room import moving_axes, sides
+from gaspart.analysis.run import Run
+from gaspart.analysis.statistics import correlated_mean
+from gaspart.errors import SceneError
+
+LEAST_FRAMES = 16
+"""Frames that an error needs."""
+_BLOCKS = 256
+"""Blocks of frames: more would cost memory, and their correlation is allowed for."""
+_LEAST_FREEDOM = 2.0
+"""Degrees of freedom of an error, below which it is not known: the run is too short for the correlation, or
+the cell was filled in too few blocks."""
+_ROUNDING = 1e-12  # relative scatter of what does not change
+
+
+@dataclass(frozen=True)
+class Means:
+    """Values in cells, their standard errors, and the degrees of freedom of these, all of one shape. NaN: a
+    value of an empty cell; an error of fewer than two degrees of freedom."""
+
+    values: np.ndarray
+    errors: np.ndarray
+    freedoms: np.ndarray
+
+    def times(self, factor: float) -> Means:
+        """The same, multiplied by an exact number."""
+        return Means(factor * self.values, factor * self.errors, self.freedoms)
+
+
+def with_freedom(result: Observable, found: Means) -> Observable:
+    """A result with a variable of the suffix _freedom, the degrees of freedom of its errors."""
+    about = {"units": "1", "long_name": "degrees of freedom of the uncertainty"}
+    result[f"{result.attrs['quantity']}_freedom"] = result.estimate.dims, found.freedoms, about
+    return result
+
+
+def ratio(above: np.ndarray, below: np.ndarray) -> Means:
+    """sum A / sum B of series (K, ...) of K consecutive blocks, at least 16."""
+    total = below.sum(axis=0)
+    values = np.divide(above.sum(axis=0), total, out=np.full(total.shape, np.nan), where=total > 0.0)
+    errors, filled = np.full(total.shape, np.nan), (below > 0.0).sum(axis=0)
+    freedoms = np.where(total > 0.0, filled - 1.0, np.nan)
+    with np.errstate(invalid="ignore"):
+        rest = (above - values * below) / np.where(total > 0.0, total, np.nan) * len(below)
+    for cell in np.argwhere(filled > _LEAST_FREEDOM):
+        at = tuple(cell)
+        series = rest[(slice(None), *at)]
+        if np.ptp(series) <= _ROUNDING * abs(values[at]):
+            errors[at] = 0.0
+            continue
+        found = correlated_mean(series, LEAST_FRAMES).estimate
+        freedoms[at] = min(found.freedom, freedoms[at])
+        errors[at] = found.error if freedoms[at] >= _LEAST_FREEDOM else np.nan
+    return Means(values, errors, freedoms)
+
+
+@dataclass(frozen=True)
+class Cells:
+    """The cells of a run along some axes, each as long as the container along the others.
+
+    members: which particles (n,) count, all of them moving; axes: of the grid.
+    """
+
+    run: Run
+    members: np.ndarray
+    axes: tuple[int, ...]
+    numbers: tuple[int, ...]
+
+    @cached_property
+    def grid(self) -> Grid:
+        """The cells, of the container at rest."""
+        lengths = [float(self.run.scene.container.lengths[axis]) for axis in self.axes]
+        return Grid((0.0,) * len(lengths), tuple(lengths), self.numbers)
+
+    @cached_property
+    def blocks(self) -> np.ndarray:
+        """(T,) the block of each frame. Raises SceneError for too few frames."""
+        frames = len(self.run.time)
+        if frames < LEAST_FRAMES:
+            raise SceneError("frames", frames, f"an error needs {LEAST_FRAMES} or more")
+        return np.arange(frames) * min(_BLOCKS, frames) // frames
+
+    @cached_property
+    def cells(self) -> np.ndarray:
+        """(T, n) the cell of each particle in each frame."""
+        return self.grid.cells(self.run.positions[:, self.members][..., self.axes], inside=True)
+
+    def sums(self, weights: np.ndarray | None = None) -> np.ndarray:
+        """(K, *cells) sums over the particles, and over the frames of each block, of weights (T, n), or their
+        number."""
+        return self.grid.sums(self.cells, weights, self.blocks)
+
+    def room(self) -> np.ndarray:
+        """(K, *cells) the volume of the cells that is within the container, summed over the frames."""
+        moving, ends = moving_axes(self.run), sides(self.run, self.run.time[:1])
+        lengths = np.diff(ends[0], axis=1)[:, 0]
+        across = [axis for axis in range(self.run.dimension) if axis not in self.axes]
+        volume = self.grid.volume * lengths[across].prod()
+        frames = np.bincount(self.blocks).reshape(-1, *[1] * len(self.axes))
+        if not moving:
+            return frames * np.full(self.numbers, volume)
+        return self._changing_room(across)
+
+    def _changing_room(self, across: Sequence[int]) -> np.ndarray:
+        """The same where faces move."""
+        ends = sides(self.run, self.run.time)
+        wide = np.diff(ends[:, across], axis=2)[..., 0].prod(axis=1)
+        parts = []
+        for axis, edge in zip(self.axes, self.grid.edges, strict=True):
+            low, high = (ends[:, axis, side, None] for side in (0, 1))
+            parts.append(np.clip(np.minimum(edge[1:], high) - np.maximum(edge[:-1], low), 0.0, None))
+        total = []
+        for frames in np.split(np.arange(len(wide)), np.flatnonzero(np.diff(self.blocks)) + 1):
+            room = wide[frames]
+            for part in parts:
+                room = room[..., None] * part[frames].reshape(len(frames), *[1] * (room.ndim - 1), -1)
+            total.append(room.sum(axis=0))
+        return np.array(total)
+
+    def density(self, weights: np.ndarray | None = None) -> Means:
+        """Particles, or weights (T, n) of them, per volume within the container."""
+        return ratio(self.sums(weights), self.room())
+
+    def velocity(self) -> Means:
+        """(d, *cells) mean velocity of the particles."""
+        count, velocities = self.sums(), self.run.velocities[:, self.members]
+        parts = [ratio(self.sums(velocities[..., k]), count) for k in range(self.run.dimension)]
+        return Means(*(np.stack([getattr(one, name) for one in parts]) for name in vars(parts[0])))
+
+    def temperature(self, local: bool) -> Means:
+        """k_B T: twice the kinetic energy about the mean motion per degree of freedom. local: about the flow
+        in these cells, in any case; otherwise only if the gas flows, see `flow.about_the_flow`."""
+        along = dict(zip(self.axes, self.numbers, strict=True))
+        motion = about_the_flow(self.run, along)
+        if local and not self.run.flow_axes:
+            motion = about_cells(self.run, along, changes=False)
+        return self.temperature_of(motion)
+
+    def temperature_of(self, motion: Peculiar) -> Means:
+        """That of these peculiar velocities, of all moving particles."""
+        masses = self.run.masses[self.run.moving]
+        chosen = np.searchsorted(np.flatnonzero(self.run.moving), self.members)
+        energies, freedoms = motion.energies(masses), motion.freedoms()
+        return ratio(self.sums(energies[:, chosen]), self.sums(freedoms[:, chosen]))

@@ -1,0 +1,104 @@
+"""What a run gives in each interval between its frames, and in blocks of them.
+
+One place for Z, the rate of collisions and the pressures on faces: `gaspart.analysis` reduces these to a
+value with an uncertainty, the measurements of figures combine them in their own ways.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaspart.analysis.bins import Grid
+from gaspart.analysis.room import mean_areas
+from gaspart.analysis.run import Run
+from gaspart.state.tally import compressibility_factor
+
+
+def compressibility(run: Run) -> np.ndarray:
+    r"""(T - 1,) Z in each interval, by the virial theorem: with impulses dp exchanged at the distance dr,
+
+        Z = P V / (N k_B T) = 1 + sum |dr . dp| / (d N k_B T t).
+
+    The temperature is that of the motion about the centre of mass, k_B T = 2 E' / (d (N - 1)). A pair at
+    contact gives |dp| proportional to |v_n| at a rate proportional to it, so the sum grows with <v_n^2>, v_n
+    one component of v_1 - v_2. That is linear in the energy (fixing the energy changes nothing), and with
+    zero total momentum <v_1 . v_2> = -<v^2> / (N - 1), hence <v_n^2> = 2 k_B T / m with this T. So Z - 1 is
+    that of the canonical ensemble of N particles, whose distance from the infinite system is known to first
+    order in 1/N (`theory.finite_size_correction(..., ensemble="canonical")`).
+    """
+    return compressibility_factor(
+        run.increments("virial_sum"), run.count, run.dimension, run.temperature, np.diff(run.time)
+    )
+
+
+def collision_rate(run: Run) -> np.ndarray:
+    """(T - 1,) collisions of one moving particle per time in each interval: each counts for both."""
+    return np.asarray(2.0 * run.increments("collisions") / (run.moving.sum() * np.diff(run.time)))
+
+
+def face_pressures(run: Run) -> np.ndarray:
+    """(T - 1, 2d) momentum given to each face in each interval per time and per area that centres can touch,
+    its mean over the interval where faces move. NaN-free also where there is no wall: 0."""
+    areas = np.repeat(mean_areas(run), 2, axis=1)
+    impulses = run.increments("wall_impulse")[:, : 2 * run.dimension]
+    return np.asarray(impulses / (areas * np.diff(run.time)[:, None]))
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """K blocks of a run of equal length; a remainder is in none. Neighbours share the frame at which counters
+    are read; of what is averaged over frames the first frame of the run is in none.
+
+    Raises ValueError for more blocks than intervals.
+    """
+
+    run: Run
+    number: int
+
+    @property
+    def length(self) -> int:
+        """Intervals, and frames, of each."""
+        return self.run.block_length(self.number)
+
+    @property
+    def ends(self) -> slice:
+        """The K + 1 frames at their ends."""
+        return slice(None, self.number * self.length + 1, self.length)
+
+    @property
+    def frames(self) -> slice:
+        """The frames of all of them."""
+        return slice(1, self.number * self.length + 1)
+
+    @property
+    def durations(self) -> np.ndarray:
+        """(K,)."""
+        return np.diff(self.run.time[self.ends])
+
+    def growth(self, name: str) -> np.ndarray:
+        """(K, ...) how much a counter grew per time."""
+        grown = np.diff(self.run.data[name].values[self.ends], axis=0)
+        return np.asarray(grown / self.durations.reshape(-1, *[1] * (grown.ndim - 1)))
+
+    def means(self, values: np.ndarray) -> np.ndarray:
+        """(K, ...) of values of intervals (T - 1, ...)."""
+        used = values[: self.number * self.length]
+        return np.asarray(used.reshape(self.number, self.length, *used.shape[1:]).mean(axis=1))
+
+    def means_of_frames(self, values: np.ndarray) -> np.ndarray:
+        """(K, ...) of values of frames (T, ...)."""
+        return self.means(values[1:])
+
+    def sums(self, grid: Grid, cells: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
+        """(K, *cells) sums over the particles in cells (T, N) and over the frames of each block, of weights
+        (T, N) or of their number."""
+        block = np.arange(self.number).repeat(self.length)
+        chosen = None if weights is None else np.broadcast_to(weights, cells.shape)[self.frames]
+        return grid.sums(cells[self.frames], chosen, block)
+
+
+def over(values: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """(K, ...) sums of values (T - 1, ...) of intervals between the frames `ends` (K + 1,)."""
+    return np.add.reduceat(values[: ends[-1]], ends[:-1], axis=0)

@@ -1,0 +1,57 @@
+"""What is refused of a scene before it is run is what is refused of a run of it, and nothing else."""
+
+import pytest
+
+import gaspart as gp
+from gaspart.analysis.measuring import measure
+from gaspart.analysis.needs import require_of
+from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT
+
+BOX = gp.Container((6.0, 6.0, 6.0), boundary="periodic")
+SLIT = gp.Container((8.0, 8.0), boundary=("periodic", "wall"))
+HOT = {"radius": 0.5, "temperature": 1.0}
+SCENES = {
+    "gas": gp.Scene(BOX, [gp.Species(60, **HOT)]),
+    "one": gp.Scene(BOX, [gp.Species(1, **HOT)]),
+    "few": gp.Scene(BOX, [gp.Species(5, **HOT)]),
+    "mixture": gp.Scene(BOX, [gp.Species(30, **HOT), gp.Species(30, 0.3, temperature=1.0)]),
+    "sizes": gp.Scene(BOX, [gp.Species(40, 0.4, temperature=1.0, polydispersity=0.2)]),
+    "obstacles": gp.Scene(BOX, [gp.Species(40, **HOT), gp.Species(2, 0.5, fixed=True)]),
+    "granular": gp.Scene(BOX, [gp.Species(40, **HOT)], restitution=gp.Restitution(0.9)),
+    "slit": gp.Scene(SLIT, [gp.Species(20, **HOT)], gravity=(0.0, -1.0)),
+}
+KEPT = {
+    "plain": {},
+    "pairs": {"pairs": True},
+    "stress": {"correlations": gp.Correlations(0.25, 4, stress=True)},
+    "velocities": {"correlations": gp.Correlations(0.25, 4), "displacements": True},
+}
+
+
+NO_STRESS = ("slit", "obstacles", "sizes")
+"""Scenes of which the engine tallies none."""
+
+
+@pytest.mark.parametrize(
+    ("name", "kept"),
+    [(name, kept) for name in SCENES for kept in KEPT if kept != "stress" or name not in NO_STRESS],
+)
+def test_it_is_what_a_run_is_refused(tmp_path, name, kept):
+    """A run of 40 frames, of which some observables need more."""
+    scene, settings = SCENES[name], KEPT[kept]
+    path = gp.run(scene, gp.EventDriven(), 1, 10.0, 0.25, tmp_path / "run.nc", **settings)
+    for observable in OBSERVABLES:
+        found, before = None, None
+        try:
+            measure(observable, path, start=0.0)
+        except gp.SceneError as error:
+            found = error
+        try:
+            require_of(observable, scene, **settings)
+        except gp.SceneError as error:
+            before = error
+        if before is None:
+            alone = ("count",) if scene.count == 1 else ()  # found after the number of frames
+            assert found is None or found.key in (*TOO_SHORT, "sample_interval", *alone), observable
+        else:
+            assert found is not None and (found.key, found.rule) == (before.key, before.rule), observable
