@@ -103,6 +103,26 @@ def test_between_sliding_plates(knudsen):
     assert error < 0.015
 
 
+def test_profiles_of_a_species():
+    """Two species under gravity, of one temperature: their densities add up to that of all."""
+    species = [gp.Species(60, 0.4, temperature=1.0), gp.Species(30, 0.3, mass=4.0, temperature=1.0)]
+    container = gp.Container((6.0, 6.0, 8.0), ("periodic", "periodic", "wall"))
+    simulation = gp.Simulation(
+        gp.Scene(container, species, gravity=(0.0, 0.0, -0.2)), gp.EventDriven(), seed=1
+    )
+    simulation.advance(duration=60.0)
+    parts = [measure("density", simulation, species=kind) for kind in (0, 1)]
+    whole = measure("density", simulation)
+    assert sum(float(one.estimate.sum()) for one in parts) * 36.0 * 0.2 == pytest.approx(90.0)
+    np.testing.assert_allclose(parts[0].estimate + parts[1].estimate, whole.estimate)
+    assert all(one.theory is None for one in parts)
+    heavy, light = (float(one.estimate[:20].sum() / one.estimate.sum()) for one in parts[::-1])
+    assert heavy > light + 0.1
+    for kind in (0, 1):
+        found = A.profile(simulation, "temperature", bins=4, species=kind)
+        assert (abs(found.deviation) < 4.5).all() and (found.error < 0.2).all()
+
+
 def test_the_end_is_that_of_the_frames_that_count(path):
     with xr.open_dataset(path) as data:
         cut = data.isel(frame=slice(81))  # until 20

@@ -66,9 +66,8 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
         given = _sums(run, "wall_shear")[:, faces][..., axes]
         parts = [_steady(run, faces, given[..., n], _momenta(run, axis)) for n, axis in enumerate(axes)]
         across = faces[:, None] // 2 == axes
-        found = Means(
-            *(np.where(across, np.nan, np.stack(each, axis=1)) for each in zip(*(vars(part).values() for part in parts), strict=True))
-        )
+        columns = {key: np.stack([getattr(part, key) for part in parts], axis=1) for key in vars(parts[0])}
+        found = Means(**{key: np.where(across, np.nan, each) for key, each in columns.items()})
         along = {
             "face": (_names(faces), {"long_name": "face of the container"}),
             "component": (np.array(list("xyz"))[axes], {"long_name": "axis along the face"}),
