@@ -25,6 +25,7 @@ WORDS = {
 }
 """Modules in which some of the names are words of something else, beside the families, whose data sets have
 columns of these names."""
+NEEDS = ("", "paths", "pairs", "fluxes", "shear")
 FAMILIES = "reproduction/families/"
 OWN = "reproduction/families/own/"
 
@@ -69,7 +70,7 @@ def test_a_declaration_is_complete(name):
     one = OBSERVABLES[name]
     function = inspect.signature(getattr(analysis, one.function)).parameters
     assert {*one.arguments, *one.selections, "start"} <= set(function)
-    assert set(one.along) <= set(DIMENSIONS) and one.needs in ("", "paths", "pairs", "fluxes")
+    assert set(one.along) <= set(DIMENSIONS) and one.needs in NEEDS
     assert one.scatter in ("run", "particles") and one.merged in ("", "split", "lost")
     assert one.samples in ("", "structure", "paths") and one.relative_to in ("value", "norm")
     assert set(one.nothing) <= {"boltzmann", "enskog"}

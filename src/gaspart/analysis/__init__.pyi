@@ -1,6 +1,7 @@
 from gaspart.analysis.combination import replicas as replicas
 from gaspart.analysis.diffusion import diffusion_coefficient as diffusion_coefficient
 from gaspart.analysis.fields import field as field
+from gaspart.analysis.flow_profile import velocity_profile as velocity_profile
 from gaspart.analysis.free_flights import free_flight_times as free_flight_times
 from gaspart.analysis.insertion import chemical_potential as chemical_potential
 from gaspart.analysis.lyapunov import lyapunov_exponent as lyapunov_exponent
@@ -10,6 +11,7 @@ from gaspart.analysis.motion import mean_squared_displacement as mean_squared_di
 from gaspart.analysis.motion import velocity_autocorrelation as velocity_autocorrelation
 from gaspart.analysis.mutual import mutual_diffusion as mutual_diffusion
 from gaspart.analysis.observable import Observable as Observable
+from gaspart.analysis.opening import particle_flux as particle_flux
 from gaspart.analysis.pairs import rdf as rdf
 from gaspart.analysis.pairs import structure_factor as structure_factor
 from gaspart.analysis.pressure import collision_rate as collision_rate
@@ -23,3 +25,5 @@ from gaspart.analysis.transport import bulk_viscosity as bulk_viscosity
 from gaspart.analysis.transport import pressure_tensor as pressure_tensor
 from gaspart.analysis.transport import shear_viscosity as shear_viscosity
 from gaspart.analysis.transport import thermal_conductivity as thermal_conductivity
+from gaspart.analysis.wall_fluxes import heat_flux as heat_flux
+from gaspart.analysis.wall_fluxes import wall_shear as wall_shear

@@ -25,15 +25,19 @@ from gaspart.yaml_text import parse_yaml
 
 
 def replicas(
-    name: str, sources: Sequence[Source], start: float | None = None, **selection: Any
+    name: str,
+    sources: Sequence[Source],
+    start: float | None = None,
+    end: float | None = None,
+    **selection: Any,
 ) -> Observable:
     """An observable, by its name as of `gaspart measure`, as the mean over independent runs of one scene.
 
     sources: at least two trajectories, by their paths or open, or simulations, of different seeds or initial
-    states; start and `selection` as of the observable's function. The uncertainty is that of the mean by the
-    scatter of the runs, which needs no assumption about correlations within a run, with one degree of freedom
-    less than there are runs (`freedom`). The variable with the suffix _replicas has the value of each
-    (replica, ...). Theory is the mean of theirs.
+    states; start and `selection` as of the observable's function; end: the time until which frames count, by
+    default all. The uncertainty is that of the mean by the scatter of the runs, which needs no assumption
+    about correlations within a run, with one degree of freedom less than there are runs (`freedom`). The
+    variable with the suffix _replicas has the value of each (replica, ...). Theory is the mean of theirs.
 
     Raises SceneError for fewer than two runs, runs of different scenes or engines, with the first difference,
     two that are the same bit for bit (of one initial state and one seed, or of one initial state in a scene
@@ -48,7 +52,7 @@ def replicas(
             recipe = _recipe(run, str(source) if isinstance(source, str | Path) else f"run {number}")
             _check_replica(recipe, recipes)
             recipes.append(recipe)
-            found.append(measure(name, run, start, **selection))
+            found.append(measure(name, run, start, end, **selection))
     return _mean(found)
 
 

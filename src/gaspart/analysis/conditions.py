@@ -10,11 +10,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from gaspart.errors import SceneError
+from gaspart.scene.driving import has_dragged_faces
+from gaspart.scene.faces import thermal_numbers
 from gaspart.scene.gas import plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.stress import require_tallied
-from gaspart.scene.validation import choice, count_of
+from gaspart.scene.validation import choice, count_of, number
 
 Selection = Mapping[str, Any]
 GROUPS = 16
@@ -49,6 +51,43 @@ def walled(scene: Scene, selection: Selection) -> None:
     if not scene.container.walls:
         rule = "has no walls: measure compressibility_factor (Z)"
         raise SceneError("container.boundary", scene.container.boundary, rule)
+
+
+def thermal_walls(scene: Scene, selection: Selection) -> None:
+    """A face at a temperature."""
+    if not thermal_numbers(scene):
+        raise SceneError("faces", list(scene.faces), "none is at a temperature, and takes heat")
+
+
+def dragged_walls(scene: Scene, selection: Selection) -> None:
+    """Faces at a temperature that slide, or along which a force drives the gas."""
+    if not has_dragged_faces(scene):
+        rule = "none is at a temperature and slides, or has a force along it: nothing drags them"
+        raise SceneError("faces", list(scene.faces), rule)
+
+
+def walled_axis(scene: Scene, selection: Selection) -> None:
+    """A wall at both ends of the selected axis, by default of any, and a plane across it in the container."""
+    axis = walled_axis_of(scene, selection.get("axis"))
+    at = selection.get("at")
+    if at is not None:
+        length = scene.container.lengths[axis]
+        rule = f"must be within the container, from 0 to {length:g}"
+        number("at", at, rule, above=0.0)
+        if not at < length:
+            raise SceneError("at", at, rule)
+
+
+def walled_axis_of(scene: Scene, name: str | None) -> int:
+    """The number of the named axis, by default of the last one with walls. Raises SceneError for one without,
+    and for an unknown one."""
+    has_axis(scene, {"axis": name})
+    walled = [axis for axis, periodic in enumerate(scene.container.periodic) if not periodic]
+    axis = "xyz".index(name) if name is not None else max(walled, default=0)
+    if axis not in walled:
+        rule = "images pass a plane across a periodic axis; the velocity times the density is the flux"
+        raise SceneError("axis", "xyz"[axis], rule)
+    return axis
 
 
 def elastic(scene: Scene, selection: Selection) -> None:
@@ -137,6 +176,14 @@ def _in_species(scene: Scene, species: Any) -> int:
         raise SceneError("species", species, f"there are {kinds}, numbered from 0")
     members = scene.particles if species == len(scene.species) else (scene.species[species],)
     return sum(one.count for one in members if not one.fixed)
+
+
+def has_species(scene: Scene, selection: Selection) -> None:
+    """A particle that is not fixed, of a selected species too."""
+    some_move(scene, selection)
+    species = selection.get("species")
+    if species is not None and not _in_species(scene, species):
+        raise SceneError("species", species, "none of them moves")
 
 
 def free_axis(scene: Scene, selection: Selection) -> None:

@@ -92,7 +92,8 @@ class Named:
     `DIMENSIONS`); selections: keyword arguments that restrict it, or give it along axes.
 
     Where it is. needs: what a run must have kept: "" nothing, "paths" of particles, "pairs" the collisions of
-    each pair of species, or "fluxes" correlations of the stress and the heat flux; conditions: of a scene,
+    each pair of species, "fluxes" correlations of the stress and the heat flux, or "shear" the momentum along
+    faces, which some engines tally; conditions: of a scene,
     see `Condition`; nothing: the equations that an engine solves (`Engine.equation`) whose runs say nothing
     of it, each with the reason.
 

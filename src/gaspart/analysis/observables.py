@@ -63,6 +63,31 @@ OBSERVABLES: dict[str, Named] = {
         power=1.0,
         ends_runs=True,
     ),
+    "heat_flux": Named(
+        title="heat flux",
+        symbol="q",
+        definition="heat given to each face at a temperature, per area, in a steady state",
+        units="energy / (length^(d-1) time)",
+        function="heat_flux",
+        along=("face",),
+        conditions=(where.unsheared, where.thermal_walls),
+        theory="walls.heat_flux",
+        power=1.5,
+        relative_to="norm",
+    ),
+    "wall_shear": Named(
+        title="shear stress",
+        symbol="τ",
+        definition="shear stress on each face that is dragged along itself, in a steady state",
+        units="energy / length^d",
+        function="wall_shear",
+        along=("face", "component"),
+        needs="shear",
+        conditions=(where.unsheared, where.dragged_walls),
+        theory="walls.wall_shear",
+        power=1.0,
+        relative_to="norm",
+    ),
     "collision_rate": Named(
         title="collisions of a particle per time",
         definition="collisions of a particle per time",
@@ -225,9 +250,34 @@ OBSERVABLES: dict[str, Named] = {
         function="profile",
         arguments={"of": "density"},
         along=("position",),
-        selections=("axis",),
-        conditions=(where.unsheared, where.has_axis),
+        selections=("axis", "species"),
+        conditions=(where.unsheared, where.has_axis, where.has_species),
         theory="places.density",
+    ),
+    "velocity": Named(
+        title="mean velocity",
+        definition="mean velocity along an axis, by default the last",
+        units="length / time",
+        function="velocity_profile",
+        along=("component", "position"),
+        selections=("axis", "species"),
+        conditions=(where.has_axis, where.has_species),
+        theory="flows.velocity",
+        moving=False,
+        power=0.5,
+        relative_to="norm",
+    ),
+    "flux": Named(
+        title="net flux of particles",
+        definition="particles that pass a plane or an opening across an axis per time, net",
+        units="1 / time",
+        function="particle_flux",
+        along=("component",),
+        selections=("axis", "at", "species"),
+        conditions=(where.unsheared, where.walled_axis, where.has_species),
+        theory="flows.flux",
+        power=0.5,
+        relative_to="norm",
     ),
     "temperature": Named(
         title="temperature",
@@ -236,8 +286,8 @@ OBSERVABLES: dict[str, Named] = {
         function="profile",
         arguments={"of": "temperature"},
         along=("position",),
-        selections=("axis",),
-        conditions=(where.unsheared, where.has_axis, where.thermal),
+        selections=("axis", "species"),
+        conditions=(where.unsheared, where.has_axis, where.has_species, where.thermal),
         theory="places.temperature",
         power=1.0,
     ),
@@ -376,6 +426,8 @@ def require_told(name: str, scene: Scene, engine: Engine) -> None:
         raise SceneError("observable", name, one.nothing[engine.equation])
     if one.needs == "fluxes":
         engine.check_stress(scene)
+    if one.needs == "shear" and not engine.tallies_shear:
+        raise SceneError("observable", name, "needs an engine that tallies momentum along faces")
     if one.needs == "pairs" and not engine.records_events:
         raise SceneError("observable", name, "needs an engine that records events")
 

@@ -11,7 +11,7 @@ import xarray as xr
 
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import Observable, scalar
-from gaspart.analysis.observables import selecting
+from gaspart.analysis.observables import having, selecting
 from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.errors import SceneError
 from gaspart.trajectory.reading import open_trajectory
@@ -49,17 +49,22 @@ def by_species(source: Source, start: float | None = None) -> xr.Dataset:
             rows: list[dict[str, Observable]] = [_of_velocities(run, kind) for kind in kinds]
         missing = {}
         for kind, row in zip(kinds, rows, strict=True):
-            for name in selecting("species"):
+            for name in _of_motion():
                 try:
                     row[name] = measure(name, run_of_all, start, species=kind)
                 except SceneError as error:
                     missing[f"{name} of species {kind}"] = error.rule
     table = xr.Dataset(coords={"species": ("species", kinds, {"long_name": "number of the species"})})
     table["count"] = ("species", counts, {"units": "1", "long_name": "moving particles"})
-    for name in ("temperature", "mean_speed", *selecting("species")):
+    for name in ("temperature", "mean_speed", *_of_motion()):
         table = table.merge(_column(name, [row.get(name) for row in rows]))
     reasons = "; ".join(f"{what}: {reason}" for what, reason in missing.items())
     return table.assign_attrs(not_measured=reasons)
+
+
+def _of_motion() -> tuple[str, ...]:
+    """The observables of the motion of particles that are of a species too."""
+    return tuple(name for name in selecting("species") if name in having(scatter="particles"))
 
 
 def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:

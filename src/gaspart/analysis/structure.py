@@ -14,7 +14,7 @@ from gaspart.analysis.observables import having, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.profiles import Cells, Means, with_freedom
 from gaspart.analysis.room import left_by_obstacles
-from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.scene.validation import choice, count_of
@@ -69,6 +69,7 @@ def profile(
     axis: str | None = None,
     bins: int = 40,
     start: float | None = None,
+    species: int | None = None,
 ) -> Observable:
     """Profile of a property along an axis, (position,), mean over all frames.
 
@@ -77,25 +78,27 @@ def profile(
     moving particles (NaN where there are none): about the local flow between faces that slide, under a force
     along a periodic axis, in a wind and before faces that move, otherwise about the velocity of the centre of
     mass where that is conserved (see `gaspart.analysis.flow`). axis: "x", "y" or "z", by default the last
-    one. Errors are those of correlated series, of each bin for itself; the variable with the suffix _freedom
-    has their degrees of freedom. They are NaN where these are fewer than two, of a run that is too short for
-    the correlation there, and 0 where nothing moves. Theory: the density of equal particles under gravity
-    along this axis, by hydrostatics with the fluid's equation of state; a uniform temperature in equilibrium.
-    Raises SceneError for an unknown property or axis, and for too few frames.
+    one; species: of one alone, by its number in the scene. Errors are those of correlated series, of each bin
+    for itself; the variable with the suffix _freedom has their degrees of freedom. They are NaN where these
+    are fewer than two, of a run that is too short for the correlation there, and 0 where nothing moves.
+    Theory: the density of equal particles under gravity along this axis, by hydrostatics with the fluid's
+    equation of state; a uniform temperature in equilibrium.
+    Raises SceneError for an unknown property or axis, a species that does not move, and for too few frames.
     """
     choice("of", of, having(function="profile"))
     bins = count_of("bins", bins, least=2)
     with measured(source, start) as run:
-        require_defined(of, run.scene, axis=axis)
+        require_defined(of, run.scene, axis=axis, species=species)
         names = "xyz"[: run.dimension]
         k = names.index(names[-1] if axis is None else axis)
         edges = np.linspace(0.0, run.scene.container.lengths[k], bins + 1)
         if of == "density":
-            found = _density(run, k, bins)
+            found = _density(run, k, bins, species)
         else:
-            found = Cells(run, np.flatnonzero(run.moving), (k,), (bins,)).temperature(local=False)
+            members = np.flatnonzero(run.moving)[selected(run, species, None)]
+            found = Cells(run, members, (k,), (bins,)).temperature(local=False)
         middle = 0.5 * (edges[1:] + edges[:-1])
-        about = described(of, run, *((k, edges) if of == "density" else ()))
+        about = described(of, run, *((k, edges, species) if of == "density" else ()))
         along = {"position": (middle, {"units": "length", "long_name": names[k]})}
         result = observable(of, along, found.values, found.errors, **about)
         return with_freedom(result, found)
@@ -126,13 +129,14 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
         return scalar("order_parameter", np.array(series, dtype=float), edges, **about)
 
 
-def _density(run: Run, axis: int, bins: int) -> Means:
-    """Of the moving particles, NaN where fixed ones leave no room. Raises SceneError for a file that holds
-    the first particles of several kinds only."""
+def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
+    """Of the moving particles, or one species, NaN where fixed ones leave no room. Raises SceneError for
+    a file that holds the first particles of several kinds only."""
     stored = run.data.sizes["atom"]
     if stored < run.count and len(run.scene.kinds) > 1:
         raise SceneError("follow", stored, f"needs all {run.count} particles, of several kinds, in the file")
-    members = np.flatnonzero(np.isfinite(run.masses[:stored]))
+    chosen = np.isfinite(run.masses) & (run.species == (run.species if species is None else species))
+    members = np.flatnonzero(chosen[:stored])
     cells = Cells(run, members, (axis,), (bins,))
     if np.isfinite(run.masses).all():
         found = cells.density()

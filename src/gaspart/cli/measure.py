@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.analysis.measuring import measure
+from gaspart.analysis.measuring import measure, until_time
 from gaspart.analysis.observables import OBSERVABLES, selecting, selections
 from gaspart.cli.arguments import (
     Parser,
@@ -29,6 +29,8 @@ from gaspart.files import Kind, begins_with, output_path, writing
 if TYPE_CHECKING:
     from gaspart.analysis.observable import Observable
 
+_FIELD = "field"
+"""The name by which a property in cells is asked for, which is not one observable."""
 _ROWS = 12  # of a curve that are printed
 _TITLE = "# gaspart measure"
 _TABLE = Kind("a table written by gaspart measure", begins_with(_TITLE.encode()))
@@ -38,22 +40,26 @@ _EXAMPLES = """examples:
   gaspart measure run.nc msd -o msd.csv --start 10
   gaspart measure run-1.nc run-2.nc run-3.nc D      replicas: their mean, with the scatter of the runs
   gaspart measure run.nc D --per-axis
-  gaspart measure run.nc density --axis x"""
+  gaspart measure run.nc density --axis x
+  gaspart measure run.nc velocity --axis x --species 0 --start 10 --end 20
+  gaspart measure run.nc field --of temperature --axes xz --cells 20,10 -o field.png"""
 
 
 def add_measure(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
     names = "; ".join(f"{name}: {one.listed}" for name, one in OBSERVABLES.items())
+    names += f"; {_FIELD}: density, flow or temperature in cells along some axes"
     text = f"{names}. Uncertainties are one standard deviation; of curves a few rows are printed. "
     text += "Several files are runs of one scene with other seeds or initial states: their mean and scatter "
     text += "are given."
     set_command(parser, _measure, text, _EXAMPLES)
     add = parser.add_argument
     add_trajectory(parser)
-    words = ", ".join(OBSERVABLES)
-    add("words", nargs="+", choices=_Words(OBSERVABLES), metavar="NAME", help=words)
+    words = (*OBSERVABLES, _FIELD)
+    add("words", nargs="+", choices=_Words(words), metavar="NAME", help=", ".join(words))
     text = "time from which frames count; default: a quarter of the run"
     add("--start", type=real(least=0.0), metavar="T", help=text)
+    add("--end", type=real(least=0.0), metavar="T", help="time until which frames count; default: the end")
     text = "of one species only, by its number in the scene, from 0 (single particles: after the last): "
     add("--species", type=int, metavar="N", help=text + ", ".join(selecting("species")))
     text = "of these particles only, by their numbers in the file, from 0: "
@@ -63,6 +69,13 @@ def add_measure(parser: Parser) -> None:
     add("--per-axis", action="store_true", default=None, help=text + ", ".join(selecting("per_axis")))
     text = "along this axis instead of the last one: "
     add("--axis", choices=("x", "y", "z"), help=text + ", ".join(selecting("axis")))
+    text = "of a field: density, velocity or temperature"
+    add("--of", metavar="WHAT", help=f"{text}; default: density")
+    add("--axes", metavar="AXES", help="of the cells of a field, such as xz; default: xy")
+    text = "number of cells of a field along each of its axes; default: 20"
+    add("--cells", type=several(int), metavar="N[,N...]", help=text)
+    text = "through the plane at this place, by default in the middle: "
+    add("--at", type=real(), metavar="X", help=text + ", ".join(selecting("at")))
     add("-o", "--output", metavar="FILE", help="all rows of one observable as .csv, or a plot as .png")
     add("--force", action="store_true", help="replace a table or a picture")
     usage = parser.format_usage().partition(": ")[2]
@@ -88,7 +101,9 @@ def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:
     while names and _is_file(names[0]):
         files.append(names.pop(0))
     if not names:
-        raise UsageError(f"NAME is missing after the files: one or more of {', '.join(OBSERVABLES)}")
+        raise UsageError(
+            f"NAME is missing after the files: one or more of {', '.join((*OBSERVABLES, _FIELD))}"
+        )
     if late := [word for word in names if _is_file(word)]:
         raise UsageError(f"{late[0]!r}: files stand before the names of observables")
     return files, names
@@ -99,32 +114,82 @@ def _measure(given: argparse.Namespace) -> None:
     write = _writer(given, names)
     asked = {key: getattr(given, key) for key in selections()}
     selection = {key: value for key, value in asked.items() if value is not None}
-    for name, observable in _measured(files, names, given.start, selection):
-        if observable.estimate.ndim:
+    for name, observable in _measured(files, names, (given.start, given.end), selection, _field_of(given)):
+        if name == _FIELD:
+            _print_field(observable)
+        elif observable.estimate.ndim:
             _print_curve(name, observable)
         else:
             _print_scalar(name, observable)
         write(observable)
 
 
+def _field_of(given: argparse.Namespace) -> dict[str, Any]:
+    """The arguments of a field. Raises UsageError for those without a field."""
+    stated = {key: getattr(given, key) for key in ("of", "axes", "cells") if getattr(given, key) is not None}
+    if stated and _FIELD not in given.words:
+        raise UsageError(f"--{next(iter(stated))} is of {_FIELD} only")
+    if len(stated.get("cells", [])) == 1:
+        (stated["cells"],) = stated["cells"]
+    return stated
+
+
 def _measured(
-    files: list[str], names: list[str], start: float | None, selection: dict[str, Any]
+    files: list[str],
+    names: list[str],
+    times: tuple[float | None, float | None],
+    selection: dict[str, Any],
+    field: dict[str, Any],
 ) -> Iterator[tuple[str, Observable]]:
-    """Each observable with its name: of one file, or the mean of several."""
+    """Each observable with its name: of one file, or the mean of several. times: the start and the end of
+    the frames that count; field: the arguments of a field."""
     from gaspart.analysis.combination import replicas
     from gaspart.trajectory.reading import open_trajectory
 
     if len(files) > 1:
+        if _FIELD in names:
+            raise UsageError(f"{_FIELD} is of one file")
         for name in names:
             with waiting(f"measuring {name} of {len(files)} files"):
-                found = replicas(name, files, start, **selection)
+                found = replicas(name, files, *times, **selection)
             yield name, found
         return
     with open_trajectory(files[0]) as trajectory:
         for name in names:
             with waiting(f"measuring {name}"):
-                found = measure(name, trajectory, start, **selection)
+                if name == _FIELD:
+                    found = _measure_field(trajectory, times, selection | field)
+                else:
+                    found = measure(name, trajectory, *times, **selection)
             yield name, found
+
+
+def _measure_field(
+    trajectory: Any, times: tuple[float | None, float | None], chosen: dict[str, Any]
+) -> Observable:
+    """Raises SceneError for a selection that fields do not have, and as `gaspart.analysis.field` does."""
+    from gaspart.analysis.fields import field
+
+    for key in set(chosen) - {"of", "axes", "cells", "species"}:
+        raise SceneError(key, chosen[key], f"cannot be chosen for {_FIELD}, whose cells are along --axes")
+    with until_time(trajectory, times[1]) as part:
+        return field(part, start=times[0], **chosen)
+
+
+def _print_field(observable: Observable) -> None:
+    """A curve as such; of more cells how many there are, and the least and the greatest value."""
+    along = [str(dim) for dim in observable.estimate.dims if dim != "component"]
+    name = str(observable.attrs["quantity"])
+    if len(along) == 1:
+        _print_curve(name, observable)
+        return
+    cells = " x ".join(str(observable.sizes[dim]) for dim in along)
+    units = observable.estimate.attrs["units"]
+    for label, part in _parts(observable) if "component" in observable.estimate.dims else [("", observable)]:
+        low, high = float(part.estimate.min()), float(part.estimate.max())
+        text = f"{name} {label}".rstrip()
+        print_line(f"{text} in {cells} cells along {', '.join(along)}: {low:.5g} to {high:.5g} {units}")
+    print_line("(-o field.csv writes all, -o field.png draws them)")
 
 
 def _print_scalar(name: str, observable: Observable) -> None:

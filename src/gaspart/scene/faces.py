@@ -286,6 +286,14 @@ def mean_velocity(scene: Scene) -> tuple[float, ...]:
     return tuple(math.fsum(component) / len(parts) for component in zip(*parts, strict=True))
 
 
+def thermal_numbers(scene: Scene, drawn: bool = False) -> list[int]:
+    """The numbers of the faces at a temperature, wells in front of one included; drawn: that draw all
+    components of the velocity of a particle, and so act on it along themselves."""
+    kinds = ("thermal",) if drawn else ("thermal", "thermal_normal")
+    faces = ((n, scene.faces.get(name)) for n, name in enumerate(FACES[: 2 * scene.dimension]))
+    return [n for n, face in faces if face is not None and face.rule[0] in kinds]
+
+
 def thermal_face(scene: Scene, name: str) -> Thermal:
     """The face of this name, which must be at a temperature. Raises SceneError."""
     face = scene.faces.get(name)

@@ -77,6 +77,7 @@ from gaspart.theory.heat import TEMPERATURE_JUMP as TEMPERATURE_JUMP
 from gaspart.theory.heat import conducting_slab as conducting_slab
 from gaspart.theory.heat import dilute_fourier_flux as dilute_fourier_flux
 from gaspart.theory.heat import free_molecular_flux as free_molecular_flux
+from gaspart.theory.heat import interpolated_flux as interpolated_flux
 from gaspart.theory.insertion import RSA_SATURATION as RSA_SATURATION
 from gaspart.theory.insertion import RSA_SATURATION_UNCERTAINTY as RSA_SATURATION_UNCERTAINTY
 from gaspart.theory.insertion import available_fraction as available_fraction
@@ -101,6 +102,7 @@ from gaspart.theory.potential import insertion_finite_size_correction as inserti
 from gaspart.theory.potential import packing_fraction_at as packing_fraction_at
 from gaspart.theory.shear import VELOCITY_SLIP as VELOCITY_SLIP
 from gaspart.theory.shear import free_molecular_stress as free_molecular_stress
+from gaspart.theory.shear import interpolated_stress as interpolated_stress
 from gaspart.theory.shear import slip_flow_stress as slip_flow_stress
 from gaspart.theory.shear import viscous_heating as viscous_heating
 from gaspart.theory.speeds import KURTOSIS_RELAXATION_RATE as KURTOSIS_RELAXATION_RATE

@@ -43,6 +43,21 @@ def slip_flow_stress(length: Numbers, density: Numbers, velocity: Numbers, diame
 
 
 @checked
+def interpolated_stress(
+    length: Numbers, density: Numbers, velocity: Numbers, diameter: float = 1.0
+) -> Values:
+    """Shear stress of dilute spheres of mass 1 at temperature 1 at any Knudsen number: 1 / (1 / free + 1 /
+    fluid), of the stress of free flight and of that without slip.
+
+    In the form of Sherman, Rarefied Gas Dynamics 2, 228 (1963). To first order in `velocity` right in both
+    limits, an approximation between them: 2 % above the stress with slip at a Knudsen number of 0.1.
+    """
+    free = free_molecular_stress(density, 1.0)
+    fluid = enskog_viscosity(0.0, 3, diameter) / length
+    return velocity * free * fluid / (free + fluid)
+
+
+@checked
 def viscous_heating(packing_fraction: Numbers, dimension: int) -> Values:
     """Viscosity over twice the conductivity, by Enskog, in units of mass / k_B: between two walls T + this
     times u^2 is the same everywhere, u the velocity relative to the place where T is highest.

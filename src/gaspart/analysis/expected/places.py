@@ -75,13 +75,14 @@ def temperature(run: Run) -> Expected | None:
     return run.temperature, 0.0, "equilibrium"
 
 
-def density(run: Run, axis: int, edges: np.ndarray) -> Expected | None:
-    """(bins,) of equal particles, the same everywhere, or under gravity along the axis: by hydrostatics, of
-    points by the barometric law."""
+def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expected | None:
+    """(bins,) of all equal particles, the same everywhere, or under gravity along the axis: by hydrostatics,
+    of points by the barometric law."""
     scene, kinds = run.scene, run.scene.kinds
     field = 0.0 if scene.gravity is None else scene.gravity[axis]
     across = scene.gravity is not None and any(g for n, g in enumerate(scene.gravity) if n != axis)
-    equal = scene.alike and not any(kind.fixed for kind in kinds)
+    whole = species is None or run.count == len(np.flatnonzero(run.species == species))
+    equal = whole and scene.alike and not any(kind.fixed for kind in kinds)
     if not equal or scene.walls or scene.faces or across or not (field or run.periodic[axis]):
         return None
     if field and (run.dissipates or run.followed or not run.temperature > 0.0):

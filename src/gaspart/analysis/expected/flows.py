@@ -1,0 +1,139 @@
+"""The mean velocity of a gas along an axis: at rest, sheared, and between plates that slide."""
+
+from __future__ import annotations
+
+import math
+from functools import reduce
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.analysis.expected.run import Expected
+from gaspart.analysis.expected.walls import FLUID, FREE, Plates, dilute, heating_of, plates_of
+from gaspart.analysis.run import Run
+from gaspart.scene.driving import driven_axes
+from gaspart.scene.faces import sliding_faces
+from gaspart.scene.scene import Scene
+from gaspart.scene.shear import flow
+from gaspart.scene.walls import Plate
+
+
+def velocity(run: Run, axis: int, places: np.ndarray) -> Expected | None:
+    """(component, position) at places (P,) along an axis, in a steady state."""
+    scene = run.scene
+    if scene.shear_rate is not None:
+        middle = np.tile(0.5 * np.array(scene.container.lengths), (len(places), 1))
+        middle[:, axis] = places
+        return flow(scene, middle).T, 0.0, "the flow of sheared images"
+    if plates := plates_of(run):
+        return _between(plates, run, axis, places)
+    if scene.faces or scene.thermostat or run.dissipates or driven_axes(scene) or scene.walls:
+        return None
+    if not run.moving.all():
+        return None
+    momentum = np.einsum("tnd,n->d", run.velocities, run.masses) / len(run.time)
+    drift = np.where(run.conserved, momentum / run.masses.sum(), 0.0)
+    return np.repeat(drift[:, None], len(places), axis=1), 0.0, "equilibrium"
+
+
+def _between(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expected | None:
+    """Between plates of one temperature, or that do not slide."""
+    velocities = dict(sliding_faces(run.scene))
+    ends = [velocities.get(2 * plates.axis + side) for side in (0, 1)]
+    rest = (0.0,) * run.dimension
+    low, high = (np.array(face.velocity if face else rest) for face in ends)
+    mean = np.repeat(0.5 * (low + high)[:, None], len(places), axis=1)
+    if not plates.slide.any():
+        return mean, 0.0, "the gas is at rest between the plates"
+    if not plates.equal:
+        return None
+    if axis != plates.axis:
+        return mean, 0.0, "the mean of both plates, by symmetry"
+    if plates.knudsen > FREE:
+        error = np.abs(plates.slide)[:, None] / plates.knudsen
+        return mean, error, "free flight between plates: half of the particles come from each"
+    if plates.dimension == 2 or plates.knudsen > FLUID or not dilute(plates, run):
+        return None
+    path = plates.knudsen * plates.length
+    gap = plates.length + 2.0 * theory.VELOCITY_SLIP * path
+    middle = 0.5 * run.scene.container.lengths[axis]
+    values = mean + np.multiply.outer(plates.slide, (places - middle) / gap)
+    wrong = np.abs(plates.slide)[:, None] * (plates.knudsen**2 + heating_of(plates))
+    near = np.abs(places - middle) > 0.5 * plates.length - 2.0 * path  # the layer that no fluid describes
+    return np.where(near, np.nan, values), wrong, "linear flow with slip"
+
+
+def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndarray) -> Expected | None:
+    """(component,) particles that pass the plane across an axis per time; members (n,): those that count;
+    beyond (T,): how many of them are beyond the plane."""
+    scene = run.scene
+    if not scene.walls:
+        return _closed(run)
+    masses, radii = run.masses[members], run.radii[members]
+    area = opening(scene, axis, place, float(radii.max()))
+    plain = not (scene.faces or scene.thermostat or run.dissipates or run.falls)
+    alike = np.ptp(masses) == 0.0 and np.ptp(radii) == 0.0 and run.moving.all()
+    if area is None or not alike or not plain or _path(run) < area ** (1.0 / (run.dimension - 1)):
+        return None
+    lower, upper = (np.array(ends) for ends in scene.reach(float(radii.max())))
+    across = np.delete(upper - lower, axis).prod()
+    sides = across * np.array([place - lower[axis], upper[axis] - place])
+    numbers = np.array([len(members) - beyond.mean(), beyond.mean()])
+    speed = math.sqrt(run.temperature / (2.0 * math.pi * masses[0]))
+    rates = numbers / sides * speed * area
+    spent = abs(int(beyond[-1]) - int(beyond[0])) / max(1.0, numbers.max())
+    source = f"free flight through an opening of {area:.4g}"
+    return np.array([rates[0] - rates[1]]), float(rates.max()) * spent, source
+
+
+def _closed(run: Run) -> Expected | None:
+    """Nothing passes on average in a steady state, which a start in a region is not."""
+    if any(kind.region is not None for kind in run.scene.species):
+        return None
+    return np.zeros(1), 0.0, "a steady state between walls"
+
+
+def _path(run: Run) -> float:
+    """The mean free path of the largest particles in the whole container."""
+    lower, upper = run.scene.reach(run.scene.largest_radius)
+    density = run.count / float(np.subtract(upper, lower).prod())
+    filled = theory.packing_fraction(density, run.dimension, 2.0 * run.scene.largest_radius)
+    if filled > theory.HIGHEST_PACKING_FRACTION[run.dimension]:
+        return 0.0
+    return float(theory.mean_free_path(filled, run.dimension, 2.0 * run.scene.largest_radius))
+
+
+def opening(scene: Scene, axis: int, place: float, radius: float) -> float | None:
+    """The area of the plane across an axis, in two dimensions its length, that interior walls in it leave to
+    centres of particles of a radius. None if no wall lies in it, or if a plate is not along the axes."""
+    across = [k for k in range(scene.dimension) if k != axis]
+    near, length = 1e-9 * scene.container.lengths[axis], scene.container.lengths[axis]
+    shadows = []
+    for wall in scene.walls:
+        corners = np.array(list(wall.corners.values()))
+        if np.abs(corners[:, axis] - place).max() > near:
+            continue
+        if isinstance(wall, Plate) and any(np.count_nonzero(edge) > 1 for edge in wall.edges):
+            return None
+        shadows.append([corners[:, across].min(axis=0) - radius, corners[:, across].max(axis=0) + radius])
+    if not shadows or not length > 0.0:
+        return None
+    lower, upper = (np.array(ends)[across] for ends in scene.reach(radius))
+    return _uncovered(np.array(shadows), lower, upper)
+
+
+def _uncovered(shadows: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> float:
+    """The measure of a box from lower to upper (k,) that boxes (W, 2, k) leave."""
+    edges = [
+        np.unique(np.clip(np.append(shadows[:, :, k], [lower[k], upper[k]]), lower[k], upper[k]))
+        for k in range(len(lower))
+    ]
+    left = np.ones([len(edge) - 1 for edge in edges], dtype=bool)
+    for low, high in shadows:
+        covered = [
+            (edge[:-1] >= a - 1e-12) & (edge[1:] <= b + 1e-12)
+            for edge, a, b in zip(edges, low, high, strict=True)
+        ]
+        left &= ~reduce(np.logical_and.outer, covered)
+    widths = reduce(np.multiply.outer, [np.diff(edge) for edge in edges])
+    return float((widths * left).sum())

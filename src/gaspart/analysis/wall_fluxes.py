@@ -1,0 +1,151 @@
+"""What a gas gives to the thermal walls of its container: heat, and momentum along them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.expected.described import described
+from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
+from gaspart.analysis.observables import require_defined
+from gaspart.analysis.profiles import Means, with_freedom
+from gaspart.analysis.room import mean_areas
+from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.statistics import correlated_mean
+from gaspart.errors import SceneError
+from gaspart.scene.faces import FACES, sliding_faces, thermal_numbers
+
+_BLOCKS = 256
+
+
+def heat_flux(source: Source, start: float | None = None) -> Observable:
+    """Heat that each face at a temperature takes per time and per area that centres can touch, (face,), in
+    units energy / (length^(d-1) time): positive where the gas warms the wall.
+
+    It is the energy that particles lose there in the frame of the wall: of one that slides, what it is given
+    without the work that it does. The mean is that of the steady state: without what the change of the energy
+    of the gas and of its first moment across the walls adds, which are bounded (`_corrected`). source: a
+    trajectory, by its path or open, or a simulation; start: the time from which frames count (by default a
+    quarter of the run).
+
+    Theory: 0 in equilibrium; between two plates free flight above a Knudsen number of 100, Fourier's law with
+    Enskog's conductivity and temperature jumps below 0.1, and between these an interpolation, good to 8 %
+    (`gaspart.theory.interpolated_flux`); between sliding plates half the work of their stress.
+    Raises SceneError without a face at a temperature, for too few frames, and if nothing hit these faces.
+    """
+    with measured(source, start) as run:
+        require_defined("heat_flux", run.scene)
+        faces = np.array(thermal_numbers(run.scene))
+        energy = _sums(run, "wall_energy")[:, faces].astype(float)
+        for number, face in sliding_faces(run.scene):
+            work = _sums(run, "wall_shear")[:, number] @ np.array(face.velocity)
+            energy[:, list(faces).index(number)] -= work
+        found = _steady(run, faces, energy, _energies(run))
+        along = {"face": (_names(faces), {"long_name": "face of the container"})}
+        about = described("heat_flux", run, faces)
+        return with_freedom(observable("heat_flux", along, found.values, found.errors, **about), found)
+
+
+def wall_shear(source: Source, start: float | None = None) -> Observable:
+    """Shear stress on each face that draws velocities along itself, (face, component): the momentum along
+    each axis that it is given per time and per area that centres can touch, in units energy / length^d.
+
+    By the engines that tally it, where a face slides or a force drives the gas along it. NaN across the
+    face, where the `wall_pressure` is. The mean is that of the steady state, as of `heat_flux`, by the change
+    of the momentum of the gas. source, start: as there.
+
+    Theory: half of the weight of a gas that a force drives along two equal faces, exactly; between plates
+    that slide free flight above a Knudsen number of 100, Enskog's viscosity with slip below 0.1, and between
+    these an interpolation, good to 8 % (`gaspart.theory.interpolated_stress`). Raises SceneError where
+    nothing drags faces along themselves, for too few frames, and if nothing hit these faces.
+    """
+    with measured(source, start) as run:
+        require_defined("wall_shear", run.scene)
+        faces = np.array(thermal_numbers(run.scene, drawn=True))
+        axes = np.array([axis for axis in range(run.dimension) if (faces // 2 != axis).any()])
+        given = _sums(run, "wall_shear")[:, faces][..., axes]
+        parts = [_steady(run, faces, given[..., n], _momenta(run, axis)) for n, axis in enumerate(axes)]
+        across = faces[:, None] // 2 == axes
+        columns = {key: np.stack([getattr(part, key) for part in parts], axis=1) for key in vars(parts[0])}
+        found = Means(**{key: np.where(across, np.nan, each) for key, each in columns.items()})
+        along = {
+            "face": (_names(faces), {"long_name": "face of the container"}),
+            "component": (np.array(list("xyz"))[axes], {"long_name": "axis along the face"}),
+        }
+        about = described("wall_shear", run, faces, axes)
+        return with_freedom(observable("wall_shear", along, found.values, found.errors, **about), found)
+
+
+def _names(faces: np.ndarray) -> np.ndarray:
+    return np.array(FACES)[faces]
+
+
+def _sums(run: Run, name: str) -> np.ndarray:
+    """(T, ...) a sum over walls. Raises SceneError for frames without it."""
+    if name not in run.data:
+        raise SceneError(name, "missing", "the engine does not tally it, or an older version wrote the file")
+    return np.asarray(run.data[name].values)
+
+
+def _steady(run: Run, faces: np.ndarray, given: np.ndarray, stored: list[np.ndarray]) -> Means:
+    """(F,) the mean over time of what each face is given per area, and its error.
+
+    given (T, F): sums; stored (T,) each: bounded sums over the gas, by the change of which blocks are
+    corrected. Raises SceneError for too few frames and faces that nothing has hit.
+    """
+    intervals = len(run.time) - 1
+    if intervals < LEAST_INTERVALS:
+        raise SceneError("frames", len(run.time), f"an error needs {LEAST_INTERVALS + 1} or more")
+    if not run.growth("wall_hits")[faces].all():
+        raise SceneError("wall_hits", 0, "nothing hit a thermal wall in the measured part; make a longer run")
+    blocks = min(_BLOCKS, intervals)
+    length = run.block_length(blocks)
+    ends = slice(None, blocks * length + 1, length)
+    per_area = np.diff(given, axis=0) / mean_areas(run)[:, faces // 2]
+    grown = per_area[: blocks * length].reshape(blocks, length, -1).sum(axis=1)
+    rates = grown / np.diff(run.time[ends])[:, None]
+    changes = [np.diff(one[ends]) for one in stored]
+    found = [_corrected(rate, changes) for rate in rates.T]
+    columns = ([getattr(one, name) for one in found] for name in ("value", "error", "freedom"))
+    return Means(*map(np.array, columns))
+
+
+def _corrected(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
+    """The mean of rates (K,) in consecutive blocks, by least squares without what changes (K,) of bounded
+    sums add to them: a gas gives back what it has stored.
+
+    Blocks may be shorter than what a particle remembers, which in free flight is the time that it takes from
+    wall to wall: the error is that of a correlated series.
+    """
+    used = [change / np.abs(change).max() for change in changes if change.any()]
+    design = np.stack([np.ones(len(rates)), *used], axis=1)
+    slopes = np.linalg.lstsq(design, rates, rcond=None)[0][1:]
+    return correlated_mean(rates - design[:, 1:] @ slopes, LEAST_INTERVALS).estimate
+
+
+def _energies(run: Run) -> list[np.ndarray]:
+    """(T,) each: the energy of flight about the mean velocity of the faces, and its first moments across
+    them. None of a file that lacks some particles."""
+    if run.followed:
+        return []
+    frame = np.zeros(run.dimension)
+    for _, face in sliding_faces(run.scene):
+        frame += np.array(face.velocity) / len(thermal_numbers(run.scene))
+    velocities = run.velocities[:, run.moving] - frame
+    energy = 0.5 * (velocities**2).sum(axis=2) * run.masses[run.moving]
+    return _with_moments(run, energy)
+
+
+def _momenta(run: Run, axis: int) -> list[np.ndarray]:
+    """(T,) each: the momentum along an axis, and its first moments across the thermal faces."""
+    if run.followed:
+        return []
+    return _with_moments(run, run.velocities[:, run.moving, axis] * run.masses[run.moving])
+
+
+def _with_moments(run: Run, carried: np.ndarray) -> list[np.ndarray]:
+    """(T,) each: the sum of what particles carry (T, M), and its first moments across the thermal faces,
+    about the middle."""
+    places = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
+    across = sorted({number // 2 for number in thermal_numbers(run.scene)})
+    return [carried.sum(axis=1), *((carried * places[..., axis]).sum(axis=1) for axis in across)]

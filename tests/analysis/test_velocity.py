@@ -1,0 +1,164 @@
+"""The mean velocity along an axis, and the part of a run until a time."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+from scenes import gas
+
+import gaspart as gp
+from gaspart.analysis.measuring import measure
+from gaspart.cli import main
+from gaspart.errors import SceneError
+
+A = gp.analysis
+GAS = gas(3, 64, 0.1, exact_temperature=True)
+
+
+def scaled(found):
+    """The mean square of deviations from theory, and their number."""
+    squares = ((found.estimate - found.theory) / found.error).values ** 2
+    known = np.isfinite(squares)
+    return float(squares[known].mean()), int(known.sum())
+
+
+def require_theory(found, degrees=15.0):
+    """As of Student's with these degrees of freedom, of which values of a component sum up to nearly 0."""
+    mean, number = scaled(found)
+    assert mean < degrees / (degrees - 2.0) + 3.0 * math.sqrt(2.0 / number)
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    target = tmp_path_factory.mktemp("run") / "run.nc"
+    return str(gp.run(GAS, gp.EventDriven(), 1, 40.0, 0.25, target, displacements=True))
+
+
+def test_a_gas_at_rest_is_at_rest_and_in_a_wind_it_moves(path):
+    found = measure("velocity", path, axis="x", species=0)
+    assert found.estimate.dims == ("component", "position") and (abs(found.theory) < 1e-6).all()
+    assert found.estimate.attrs["units"] == "length / time"
+    with xr.open_dataset(path) as data:
+        wind = np.array([1.5, -0.5, 0.0])
+        blown = data.assign(velocities=data["velocities"] + xr.DataArray(wind, dims="spatial"))
+        moved = measure("velocity", blown, axis="x", species=0)
+    expected = found.estimate + xr.DataArray(wind, dims="component")
+    np.testing.assert_allclose(moved.estimate, expected, atol=1e-6)
+    np.testing.assert_allclose(moved.theory.isel(position=0), wind, atol=1e-6)
+
+
+def test_a_sheared_gas_flows_as_its_images():
+    scene = gp.Scene(
+        gp.Container((6.0, 6.0, 6.0), "periodic"),
+        [gp.Species(60, 0.5, temperature=1.0)],
+        restitution=gp.Restitution(0.9),
+        faces={"y_high": gp.LeesEdwards(1.0)},
+    )
+    simulation = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    simulation.advance(duration=40.0)
+    found = A.velocity_profile(simulation, "y", bins=6)
+    middles = np.arange(0.5, 6.0)
+    assert found.theory.sel(component="x").values == pytest.approx((middles - 3.0) * scene.shear_rate)
+    assert (found.theory.sel(component="y") == 0.0).all()
+    require_theory(found)
+    along = A.velocity_profile(simulation, "z", bins=4)
+    assert (along.theory == 0.0).all()
+
+
+def between_plates(knudsen, seed):
+    """Of 500 points between x_low, at rest, and x_high, which slides with 0.5. A flow takes gap / thermal
+    speed / Knudsen number, 20 to 40, to arise."""
+    gap, side, count = 2.0, 2.0, 500
+    diameter = (math.sqrt(2.0) * math.pi * count / side**2 * knudsen) ** -0.5
+    faces = {
+        f"x_{name}": gp.Thermal(1.0, velocity=(0.0, u, 0.0)) for name, u in (("low", 0.0), ("high", 0.5))
+    }
+    container = gp.Container((gap, side, side), ("wall", "periodic", "periodic"))
+    scene = gp.Scene(container, [gp.Species(count, diameter / 2, temperature=1.0)], faces=faces)
+    simulation = gp.Simulation(scene, gp.DSMC(0.02, (40, 1, 1), "boltzmann"), seed=seed)
+    simulation.advance(duration=200.0)
+    return simulation
+
+
+@pytest.mark.parametrize("knudsen", [0.05, 1e6])
+def test_between_sliding_plates(knudsen):
+    """A fluid slips by 1.11 free paths at each plate: its slope is 0.90 of that without slip. In free flight
+    nothing changes along the gap. Bins share the slow modes of the flow: the slope is judged, by 6 seeds."""
+    runs = [between_plates(knudsen, seed) for seed in range(6)]
+    found = A.replicas("velocity", runs, start=50.0, axis="x").sel(component="y")
+    places = found["position"].values
+    slopes = [np.polyfit(places[4:-4], one[4:-4], 1)[0] for one in found["velocity_replicas"].values]
+    mean, error = np.mean(slopes), np.std(slopes, ddof=1) / math.sqrt(6.0)
+    if knudsen < 1.0:
+        gap = 2.0 - 2.0 * runs[0].scene.largest_radius
+        expected = 0.5 / gap / (1.0 + 2.0 * 1.1113 * 0.05)
+        assert np.isnan(found.theory.values[[0, -1]]).all()
+        middle = found.theory.values[6:-6]
+        assert middle == pytest.approx(0.25 + expected * (places[6:-6] - 1.0), rel=1e-4)
+    else:
+        expected = 0.0
+        assert found.theory.values == pytest.approx(0.25)
+    assert abs(mean - expected) < 4.9 * error + 0.005  # Student's, as rare as 3 sigma; second order
+    assert error < 0.015
+
+
+def test_profiles_of_a_species():
+    """Two species under gravity, of one temperature: their densities add up to that of all."""
+    species = [gp.Species(60, 0.4, temperature=1.0), gp.Species(30, 0.3, mass=4.0, temperature=1.0)]
+    container = gp.Container((6.0, 6.0, 8.0), ("periodic", "periodic", "wall"))
+    simulation = gp.Simulation(
+        gp.Scene(container, species, gravity=(0.0, 0.0, -0.2)), gp.EventDriven(), seed=1
+    )
+    simulation.advance(duration=60.0)
+    parts = [measure("density", simulation, species=kind) for kind in (0, 1)]
+    whole = measure("density", simulation)
+    assert sum(float(one.estimate.sum()) for one in parts) * 36.0 * 0.2 == pytest.approx(90.0)
+    np.testing.assert_allclose(parts[0].estimate + parts[1].estimate, whole.estimate)
+    assert all(one.theory is None for one in parts)
+    heavy, light = (float(one.estimate[:20].sum() / one.estimate.sum()) for one in parts[::-1])
+    assert heavy > light + 0.1
+    for kind in (0, 1):
+        found = A.profile(simulation, "temperature", bins=4, species=kind)
+        assert (abs(found.deviation) < 4.5).all() and (found.error < 0.2).all()
+
+
+def test_the_end_is_that_of_the_frames_that_count(path):
+    with xr.open_dataset(path) as data:
+        cut = data.isel(frame=slice(81))  # until 20
+        for name in ("Z", "msd", "velocity"):
+            expected, found = measure(name, cut), measure(name, path, end=20.0)
+            assert expected.identical(found)
+    with pytest.raises(SceneError, match="end = 0.1: leaves 1 frames"):
+        measure("Z", path, end=0.1)
+    simulation = gp.Simulation(GAS, gp.EventDriven(), seed=1)
+    simulation.advance(duration=20.0)
+    whole, half = measure("Z", simulation, start=0.0), measure("Z", simulation, start=0.0, end=10.0)
+    assert 2 * half["stretches"].size >= whole["stretches"].size and float(half.error) > float(whole.error)
+
+
+def test_the_command_line_has_them(path, capsys):
+    def printed(*arguments, code=0):
+        assert main(["measure", path, *arguments]) == code
+        text = capsys.readouterr()
+        return (text.err if code else text.out).splitlines()
+
+    head, *rows = printed("velocity", "--axis", "x", "--end", "20")
+    assert head.split()[:3] == ["position", "velocity", "x"] and len(rows) == 11
+    late, early = printed("Z", "--start", "20"), printed("Z", "--end", "20")
+    assert late != early != printed("Z")
+    assert printed("field", "--axes", "xz", "--cells", "4,3", "--of", "temperature")[0].startswith(
+        "temperature in 4 x 3 cells along x, z: "
+    )
+    assert len(printed("field", "--axes", "x", "--cells", "4")) == 5
+    components = printed("field", "--of", "velocity", "--cells", "3")
+    assert [line.split(" in ")[0] for line in components[:3]] == ["velocity x", "velocity y", "velocity z"]
+    for arguments, rule in (
+        (("Z", "--axes", "x"), "--axes is of field only"),
+        (("field", "--of", "speed"), "of = 'speed'"),
+        (("field", "--axis", "x"), "axis = 'x'"),
+        (("field", "--axes", "xx"), "each once"),
+        (("Z", "--end", "0.1"), "end = 0.1"),
+    ):
+        (line,) = printed(*arguments, code=2)
+        assert rule in line

@@ -1,0 +1,132 @@
+"""Heat and shear stress on walls: free flight, a fluid, between them, and balances that are exact."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scenes import gas
+
+import gaspart as gp
+from gaspart.analysis.expected.walls import plates_of
+from gaspart.analysis.measuring import measure
+from gaspart.analysis.run import measured
+from gaspart.errors import SceneError
+from gaspart.theory.heat import INTERPOLATED
+
+A = gp.analysis
+GAP, SIDE = 10.0, 4.0
+ENGINES = {"event": gp.EventDriven(), "dsmc": gp.DSMC(0.05, (20, 1, 1), "boltzmann")}
+
+
+def plates(count, knudsen, hot=1.0, slide=0.0, drift=0.0, **rest):
+    """Between x_low, at `hot`, and x_high, at 1, which slides along y."""
+    density = count / (GAP * SIDE**2)
+    diameter = (math.sqrt(2.0) * math.pi * density * knudsen * GAP) ** -0.5
+    faces = {
+        "x_low": gp.Thermal(hot, velocity=(0.0, drift, 0.0)),
+        "x_high": gp.Thermal(1.0, velocity=(0.0, drift + slide, 0.0)),
+    }
+    container = gp.Container((GAP, SIDE, SIDE), ("wall", "periodic", "periodic"))
+    species = gp.Species(count, diameter / 2, temperature=1.2)
+    return gp.Scene(container, [species], faces=faces, **rest)
+
+
+def made(scene, duration, engine="dsmc", seed=1):
+    simulation = gp.Simulation(scene, ENGINES[engine], seed=seed)
+    simulation.advance(duration=duration)
+    return simulation
+
+
+def off(found):
+    """Deviations in standard deviations, of values with an error."""
+    return np.abs(found.deviation.values[np.isfinite(found.deviation.values)])
+
+
+@pytest.mark.parametrize(("engine", "drift"), [("event", 0.0), ("dsmc", 0.0), ("dsmc", 2.0)])
+def test_heat_of_free_flight(engine, drift):
+    """The flux of n = 6.25 points between 2 and 1: 4 n sqrt(2 / 2 pi) (sqrt 2 - 1) = 5.84, whatever the speed
+    of the plates along themselves."""
+    count = 200 if engine == "event" else 1000
+    found = A.heat_flux(made(plates(count, 1e6, hot=2.0, drift=drift), 600.0, engine))
+    assert found.theory.values == pytest.approx(np.array([-5.8426, 5.8426]) * count / 1000, rel=2e-3)
+    assert found.estimate["face"].values.tolist() == ["x_low", "x_high"]
+    assert (found.error < 0.06 * found.theory[1]).all() and (off(found) < 3.0).all()
+
+
+def test_heat_between_free_flight_and_a_fluid():
+    """A fluid whose flux differs by more than 8 % from either limit."""
+    found = A.heat_flux(made(plates(1000, 1.0, hot=2.0), 400.0))
+    free = float(gp.theory.free_molecular_flux(6.25, 2.0, 1.0, 3))
+    flux = float(found.theory[1])
+    assert "Sherman" in found.attrs["source"] and 0.7 * free < flux < 0.85 * free
+    assert float(found["heat_flux_theory_error"][1]) == pytest.approx(INTERPOLATED * flux)
+    assert (off(found) < 3.0).all() and (found.error < 0.03 * flux).all()
+
+
+def test_heat_of_a_fluid():
+    """Knudsen number 0.05: Fourier's flux would be 25 % more without temperature jumps."""
+    scene = plates(2000, 0.05, hot=2.0)
+    found = A.heat_flux(made(scene, 1200.0))  # 7 times of the conduction of heat
+    assert "jumps" in found.attrs["source"] and (off(found) < 3.0).all()
+    diameter = 2.0 * scene.largest_radius
+    without = gp.theory.dilute_fourier_flux(GAP, 2.0, 1.0, diameter)
+    assert float(found.theory[1]) < 0.85 * without
+    assert float(found.error[1]) < 0.05 * without
+
+
+def test_stress_and_heat_of_sliding_plates_in_free_flight():
+    """n U sqrt(T / 2 pi) = 6.25 / sqrt(2 pi) = 2.493 drags both plates together, and half its work warms
+    each."""
+    simulation = made(plates(1000, 1e6, slide=1.0), 800.0)
+    shear, heat = A.wall_shear(simulation), A.heat_flux(simulation)
+    assert shear.theory.sel(component="y").values == pytest.approx([2.4934, -2.4934], rel=2e-3)
+    assert shear.theory.sel(component="z").values == pytest.approx([0.0, 0.0])
+    assert heat.theory.values == pytest.approx([1.2467, 1.2467], rel=2e-3)
+    assert (off(shear) < 3.0).all() and (off(heat) < 3.0).all()
+    assert (shear.error.sel(component="y") < 0.05).all()
+    work = float(-shear.estimate.sel(face="x_high", component="y"))
+    assert float(heat.estimate.sum()) == pytest.approx(work, abs=3.0 * float(heat.error.sum()))
+
+
+def test_a_force_along_plates_is_what_they_take():
+    """Half the weight on each in a steady state: exact, from a start that is none."""
+    scene = plates(500, 0.3, gravity=(0.0, 0.02, 0.0))
+    found = A.wall_shear(made(scene, 200.0), start=0.0)
+    weight = 500 * 0.02 / SIDE**2
+    y = found.sel(component="y")
+    assert found.theory.sel(component="y").values == pytest.approx([0.5 * weight] * 2)
+    assert (off(y) < 3.0).all() and (y.error < 0.1 * weight).all()
+    assert float(y.estimate.sum()) == pytest.approx(weight, rel=1e-5)
+
+
+def test_equal_plates_take_no_heat():
+    found = A.heat_flux(made(plates(200, 1.0), 100.0))
+    assert (found.theory == 0.0).all() and found.attrs["source"] == "equilibrium"
+    assert (off(found) < 3.0).all()
+
+
+def test_the_equations_of_points_do_not_depend_on_density():
+    """The path of particles that touch is shorter than that of points by the contact value."""
+    scene = plates(50, 0.2)
+    paths = {}
+    for engine in ENGINES:
+        with measured(made(scene, 2.0, engine), 0.0) as run:
+            paths[engine] = plates_of(run)
+    found = paths["event"]
+    assert found.filled > 0.03 and found.length == pytest.approx(GAP - 2.0 * scene.largest_radius)
+    contact = float(gp.theory.contact_value(found.filled, 3))
+    assert paths["dsmc"].knudsen == pytest.approx(0.2, rel=1e-3)
+    assert found.knudsen == pytest.approx(0.2 / contact, rel=1e-6) and contact > 1.08
+
+
+def test_refusals():
+    walled = gas(3, 30, 0.1, boundary="wall")
+    still = made(plates(200, 1.0), 5.0)
+    for name, scene in (("heat_flux", made(walled, 5.0, "event")), ("wall_shear", still)):
+        with pytest.raises(SceneError, match="faces"):
+            measure(name, scene)
+    slow = plates(2, 1.0)
+    slow = replace(slow, species=[replace(slow.species[0], temperature=1e-9)])
+    with pytest.raises(SceneError, match="nothing hit"):
+        A.heat_flux(made(slow, 2.0))
