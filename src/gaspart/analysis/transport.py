@@ -199,7 +199,9 @@ def helfand(run: Run, name: str) -> np.ndarray:
 
 
 def _scale(run: Run, name: str) -> float:
-    """1 / (V x)."""
+    """1 / (V x). Raises SceneError where nothing moves about the mean velocity."""
+    if not run.temperature > 0.0:
+        raise SceneError("temperature", run.temperature, "without motion no flux fluctuates")
     return 1.0 / (math.prod(run.scene.container.lengths) * run.temperature ** (2 if name == "heat" else 1))
 
 
