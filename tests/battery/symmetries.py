@@ -114,7 +114,8 @@ def expected_result(found, observable, kind, view, axes):
     if not traits_of(observable).moving and any(view.velocity):
         added = [view.velocity["xyz".index(one)] for one in expected["component"].values]
         key = expected.attrs["quantity"]
-        expected = expected.assign({key: expected[key] + _along("component", added)})
+        moved = [one for one in (key, f"{key}_theory") if one in expected]
+        expected = expected.assign({one: expected[one] + _along("component", added) for one in moved})
     return expected
 
 

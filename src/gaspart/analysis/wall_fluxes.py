@@ -13,7 +13,8 @@ from gaspart.analysis.room import mean_areas
 from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, sliding_faces, thermal_numbers
+from gaspart.scene.faces import sliding_faces, thermal_numbers
+from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 256
 
@@ -41,7 +42,7 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
             work = _sums(run, "wall_shear")[:, number] @ np.array(face.velocity)
             energy[:, list(faces).index(number)] -= work
         found = _steady(run, faces, energy, _energies(run))
-        along = {"face": (_names(faces), {"long_name": "face of the container"})}
+        along = {"face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"})}
         about = described("heat_flux", run, faces)
         return with_freedom(observable("heat_flux", along, found.values, found.errors, **about), found)
 
@@ -69,15 +70,11 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
         columns = {key: np.stack([getattr(part, key) for part in parts], axis=1) for key in vars(parts[0])}
         found = Means(**{key: np.where(across, np.nan, each) for key, each in columns.items()})
         along = {
-            "face": (_names(faces), {"long_name": "face of the container"}),
+            "face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"}),
             "component": (np.array(list("xyz"))[axes], {"long_name": "axis along the face"}),
         }
         about = described("wall_shear", run, faces, axes)
         return with_freedom(observable("wall_shear", along, found.values, found.errors, **about), found)
-
-
-def _names(faces: np.ndarray) -> np.ndarray:
-    return np.array(FACES)[faces]
 
 
 def _sums(run: Run, name: str) -> np.ndarray:
@@ -128,19 +125,24 @@ def _energies(run: Run) -> list[np.ndarray]:
     them. None of a file that lacks some particles."""
     if run.followed:
         return []
-    frame = np.zeros(run.dimension)
-    for _, face in sliding_faces(run.scene):
-        frame += np.array(face.velocity) / len(thermal_numbers(run.scene))
-    velocities = run.velocities[:, run.moving] - frame
-    energy = 0.5 * (velocities**2).sum(axis=2) * run.masses[run.moving]
+    energy = 0.5 * (_about_faces(run) ** 2).sum(axis=2) * run.masses[run.moving]
     return _with_moments(run, energy)
 
 
 def _momenta(run: Run, axis: int) -> list[np.ndarray]:
-    """(T,) each: the momentum along an axis, and its first moments across the thermal faces."""
+    """(T,) each: the momentum along an axis about the mean velocity of the faces, and its first moments
+    across them."""
     if run.followed:
         return []
-    return _with_moments(run, run.velocities[:, run.moving, axis] * run.masses[run.moving])
+    return _with_moments(run, _about_faces(run)[..., axis] * run.masses[run.moving])
+
+
+def _about_faces(run: Run) -> np.ndarray:
+    """(T, M, d) velocities about the mean one of the thermal faces: the same in any frame of reference."""
+    frame = np.zeros(run.dimension)
+    for _, face in sliding_faces(run.scene):
+        frame += np.array(face.velocity) / len(thermal_numbers(run.scene))
+    return np.asarray(run.velocities[:, run.moving] - frame)
 
 
 def _with_moments(run: Run, carried: np.ndarray) -> list[np.ndarray]:
