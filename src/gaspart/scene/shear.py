@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from gaspart.errors import SceneError
 from gaspart.scene.faces import FLOW, GRADIENT, LeesEdwards
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from gaspart.scene.scene import Scene
 
 
@@ -20,6 +20,8 @@ def flow(scene: Scene, positions: np.ndarray) -> np.ndarray:
 
 def flow_of_rate(rate: float | None, height: float, positions: np.ndarray) -> np.ndarray:
     """(..., d) the same of a shear rate, in a container of this height; 0 if the rate is None."""
+    import numpy as np  # planning a workflow needs the rest of this module, without it
+
     velocities = np.zeros_like(positions, dtype=float)
     if rate is not None:
         velocities[..., FLOW] = rate * (positions[..., GRADIENT] - 0.5 * height)
