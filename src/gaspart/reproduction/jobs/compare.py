@@ -24,7 +24,6 @@ from gaspart.reproduction.jobs.stretches import (
     SLACK,
     stretches,
 )
-from gaspart.state.tally import compressibility_factor
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -121,6 +120,8 @@ def compare(
 
 def _run(scene: Scene, engine: Engine, state: State, duration: float) -> dict:
     """The results of one engine after a time."""
+    from gaspart.state.tally import compressibility_factor
+
     dynamics = engine.start(scene, state)
     dynamics.advance(state.time + duration)
     tally, after = dynamics.tally, dynamics.state
