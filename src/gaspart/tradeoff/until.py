@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from gaspart.analysis.needs import require_of
 from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept, require_told
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
@@ -168,6 +167,8 @@ def require_measurable(
 ) -> None:
     """Raise SceneError for an observable that a scene does not have, however long the run, of which a run by
     an engine says nothing, or for which this run does not keep what it needs."""
+    from gaspart.analysis.needs import require_of  # which loads xarray
+
     walls, declared = scene.container.walls, OBSERVABLES[asked.observable]
     kept = ("fluxes",) if correlations is not None and correlations.stress else ()
     counted = declared.along == ("face",) or declared.needs == "fluxes"

@@ -47,6 +47,7 @@ def config(folder, caption):
     """A config with one figure of its own."""
     path = folder / "own.yaml"
     point = {"dimension": 2, "count": 20, "radius": 0.5, "temperature": 1.0, "duration": 4.0}
+    point["boundary"] = "periodic"
     experiment = {"point": point, "grid": {"packing_fraction": [0.1, 0.2]}}
     figure = {"kind": "observable", "observable": "Z", "against": "packing_fraction", "experiments": ["gas"]}
     whole = {"title": "t", "seed": 1, "points": "results/points", "experiments": {"gas": experiment}}

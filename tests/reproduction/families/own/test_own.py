@@ -221,7 +221,7 @@ def test_a_caption_without_a_finding_gets_a_title():
             "there is none",
         ),
         ({"claims": [POWER]}, "claims.0", "needs 3 points or more; there are 2"),
-        ({"observable": "shear_viscosity"}, "observable", "needs a run with correlations of the stress"),
+        ({"observable": "shear_viscosity"}, "observable", "needs correlations of the stress"),
         ({"observable": "pressure", "claims": []}, "observable", "has no walls"),
         ({"observable": "pair_rates", "claims": []}, "observable", "must count collisions by pairs"),
     ],
