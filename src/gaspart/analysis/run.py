@@ -167,7 +167,7 @@ class Run:
         lacks particles, see `_of_all`. Raises SceneError as `freedoms`."""
         if self.followed and "stress_sum" in self.data:
             return self._of_all
-        masses, scene = self.masses[self.moving], self.scene
+        freedoms, masses, scene = self.freedoms, self.masses[self.moving], self.scene
         if self.flow_axes or scene.rough or scene.thermostat or scene.shear_rate is not None:
             energies = self.motion.energies(masses).sum(axis=1)
             whole = np.einsum("tnd,tnd,n->t", *[self.velocities[:, self.moving]] * 2, masses)
@@ -177,7 +177,7 @@ class Run:
             momentum = np.where(self.conserved, masses @ first, 0.0)
             energies = whole - (momentum @ momentum) / (masses.sum() or 1.0)
         moves = energies.mean() > _AT_REST * whole.mean()
-        return np.asarray(energies / self.freedoms) if moves else np.zeros(len(self.time))
+        return np.asarray(energies / freedoms) if moves else np.zeros(len(self.time))
 
     @property
     def _of_all(self) -> np.ndarray:
