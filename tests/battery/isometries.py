@@ -92,15 +92,23 @@ def positions_seen(scene, view, positions, time=0.0):
 
 def state_seen(scene, view, state):
     """A state at time 0 from another view."""
-    order = particles_of(scene, view)
+    order, other = particles_of(scene, view), seen(scene, view)
+    faces = {}
+    if state.shear_rate is not None:
+        faces["shear_rate"] = other.shear_rate
+    if state.piston_face is not None:
+        parts = zip(("piston_position", "piston_velocity"), state.piston, strict=True)
+        faces["piston"] = np.array([_piston(scene, view, *part) for part in parts])
+        faces["piston_face"] = next(name for name, face in other.faces.items() if face.kind == "piston")
     per_particle = ("radii", "masses", "moments_of_inertia", "spins")
     return replace(
         state,
         positions=positions_seen(scene, view, state.positions[order]),
         velocities=view.vectors(state.velocities[order]) + np.array(view.velocity),
         images=np.zeros_like(state.images),
-        lengths=np.array(seen(scene, view).container.lengths),
+        lengths=np.array(other.container.lengths),
         **{name: getattr(state, name)[order] for name in per_particle},
+        **faces,
     )
 
 

@@ -24,16 +24,24 @@ def velocity(run: Run, axis: int, places: np.ndarray) -> Expected | None:
     if scene.shear_rate is not None:
         middle = np.tile(0.5 * np.array(scene.container.lengths), (len(places), 1))
         middle[:, axis] = places
-        return flow(scene, middle).T, 0.0, "the flow of sheared images"
+        return flow(scene, middle).T + _drift(run), 0.0, "the flow of sheared images"
     if plates := plates_of(run):
         return _between(plates, run, axis, places)
     if scene.faces or scene.thermostat or run.dissipates or driven_axes(scene) or scene.walls:
         return None
     if not run.moving.all():
         return None
-    momentum = np.einsum("tnd,n->d", run.velocities, run.masses) / len(run.time)
-    drift = np.where(run.conserved, momentum / run.masses.sum(), 0.0)
-    return np.repeat(drift[:, None], len(places), axis=1), 0.0, "equilibrium"
+    return np.repeat(_drift(run), len(places), axis=1), 0.0, "equilibrium"
+
+
+def _drift(run: Run) -> np.ndarray:
+    """(d, 1) the velocity of the centre of mass, about the flow of sheared images, along axes on which it is
+    conserved, 0 along others."""
+    velocities = run.velocities
+    if run.scene.shear_rate is not None:
+        velocities = velocities - flow(run.scene, run.positions)
+    momentum = np.einsum("tnd,n->d", velocities, run.masses) / len(run.time)
+    return np.where(run.conserved, momentum / run.masses.sum(), 0.0)[:, None]
 
 
 def _between(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expected | None:
