@@ -255,6 +255,7 @@ def _allowed(rule):
     kinds = {"boolean": st.booleans(), "null": st.none(), "array": st.one_of(lists)}
     kinds |= {"string": st.sampled_from(["wall", "periodic", "config/scenes/price.yaml"])}
     kinds |= {name: st.sampled_from(values) for name, values in numbers.items()}
+    kinds["object"] = st.dictionaries(st.sampled_from(["container", "species"]), st.none() | st.just([]))
     return st.one_of([kinds[name] for name in rule["type"]])
 
 

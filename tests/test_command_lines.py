@@ -28,7 +28,7 @@ figures:
 experiments:
   gas:
     point:
-      {dimension: 3, count: 50, packing_fraction: 0.1, radius: 0.5, boundary: periodic, temperature: 1.0,
+      {dimension: 3, count: 64, packing_fraction: 0.1, radius: 0.5, boundary: periodic, temperature: 1.0,
        engine: auto, accuracy: 0.01, collisions_per_particle: 10, equilibration: 2, samples: 4, replicas: 2}
   steps:
     point:
