@@ -1,9 +1,10 @@
 """`gaspart.sweep`: a grid of runs without a workflow, by the points and jobs of the workflow."""
 
 import json
-import threading
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
@@ -177,19 +178,16 @@ def test_two_sweeps_in_one_folder_each_run_their_own_scene(tmp_path):
     assert "count: 20" in data.attrs["scene"] and "count: 5" in others[0].attrs["scene"]
 
 
+def swept_between_walls(folder):
+    """A sweep of three points, in a process of its own."""
+    over = {"gravity": [[0.0, -1.0], [0.0, -2.0], [0.0, -3.0]]}
+    return swept(folder, over, ["density"], BETWEEN_WALLS, duration=20.0)
+
+
 def test_sweeps_at_the_same_time_share_their_points(tmp_path):
-    """In two threads, as two processes would: a point is made once, and both have it."""
-    seen = []
-
-    def run():
-        over = {"gravity": [[0.0, -1.0], [0.0, -2.0], [0.0, -3.0]]}
-        seen.append(swept(tmp_path, over, ["density"], BETWEEN_WALLS, duration=20.0))
-
-    threads = [threading.Thread(target=run) for _ in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    """In two processes: a point is made once, and both have it."""
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as processes:
+        seen = list(processes.map(swept_between_walls, [tmp_path] * 2))
     assert seen[0].equals(seen[1]) and set(seen[0].failure.values) == {""}
     assert len(list(tmp_path.rglob("*"))) == 1 + 3 + 3  # points, each with one trajectory, and no lock
 
