@@ -418,7 +418,7 @@ def require_defined(name: str, scene: Scene, **selection: Any) -> None:
         condition(scene, selection)
 
 
-def require_told(name: str, scene: Scene, engine: Engine) -> None:
+def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
     """Raise SceneError, with the reason, if a run by an engine says nothing of an observable: its equation
     does not have it, or has one value of it whatever happens, or the engine does not keep what it needs."""
     one = OBSERVABLES[known(name)]

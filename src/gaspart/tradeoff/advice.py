@@ -15,7 +15,7 @@ from typing import TypeAlias
 
 from gaspart import theory
 from gaspart.analysis import finite
-from gaspart.analysis.observables import OBSERVABLES, having, require_told
+from gaspart.analysis.observables import OBSERVABLES, having, require_modelled
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, plain_gas
@@ -262,7 +262,7 @@ def _error_of_model(scene: Scene, gas: Gas, observable: str, engine: DSMC) -> fl
     """A bound on the error that the DSMC engine makes: by its model, by the cells, and of paths by the steps.
     inf for what its runs say nothing of."""
     try:
-        require_told(observable, scene, engine)
+        require_modelled(observable, scene, engine)
     except SceneError:
         return math.inf
     bias = model_error(gas.packing_fraction, gas.dimension, engine.model, observable)

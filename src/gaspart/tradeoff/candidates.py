@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gaspart.analysis.observables import require_told
+from gaspart.analysis.observables import require_modelled
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.engines.step.limits import missed_contacts
 from gaspart.errors import SceneError
@@ -58,7 +58,7 @@ def suited(target: Target) -> tuple[list[str], dict[str, str]]:
     for name, (engine, _) in _ENGINES.items():
         try:
             engine.check_features(target.scene)
-            require_told(target.observable, target.scene, engine)
+            require_modelled(target.observable, target.scene, engine)
             made.append(name)
         except SceneError as error:
             refused[name] = f"{error.key}: {error.rule}"

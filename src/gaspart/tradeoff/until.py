@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept, require_told
+from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept, require_modelled
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.files import is_same_file, output_path
@@ -175,7 +175,7 @@ def require_measurable(
     try:
         require_defined(asked.observable, scene)
         require_kept(asked.observable, kept)
-        require_told(asked.observable, scene, engine)
+        require_modelled(asked.observable, scene, engine)
         if follow is None or follow >= scene.count or counted:
             require_of(asked.observable, scene, correlations=correlations, displacements=True, follow=follow)
     except SceneError as error:
