@@ -21,6 +21,7 @@ import numpy as np
 import uneven
 
 import gaspart as gp
+from gaspart.analysis import observables
 from gaspart.analysis.measuring import measure
 from gaspart.errors import SceneError
 from gaspart.state.initial import initial_state
@@ -28,7 +29,7 @@ from gaspart.tradeoff.advice import advise, is_tabulated
 from gaspart.tradeoff.pilot import speed_of
 from gaspart.tradeoff.plan import plan
 from gaspart.tradeoff.steady import keeps_energy
-from gaspart.tradeoff.target import STRUCTURE, Target
+from gaspart.tradeoff.target import Target
 
 ANYWHERE = ("collision_rate", "speeds", "density", "temperature", "vacf", "msd")
 OF_ONE_FLUID = ("Z", "D", "rdf", "structure_factor", "chemical_potential", "order", "shear_viscosity")
@@ -183,7 +184,7 @@ def _kept(number, gas, observable, accuracy, made, folder):
         found = measure(observable, data)
     if len(paths) > 1:
         found = gp.analysis.replicas(observable, paths)
-    if "lag" not in found.coords and observable not in STRUCTURE and not recipe.correlations:
+    if "lag" not in found.coords and not _of_structure(observable) and not recipe.correlations:
         interval *= math.ceil(costs["longer"] * frames / MOST_FRAMES)
     path = folder / "longer.nc"
     longest = round(costs["longer"] * duration / interval) * interval
@@ -202,9 +203,14 @@ def _kept(number, gas, observable, accuracy, made, folder):
     }
 
 
+def _of_structure(observable):
+    """Whether it is of the positions of particles relative to each other, in frames of a limited number."""
+    return observables.OBSERVABLES[observable].samples == "structure"
+
+
 def _of_longer(observable, data):
     """An observable of the longer run; what is of a limited number of frames, from ten parts of them."""
-    if observable not in STRUCTURE:
+    if not _of_structure(observable):
         return measure(observable, data)
     parts = np.array_split(np.arange(data.sizes["frame"] // 4, data.sizes["frame"]), LONGER)
     found = [
