@@ -27,7 +27,7 @@ ROOT = Path(__file__).parents[1]
 GROUPS = {
     "scenes": ("Scenes", ("scene",)),
     "simulations": ("Simulations", ("engines", "simulation", "state", "errors")),
-    "trajectories": ("Trajectories", ("trajectory", "inspection", "tradeoff", "reproduction")),
+    "trajectories": ("Trajectories", ("trajectory", "inspection", "accuracy", "runs", "reproduction")),
     "analysis": ("Analysis", ("analysis",)),
     "rendering": ("Pictures and films", ("rendering",)),
 }

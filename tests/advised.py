@@ -21,15 +21,15 @@ import numpy as np
 import uneven
 
 import gaspart as gp
+from gaspart.accuracy.advice import advise, is_tabulated
+from gaspart.accuracy.pilot import speed_of
+from gaspart.accuracy.plan import plan
+from gaspart.accuracy.steady import keeps_energy
+from gaspart.accuracy.target import Target
 from gaspart.analysis import observables
 from gaspart.analysis.measuring import measure
 from gaspart.errors import SceneError
 from gaspart.state.initial import initial_state
-from gaspart.tradeoff.advice import advise, is_tabulated
-from gaspart.tradeoff.pilot import speed_of
-from gaspart.tradeoff.plan import plan
-from gaspart.tradeoff.steady import keeps_energy
-from gaspart.tradeoff.target import Target
 
 ANYWHERE = ("collision_rate", "speeds", "density", "temperature", "vacf", "msd")
 OF_ONE_FLUID = ("Z", "D", "rdf", "structure_factor", "chemical_potential", "order", "shear_viscosity")

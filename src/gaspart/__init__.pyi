@@ -1,5 +1,6 @@
 from gaspart import analysis as analysis
 from gaspart import theory as theory
+from gaspart.accuracy.reached import reached_accuracy as reached_accuracy
 from gaspart.analysis.collisions import collision_data as collision_data
 from gaspart.analysis.collisions import contact_value as contact_value
 from gaspart.engines import DSMC as DSMC
@@ -14,6 +15,9 @@ from gaspart.rendering.films import film as film
 from gaspart.rendering.frames import render as render
 from gaspart.rendering.view import view as view
 from gaspart.reproduction.sweep import sweep as sweep
+from gaspart.runs import Accuracy as Accuracy
+from gaspart.runs import resume as resume
+from gaspart.runs import run as run
 from gaspart.scene.container import Container as Container
 from gaspart.scene.faces import LeesEdwards as LeesEdwards
 from gaspart.scene.faces import Piston as Piston
@@ -32,10 +36,6 @@ from gaspart.simulation import Simulation as Simulation
 from gaspart.state.compression import compress as compress
 from gaspart.state.state import State as State
 from gaspart.state.tally import Tally as Tally
-from gaspart.tradeoff.accuracy import Accuracy as Accuracy
-from gaspart.tradeoff.reached import reached_accuracy as reached_accuracy
-from gaspart.tradeoff.until import resume as resume
-from gaspart.tradeoff.until import run as run
 from gaspart.trajectory.correlator import Correlations as Correlations
 from gaspart.trajectory.export import export as export
 from gaspart.trajectory.last_state import last_state as last_state

@@ -5,8 +5,8 @@ import shlex
 import pytest
 
 import gaspart as gp
+from gaspart.accuracy.reached import Reached
 from gaspart.cli import main, run
-from gaspart.tradeoff.reached import Reached
 from gaspart.trajectory.partial import partial_path
 
 GAS = """\

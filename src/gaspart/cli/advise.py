@@ -11,6 +11,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gaspart.accuracy import PILOT_SECONDS
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.cli.arguments import (
     Parser,
@@ -28,11 +29,10 @@ from gaspart.engines import DSMC, Engine, TimeStepped
 from gaspart.errors import visible
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.scene.scene import Scene
-from gaspart.tradeoff import PILOT_SECONDS
 
 if TYPE_CHECKING:
-    from gaspart.tradeoff.advice import Advice, Setting
-    from gaspart.tradeoff.plan import Option, Plan
+    from gaspart.accuracy.advice import Advice, Setting
+    from gaspart.accuracy.plan import Option, Plan
     from gaspart.trajectory.recipe import Recipe
 
 _EXAMPLES = """examples:
@@ -75,7 +75,7 @@ def _advise(given: argparse.Namespace) -> None:
             lines = of_configs("advise")(given.config)
         print_lines(lines)
         return
-    from gaspart.tradeoff.advice import advise, is_tabulated
+    from gaspart.accuracy.advice import advise, is_tabulated
 
     scene = Scene.from_file(given.scene)
     if is_tabulated(scene, given.observable):
@@ -84,7 +84,7 @@ def _advise(given: argparse.Namespace) -> None:
             advice = advise(scene, given.observable, given.accuracy, given.budget)
         print_lines(_lines(advice, given.scene))
         return
-    from gaspart.tradeoff.plan import plan
+    from gaspart.accuracy.plan import plan
 
     def announce(text: str) -> None:
         if sys.stderr.isatty():
@@ -98,7 +98,7 @@ def _advise(given: argparse.Namespace) -> None:
 
 def _lines(advice: Advice, file: str) -> list[str]:
     """The advice as text. file: of the scene, for the command."""
-    from gaspart.tradeoff.advice import EQUILIBRATION
+    from gaspart.accuracy.advice import EQUILIBRATION
 
     best, gas = advice.setting, advice.gas
     length = f"{advice.collisions_per_particle:.3g} collisions per particle, duration {advice.duration:.4g}"
@@ -164,7 +164,7 @@ def _differences(plan: Plan) -> list[str]:
 
 def _pays(scene: Scene, engine: Engine, observable: str) -> str:
     """What a run pays for beside the collisions of a plain gas."""
-    from gaspart.tradeoff.price import price_of
+    from gaspart.accuracy.price import price_of
 
     price = price_of(scene, engine, observable)
     measured = ", ".join(f"{name} {ratio:.2f}" for name, ratio in price.ratios.items())

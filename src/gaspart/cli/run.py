@@ -17,11 +17,11 @@ from gaspart.engines import ENGINES, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.interruption import set_note
 from gaspart.kernels.compile.loading import load_numba
+from gaspart.runs import Accuracy
 from gaspart.scene.scene import Scene
-from gaspart.tradeoff.accuracy import Accuracy
 
 if TYPE_CHECKING:
-    from gaspart.tradeoff.reached import Reached
+    from gaspart.accuracy.reached import Reached
     from gaspart.trajectory.correlator import Correlations
     from gaspart.trajectory.recipe import Recipe
 
@@ -127,7 +127,7 @@ def _add_checkpoints(parser: argparse.ArgumentParser) -> None:
 
 def _run(given: argparse.Namespace) -> None:
     set_note("no state was saved yet; the same command starts it again")
-    from gaspart.tradeoff.until import run
+    from gaspart.runs import run
 
     until = _until(given)
     settings = {key: getattr(given, key) for key in engine_settings() if getattr(given, key) is not None}
@@ -230,7 +230,7 @@ def _correlations(given: tuple[float, ...] | None, stress: bool) -> Correlations
 
 def _resume(given: argparse.Namespace) -> None:
     set_note("nothing was changed; the same command starts it again")
-    from gaspart.tradeoff.until import resume
+    from gaspart.runs import resume
 
     status = _Status()
     with waiting(_PREPARING, given.quiet) as started:
@@ -251,7 +251,7 @@ def _report(path: Path) -> None:
 
 def accuracy_lines(path: Path) -> list[str]:
     """What a run with --until was to reach, and what it has reached."""
-    from gaspart.tradeoff.reached import reached_accuracy
+    from gaspart.accuracy.reached import reached_accuracy
     from gaspart.trajectory.partial import PARTIAL
 
     lines, reached = [], reached_accuracy(path)

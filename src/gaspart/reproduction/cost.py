@@ -6,11 +6,11 @@ import math
 from dataclasses import replace
 
 from gaspart import theory
+from gaspart.accuracy import speed, table
 from gaspart.engines import TimeStepped
 from gaspart.reproduction.config import checked
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import Gas
-from gaspart.tradeoff import speed, table
 
 
 def predict(path: str) -> list[str]:

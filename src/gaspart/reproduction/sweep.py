@@ -25,9 +25,9 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.sweep_axes import axes_of, names_of
 from gaspart.reproduction.sweep_points import make_all
 from gaspart.reproduction.sweep_table import Measured, measured, table
+from gaspart.runs import Accuracy
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
-from gaspart.tradeoff.accuracy import Accuracy
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
 from gaspart.trajectory.until import Until

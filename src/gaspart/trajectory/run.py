@@ -61,7 +61,7 @@ class Manner:
 def record(wanted: Recipe, path: str | Path, manner: Manner) -> Path:
     """Make the trajectory of a recipe at `path`; returns `path`.
 
-    What is raised is that of `gaspart.run` (`gaspart.tradeoff.until`).
+    What is raised is that of `gaspart.run` (`gaspart.runs`).
     """
     path = output_path(path)
     if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` knows the format by it

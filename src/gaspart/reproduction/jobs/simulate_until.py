@@ -47,8 +47,7 @@ def engines(point: Point) -> list[Engine]:
 
 def parameters(point: Point) -> dict:
     """The arguments of `gaspart.run`, in plain values. Raises SceneError."""
-    from gaspart.tradeoff.accuracy import Accuracy
-    from gaspart.tradeoff.until import default_sample_interval, require_measurable
+    from gaspart.runs import Accuracy, default_sample_interval, require_measurable
 
     settings, times = point.settings, point.schedule
     if not settings.get("until"):
@@ -78,9 +77,9 @@ def run(parameters: dict, folder: Path) -> None:
 
 def record(parameters: dict, seed: tuple[int, ...], path: Path, overwrite: bool) -> None:
     """Make one trajectory, or continue it, or find it complete."""
+    from gaspart.runs import Accuracy
+    from gaspart.runs import run as run_until
     from gaspart.scene.scene import Scene
-    from gaspart.tradeoff.accuracy import Accuracy
-    from gaspart.tradeoff.until import run as run_until
 
     until, start = parameters["until"], parameters["start"]
     run_until(

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from gaspart.accuracy import speed
 from gaspart.engines import DSMC, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.reproduction.points import keys
-from gaspart.tradeoff import speed
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -20,7 +20,7 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     The choice is that of the table's machine, so that a config means the same everywhere. A length is set
     only if none is given. Raises SceneError.
     """
-    from gaspart.tradeoff.advice import EQUILIBRATION, advise
+    from gaspart.accuracy.advice import EQUILIBRATION, advise
 
     if "accuracy" not in settings:
         raise SceneError(f"{where}.accuracy", None, "is required with engine: auto")

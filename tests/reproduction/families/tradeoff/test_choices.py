@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from gaspart import theory
+from gaspart.accuracy import models
 from gaspart.analysis.estimate import Estimate
 from gaspart.engines.dsmc.rates import contact_values
 from gaspart.reproduction.families.tradeoff import flows, relaxation, uniform
 from gaspart.reproduction.families.tradeoff.choices import PARTS, Choice, cheapest
 from gaspart.reproduction.jobs import simulate
 from gaspart.reproduction.points.point import Point
-from gaspart.tradeoff import models
 
 
 def choice(**changes):

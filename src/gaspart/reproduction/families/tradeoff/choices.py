@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from gaspart.tradeoff.table import QUANTILE
+from gaspart.accuracy.table import QUANTILE
 
 ENGINES = ("event", "step", "boltzmann", "enskog")
 """The engines that are compared; the last two are the models of the DSMC engine."""

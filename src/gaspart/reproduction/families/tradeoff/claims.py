@@ -164,7 +164,7 @@ def time_to_accuracy(ds: xr.Dataset) -> list[Claim]:
                 measured=measured,
                 expected=0.0,
                 half_width=0.5,
-                source="gaspart.tradeoff, fitted to other gases",
+                source="gaspart.accuracy, fitted to other gases",
                 fails_if="cost or errors do not lie between those of the neighbouring gases",
             )
         )

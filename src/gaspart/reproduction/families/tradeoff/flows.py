@@ -14,6 +14,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from gaspart import theory
+from gaspart.accuracy.bounds import boltzmann_error, enskog_error
+from gaspart.accuracy.conditions import even_conditions
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.engines.dsmc.rates import rates
@@ -25,8 +27,6 @@ from gaspart.reproduction.families.tradeoff.relaxation import FREE_TIMES
 from gaspart.reproduction.families.tradeoff.uniform import BOUND
 from gaspart.reproduction.points.point import Point
 from gaspart.theory.dsmc import cell_factor, step_factor
-from gaspart.tradeoff.bounds import boltzmann_error, enskog_error
-from gaspart.tradeoff.conditions import even_conditions
 
 FLOWS = ("heat_flux", "relaxation")
 SETTLED = 5.0

@@ -118,7 +118,7 @@ def _flows(ds: xr.Dataset) -> list[Claim]:
                         measured=Estimate.of(of, "flow") / event,
                         expected=1.0,
                         half_width=bound,
-                        source="gaspart.tradeoff.candidates: excluded volume, memory, cells, steps",
+                        source="gaspart.accuracy.candidates: excluded volume, memory, cells, steps",
                         fails_if="a bound leaves out what makes an error",
                     )
                 )

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from gaspart.accuracy.table import PRECISIONS
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.shared.accuracy import costs
 from gaspart.reproduction.families.shared.rows import entries
 from gaspart.reproduction.families.tradeoff import flows, uniform
 from gaspart.reproduction.families.tradeoff.choices import ENGINES, PARTS, Choice, cheapest
 from gaspart.reproduction.points.point import Point
-from gaspart.tradeoff.table import PRECISIONS
 
 QUANTITIES = (*uniform.OBSERVABLES, *flows.FLOWS)
 

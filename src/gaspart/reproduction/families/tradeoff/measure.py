@@ -13,6 +13,9 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.accuracy import table
+from gaspart.accuracy.models import model_error
+from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS, QUANTILE, REFERENCE, STEP
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.shared.accuracy import costs, setting_name
@@ -28,9 +31,6 @@ from gaspart.reproduction.families.tradeoff.uniform import (
     each_of,
 )
 from gaspart.reproduction.points.point import Point
-from gaspart.tradeoff import table
-from gaspart.tradeoff.models import model_error
-from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS, QUANTILE, REFERENCE, STEP
 
 FITTED = 3
 """Errors that a fit of their order needs at least: two have an order whatever their law, also where an error
@@ -87,7 +87,7 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     settings: ``counts`` of particles, ``accuracies``, and those of `maps`.
 
     Over (``gas``, ``observable``, ``count``, ``accuracy``, ``engine``): ``measured`` and ``model``, processor
-    time in s of the cheapest setting (see `gaspart.tradeoff.advice`), NaN where there is none. Without
+    time in s of the cheapest setting (see `gaspart.accuracy.advice`), NaN where there is none. Without
     ``engine``: ``regret``, measured cost of the setting that the model picks over that of the measured best,
     with ``regret_error`` from the timings.
     """

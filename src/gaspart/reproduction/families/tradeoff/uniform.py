@@ -15,6 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart import theory
+from gaspart.accuracy import table
+from gaspart.accuracy.models import cell_loss, model_error, step_error
+from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.engines import DSMC
@@ -24,9 +27,6 @@ from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.tradeoff.choices import Choice
 from gaspart.reproduction.points.point import Point
 from gaspart.theory.enskog import approach_factor
-from gaspart.tradeoff import table
-from gaspart.tradeoff.models import cell_loss, model_error, step_error
-from gaspart.tradeoff.table import EQUILIBRATION, LEAST, PRECISIONS
 
 OBSERVABLES = ("collision_rate", "Z", "D")
 BOUND = 2.0

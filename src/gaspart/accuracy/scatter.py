@@ -1,0 +1,134 @@
+"""How much an observable differs from run to run because their starts differ in energy.
+
+Where nothing exchanges energy with the particles each run keeps that of its start. Velocities that are drawn
+have a temperature only on average; under gravity so have random places, whatever their velocities.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.accuracy.column import Column, pulled
+from gaspart.accuracy.conditions import kinetic_temperature
+from gaspart.accuracy.steady import keeps_energy
+from gaspart.accuracy.target import Target
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
+
+_STRATIFIED = 1.5
+"""That of a gas under gravity of which theory knows nothing: its density changes with it too."""
+_CHANGE = 0.01
+"""Relative change of the energy by which derivatives are taken."""
+_DENSEST = 0.45
+"""Packing fraction up to which the scatter of random places is known."""
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """value: relative standard deviation from run to run; drawn, placed: whether velocities and places make
+    it."""
+
+    value: float = 0.0
+    drawn: bool = False
+    placed: bool = False
+
+
+def start_scatter(target: Target) -> Scatter:
+    """That of an observable of a scene."""
+    scene = target.scene
+    if not keeps_energy(scene):
+        return Scatter()
+    parts = _of_velocities(scene), _of_places(scene)
+    if not any(parts):
+        return Scatter()
+    return Scatter(_of_observable(target, math.hypot(*parts)), *(part > 0.0 for part in parts))
+
+
+def _of_velocities(scene: Scene) -> float:
+    """Standard deviation of the kinetic energy at the start."""
+    drawn = [kind for kind in scene.species if kind.temperature is not None and not kind.exact_temperature]
+    return math.sqrt(
+        sum(0.5 * scene.dimension * kind.count * (kind.temperature or 0.0) ** 2 for kind in drawn)
+    )
+
+
+def _of_places(scene: Scene) -> float:
+    """Standard deviation of the potential energy at the start: that of even places in a region, the less the
+    denser it is."""
+    kinds = [kind for kind in scene.species if kind.count and kind.arrangement == "random" and not kind.fixed]
+    square = 0.0
+    for axis, pull in enumerate(scene.gravity or ()):
+        for kind in kinds:
+            square += kind.count * (kind.mass * pull * _range(scene, kind, axis)) ** 2 / 12.0
+    return math.sqrt(square * _smoothed(scene, kinds)) if square else 0.0
+
+
+def _range(scene: Scene, kind: Species, axis: int) -> float:
+    """The length along an axis in which a species is placed."""
+    lower, upper = (one[axis] for one in scene.reach(kind.radius))
+    if kind.region is None:
+        return float(upper - lower)
+    low, high = (float(corner[axis]) for corner in kind.region)
+    return max(0.0, min(upper, high) - max(lower, low))
+
+
+def _smoothed(scene: Scene, kinds: list[Species]) -> float:
+    """By how much excluded volume reduces the scatter of places: the compressibility of the fluid."""
+    d = scene.dimension
+    filled = 0.0
+    for kind in kinds:
+        volume = math.prod(_range(scene, kind, axis) or 1.0 for axis in range(d))
+        filled += kind.total_power(d) * theory.particle_volume(d, 2.0) / volume
+    return float(theory.reduced_compressibility(min(filled, _DENSEST), d))
+
+
+def _of_observable(target: Target, deviation: float) -> float:
+    """Relative standard deviation of an observable with one of the energy."""
+    scene = target.scene
+    temperature = kinetic_temperature(scene, target.initial)
+    freedom = 0.5 * scene.dimension * scene.count
+    power = target.declared.power
+    if not scene.gravity:
+        return power * deviation / (freedom * temperature) if temperature else 0.0
+    if target.conditions is not None and target.conditions.columns:
+        found = _of_column(target, deviation)
+        if found is not None:
+            return found
+    heat = (freedom + scene.count) * temperature
+    return max(power, _STRATIFIED) * deviation / heat if heat else math.inf
+
+
+def _of_column(target: Target, deviation: float) -> float | None:
+    """The same under gravity, by hydrostatics; None where that knows nothing."""
+    column = pulled(target.scene)
+    assert column is not None
+    energy = column.energy_of(target.initial)
+    try:
+        low, middle, high = (column.of_energy(energy * (1.0 + k * _CHANGE), False) for k in (-1, 0, 1))
+    except ValueError:
+        return None
+    changed = _change(target, low, middle, high)
+    return changed * deviation / (2.0 * _CHANGE * energy)
+
+
+def _change(target: Target, low: Column, middle: Column, high: Column) -> float:
+    """Of the observable between two columns, over its value."""
+    by_temperature = (high.temperature - low.temperature) / middle.temperature
+    if target.observable == "collision_rate":
+        return abs(high.collisions - low.collisions) / middle.collisions
+    if target.observable == "density":
+        z = middle.heights
+        profiles = [np.interp(z, one.heights, one.numbers.sum(axis=0), right=0.0) for one in (low, high)]
+        exact = middle.numbers.sum(axis=0)
+        return float(np.sqrt(((profiles[1] - profiles[0]) ** 2).sum() / (exact**2).sum()))
+    if target.observable == "pressure":
+        changes = []
+        for top in (False, True):
+            if middle.pressure(top) > 0.0:
+                changes.append(abs(high.pressure(top) - low.pressure(top)) / middle.pressure(top))
+        return max(changes)
+    return max(target.declared.power, 0.5) * by_temperature

@@ -1,0 +1,194 @@
+"""What is to be measured of a scene, and how often and how long a run of it is sampled for that."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from gaspart.accuracy.conditions import Conditions, known_conditions
+from gaspart.analysis.diffusion import LINEAR_FROM
+from gaspart.analysis.motion import MOST_FRAMES
+from gaspart.analysis.observables import OBSERVABLES, Named, known, require_defined
+from gaspart.analysis.run import EQUILIBRATION
+from gaspart.engines import Engine, EventDriven
+from gaspart.engines.dsmc.rates import rates
+from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene
+from gaspart.simulation import Simulation
+from gaspart.state.initial import initial_state
+from gaspart.state.state import State
+from gaspart.trajectory.correlator import Correlations
+
+SEED = 0
+_FRAMES = 48, 512
+_HELD = 20_000_000
+"""Numbers that the frames of a pilot hold, at most, unless there are only few frames."""
+_PLACED = 100_000
+"""Particles in all frames of which pairs are measured, likewise: that takes longer than their run."""
+_LONGEST_LAG = 10.0
+"""Of correlations, in collisions of a particle."""
+_LEAST_FRAMES = 24
+"""Of a run with correlations: three quarters of them give an error."""
+_FALL = 8.0
+"""Crossings of the container in which particles that start at rest are set in motion."""
+_COLLIDED = 40.0
+"""Collisions of a particle that are enough for that."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """An observable of `gaspart measure` of a scene; face: of the pressure, the wall (`x low`), by default
+    each of them; settled: a state in which the scene has become steady, if one is known."""
+
+    scene: Scene
+    observable: str
+    face: str | None = None
+    settled: State | None = field(default=None, compare=False)
+
+    @classmethod
+    def named(cls, scene: Scene, name: str) -> Target:
+        """From a name as on the command line: `Z`, or `pressure:x low`. Raises SceneError for an unknown one,
+        one that the scene does not have, and a wall that is not there."""
+        observable, colon, face = str(name).partition(":")
+        known(observable)
+        walls = scene.container.walls
+        if scene.count:  # an empty one has no advice at all
+            _require_defined(scene, observable, name)
+        if colon and (observable != "pressure" or face not in walls):
+            rule = f"{observable} is not of a wall" if observable != "pressure" else "there is no such wall"
+            raise SceneError("observable", name, f"{rule}; the walls are {', '.join(walls) or 'none'}")
+        return cls(scene, observable, face or None)
+
+    @cached_property
+    def start(self) -> State | None:
+        """The state from which pilots start: one that is settled, or that at time 0 of particles that are
+        compressed, which takes long; None of others."""
+        if self.settled is not None:
+            return self.settled
+        compressed = any(kind.arrangement == "compressed" for kind in self.scene.species if kind.count)
+        return initial_state(self.scene, SEED) if compressed and not self.scene.vibrates else None
+
+    @cached_property
+    def initial(self) -> State:
+        """That state, or the one at time 0 of the pilots' seed."""
+        return self.start or initial_state(self.scene, SEED)
+
+    @cached_property
+    def conditions(self) -> Conditions | None:
+        """The local density and temperature of the steady scene, None where theory does not know them."""
+        return known_conditions(self.scene, self.initial)
+
+    @cached_property
+    def frequency(self) -> float:
+        """Collisions of a particle per time: by theory in a gas as hot as at the start, or in the column that
+        it becomes; or, if its particles start at rest, in the second half of a short run."""
+        found = rates(self.scene, dense=True).frequency
+        if found > 0.0:
+            gas = self.conditions
+            return found if gas is None or gas.columns is None else found * gas.quickened
+        simulation = Simulation(self.scene, EventDriven(), SEED, initial=self.start)
+        times, counts = [0.0], [0.0]
+        while times[-1] < _FALL * self.crossing and counts[-1] < _COLLIDED * self.scene.count:
+            simulation.advance(duration=self.crossing / 32.0)
+            times.append(simulation.time)
+            counts.append(2.0 * float(simulation.tally.collisions))
+        half = (len(times) - 1) // 2
+        return (counts[-1] - counts[half]) / (self.scene.count * (times[-1] - times[half]))
+
+    @cached_property
+    def crossing(self) -> float:
+        """The time in which a particle crosses the shortest side of the container. Raises SceneError if
+        nothing moves."""
+        scene = self.scene
+        squares = [
+            kind.temperature / kind.mass if kind.temperature else (kind.speed or 0.0) ** 2
+            for kind in scene.species
+        ]
+        squares += [sum(v * v for v in particle.velocity) for particle in scene.particles]
+        squares += [getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()]
+        if scene.gravity:
+            squares.append(max(map(abs, scene.gravity)) * min(scene.container.lengths))
+        fastest = math.sqrt(max(squares))
+        if not fastest > 0.0:
+            raise SceneError("temperature", 0.0, "advice is for moving particles")
+        return min(scene.container.lengths) / fastest
+
+    @property
+    def declared(self) -> Named:
+        """What is declared of the observable."""
+        return OBSERVABLES[self.observable]
+
+    @property
+    def name(self) -> str:
+        """The observable, with its wall."""
+        return f"{self.observable}:{self.face}" if self.face else self.observable
+
+    @property
+    def needs_paths(self) -> bool:
+        """Whether frames need displacements."""
+        return self.declared.needs == "paths"
+
+    @property
+    def correlated(self) -> bool:
+        """Whether the run accumulates correlations."""
+        return self.declared.lags > 0
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The longest time between frames and the longest run from which the observable is measured without
+        loss: of diffusion by the lags of its slope, and by the number of frames that are correlated."""
+        if self.declared.samples != "paths" or not self.frequency > 0.0:
+            return math.inf, math.inf
+        interval = 0.5 * LINEAR_FROM / self.frequency
+        return interval, interval * MOST_FRAMES / (1.0 - EQUILIBRATION)
+
+    def schedule(self, engine: Engine, length: float) -> tuple[float, float, Correlations | None]:
+        """Duration, time between frames and correlations of a run of about a length."""
+        if self.correlated:
+            return self._correlated(engine, length)
+        least, most = _FRAMES
+        longest_interval, longest = self.span
+        length = min(length, longest)
+        numbers = max(1, 3 * self.scene.count * self.scene.dimension)
+        if self.declared.samples == "structure":
+            most = max(least, min(most, _PLACED // max(1, self.scene.count)))
+        frames = int(np.clip(_HELD // numbers, least, most))
+        interval = min(length / frames, longest_interval)
+        frames = math.ceil(length / interval * (1.0 - 1e-9))
+        if quantum := engine.resolved(self.scene).quantum:
+            interval = max(1, round(interval / quantum)) * quantum
+        return frames * interval, interval, None
+
+    def correlations(self, engine: Engine) -> Correlations:
+        """Those that the observable needs. Raises SceneError for a scene whose particles do not collide."""
+        lags = self.declared.lags
+        if not self.frequency > 0.0:
+            raise SceneError("observable", self.observable, "needs particles that collide")
+        sample = float(f"{_LONGEST_LAG / lags / self.frequency:.1g}")
+        if quantum := engine.resolved(self.scene, sample).quantum:
+            sample = tidy(max(1, round(sample / quantum)) * quantum)
+        return Correlations(sample, lags, stress=self.declared.needs == "fluxes")
+
+    def _correlated(self, engine: Engine, length: float) -> tuple[float, float, Correlations]:
+        """`schedule` with correlations, whose longest lag frames are apart or more."""
+        correlations = self.correlations(engine)
+        sample = correlations.interval
+        per_frame = max(correlations.lags, round(length / sample / _FRAMES[0]))
+        interval = tidy(per_frame * sample)
+        return tidy(max(_LEAST_FRAMES, round(length / interval)) * interval), interval, correlations
+
+
+def _require_defined(scene: Scene, observable: str, name: str) -> None:
+    """Raise SceneError, with the name that was asked for, for an observable that a scene does not have."""
+    try:
+        require_defined(observable, scene)
+    except SceneError as error:
+        raise SceneError("observable", name, f"{error.key}: {error.rule}") from None
+
+
+def tidy(multiple: float) -> float:
+    """A multiple without its rounding error, which a command would show."""
+    return float(f"{multiple:.12g}")

@@ -1,0 +1,252 @@
+"""`gaspart.run`, `gaspart.resume` and `gaspart.Accuracy`: runs of a duration, or until they are accurate.
+
+The rule that ends a run is in `gaspart.accuracy.reached`; this module refuses what no run can reach.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Self
+
+from gaspart.accuracy.reached import Examiner, Reached
+from gaspart.accuracy.steady import require_steady
+from gaspart.analysis.observables import OBSERVABLES, having, require_defined, require_kept, require_modelled
+from gaspart.engines import Engine
+from gaspart.errors import SceneError, unknown_word
+from gaspart.files import is_same_file, output_path
+from gaspart.scene.scene import Scene
+from gaspart.state.state import State
+from gaspart.trajectory import run as trajectory
+from gaspart.trajectory.checkpoint import checkpoint_path
+from gaspart.trajectory.correlator import Correlations
+from gaspart.trajectory.last_state import last_state
+from gaspart.trajectory.partial import partial_path
+from gaspart.trajectory.recipe import Recipe
+from gaspart.trajectory.recording import Progress
+from gaspart.trajectory.until import Requirement, Until
+
+
+class Accuracy(Requirement):
+    """The accuracy that a run is to reach: standard error / |value| of an observable.
+
+    observable: Z, D, collision_rate, pressure or shear_viscosity, as `gaspart measure` names them; accuracy:
+    relative, of one standard error that includes correlations; start: the time from which frames count, by
+    default a quarter of the run; face: of the pressure, the wall (`x low`), by default each of them. Raises
+    SceneError for other values.
+    """
+
+    def __post_init__(self) -> None:
+        able = having(ends_runs=True)
+        if self.observable not in able:
+            rule = unknown_word(self.observable, able, "observable")
+            raise SceneError("until.observable", self.observable, rule)
+        super().__post_init__()
+        if self.face is not None and OBSERVABLES[self.observable].along != ("face",):
+            raise SceneError("until.face", self.face, f"has no meaning for {self.observable}")
+
+    @classmethod
+    def named(cls, name: str, accuracy: float, start: float | None = None) -> Self:
+        """From its `name`, as on the command line and in a config: `Z`, or `pressure:x low`."""
+        observable, colon, face = name.partition(":")
+        return cls(observable.strip(), accuracy, start, face.strip() if colon else None)
+
+
+def run(
+    scene: Scene,
+    engine: Engine,
+    seed: int | tuple[int, ...],
+    duration: float | None = None,
+    sample_interval: float | None = None,
+    path: str | Path | None = None,
+    *,
+    until: Accuracy | list[Accuracy] | tuple[Accuracy, ...] | None = None,
+    at_most: float | None = None,
+    displacements: bool = False,
+    follow: int | None = None,
+    correlations: Correlations | None = None,
+    pairs: bool = False,
+    initial: State | str | Path | None = None,
+    checkpoint_seconds: float = 30.0,
+    progress: Progress | None = None,
+    examined: Callable[[list[Reached]], None] | None = None,
+    overwrite: bool = False,
+    keep_checkpoint: bool = False,
+) -> Path:
+    """Run a scene and write its trajectory to `path`; returns `path`.
+
+    A frame at time 0 and at every sample_interval to the duration, which is an integer multiple of it; with
+    `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also the
+    spins; with `follow` only so many particles, from the first on (counters are still those of all). With
+    `correlations` each frame has the sums so far of the velocities' correlations, and with `displacements`
+    of the mean-squared displacement, over all pairs of samples, which may lie much closer than frames; with
+    `Correlations(stress=True)` those of the stress tensor and the heat flux instead. With `pairs` each frame
+    counts the collisions of each pair of species so far (event-driven engine). A run of the same recipe
+    and program that was cut short is continued, a complete one is not changed. Another trajectory at `path`,
+    or unfinished next to it, is replaced only with `overwrite`; a file of another kind never. With
+    `keep_checkpoint` the state at the end stays in `path.checkpoint.npz`, and `resume` goes on from it.
+
+    With `initial`, a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`), the run
+    starts from it (`Simulation`). Particles and the size of the container must be the scene's; the rest may
+    differ. Defaults of engines follow from the scene's `speed` or `temperature` all the same.
+
+    With `until` the run ends when standard error / |value| of all these observables is as small as required,
+    examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
+    without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
+
+    `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
+    examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
+
+    Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
+    SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
+    """
+    wanted = _request(duration, sample_interval, until, at_most)
+    for asked in wanted.accuracies if wanted else ():
+        require_measurable(asked, scene, engine, follow, correlations)
+        _require_end(asked, scene, at_most, initial is not None)
+        displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
+    if sample_interval is None:
+        sample_interval = default_sample_interval(scene, engine, correlations)
+    start = _start(initial, scene, _required(path))
+    settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
+    recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
+    manner = trajectory.Manner(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
+    return trajectory.record(recipe, _required(path), manner)
+
+
+def _start(initial: State | str | Path | None, scene: Scene, path: str | Path) -> State | None:
+    """What a run at `path` starts from: of a file its last state. Raises SceneError if that is the same file,
+    by whatever name: it would be lost."""
+    if not isinstance(initial, str | Path):
+        return initial
+    from gaspart.inspection.start import STARTS, read_state  # which few runs need
+
+    output = output_path(path)
+    for place in (output, partial_path(output), checkpoint_path(output)):
+        if is_same_file(initial, place):
+            rule = f"is the file that is to be written, {path}: choose another name for the new run"
+            raise SceneError("initial", str(initial), rule)
+    return read_state(initial, scene) if Path(initial).suffix in STARTS else last_state(initial)
+
+
+def _required(path: str | Path | None) -> str | Path:
+    if path is None:
+        raise SceneError("path", None, "must be given: the file of the trajectory")
+    return path
+
+
+def _request(
+    duration: float | None,
+    sample_interval: float | None,
+    until: Accuracy | list[Accuracy] | tuple[Accuracy, ...] | None,
+    at_most: float | None,
+) -> Until | None:
+    """What ends a run in place of a duration. Raises SceneError for what excludes or needs each other."""
+    if until is not None:
+        if duration is not None:
+            rule = "excludes until, which ends the run; the longest duration is at_most"
+            raise SceneError("duration", duration, rule)
+        return Until(tuple(until) if isinstance(until, (list, tuple)) else (until,), at_most)
+    if at_most is not None:
+        raise SceneError("at_most", at_most, "needs until; without it give duration")
+    if duration is None:
+        raise SceneError("duration", None, "must be given, or until")
+    if sample_interval is None:
+        raise SceneError("sample_interval", None, "must be given with a duration")
+    return None
+
+
+def resume(
+    path: str | Path,
+    checkpoint_seconds: float = 30.0,
+    progress: Progress | None = None,
+    examined: Callable[[list[Reached]], None] | None = None,
+    *,
+    duration: float | None = None,
+    keep_checkpoint: bool = False,
+) -> Path:
+    """Finish the run that left `path.partial`, from its files only; returns `path`.
+
+    With a `duration`, the complete run at `path` goes on to that time, and its file is then the one of a run
+    of this duration in one go, to the same bytes. It continues from the state at its end if the run had
+    `keep_checkpoint`, which the extended one then has too; otherwise it is run again from its start. The
+    file is replaced when the longer run is complete; one that was cut short is finished by either form.
+
+    The other arguments as of `run`. Raises SceneError if there is nothing to resume or to extend, if another
+    version of the program began it, for a duration that is not longer, and for a file at `path` that is no
+    complete trajectory of gaspart.
+    """
+    examiner = Examiner(examined)
+    manner = trajectory.Manner(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
+    if duration is None:
+        return trajectory.resume(path, manner)
+    return trajectory.extend(path, duration, manner)
+
+
+def require_measurable(
+    asked: Requirement,
+    scene: Scene,
+    engine: Engine,
+    follow: int | None = None,
+    correlations: Correlations | None = None,
+) -> None:
+    """Raise SceneError for an observable that a scene does not have, however long the run, of which a run by
+    an engine says nothing, or for which this run does not keep what it needs."""
+    from gaspart.analysis.needs import require_of  # which loads xarray
+
+    walls, declared = scene.container.walls, OBSERVABLES[asked.observable]
+    kept = ("fluxes",) if correlations is not None and correlations.stress else ()
+    counted = declared.along == ("face",) or declared.needs == "fluxes"
+    try:
+        require_defined(asked.observable, scene)
+        require_kept(asked.observable, kept)
+        require_modelled(asked.observable, scene, engine)
+        if follow is None or follow >= scene.count or counted:
+            require_of(asked.observable, scene, correlations=correlations, displacements=True, follow=follow)
+    except SceneError as error:
+        raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
+    if asked.face not in (None, *walls):
+        raise SceneError("until", asked.name, f"the walls are {', '.join(walls)}")
+    if follow is not None and follow < scene.count and not counted:
+        raise SceneError("until", asked.name, "needs all particles in the file, without follow")
+
+
+def _require_end(asked: Requirement, scene: Scene, at_most: float | None, given: bool) -> None:
+    """Raise SceneError for a run in which nothing ever happens, and, without a longest duration, for one that
+    comes to no steady state. given: whether it starts from a given state."""
+    kinds = [kind for kind in scene.kinds if kind.count]
+    if not kinds:
+        return  # which the recipe refuses
+    moving = given or any(kind.initial_temperature(scene.dimension) > 0.0 for kind in kinds)
+    driven = scene.gravity or scene.thermostat or any(face.moves for face in scene.faces.values())
+    if not moving and not driven:
+        raise SceneError("until", asked.name, "never becomes known: nothing moves")
+    if scene.count == 1 and OBSERVABLES[asked.observable].along != ("face",):
+        raise SceneError("until", asked.name, "never becomes known: a single particle meets no other")
+    if at_most is None:
+        try:
+            require_steady(scene)
+        except SceneError as error:
+            rule = f"{error.key}: {error.rule}, or a longest one (at_most)"
+            raise SceneError("until", asked.name, rule) from None
+
+
+def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
+    """The mean time between two collisions of a particle, to two digits, as a multiple of the engine's steps
+    and the samples of correlations. Raises SceneError where theory does not give it."""
+    from gaspart import theory
+
+    gas, rate = scene.gas, 0.0
+    if gas is not None and gas.temperature > 0.0:
+        try:
+            rate = float(theory.collision_rate(**gas.parameters))
+        except ValueError:  # denser than theory goes
+            rate = 0.0
+    if not rate > 0.0:
+        rule = "must be given: the time between collisions is known only of plain gases"
+        raise SceneError("sample_interval", None, rule)
+    interval = float(f"{1.0 / rate:.2g}")
+    unit = correlations.interval if correlations else engine.quantum
+    if unit is None:
+        return interval
+    return max(1, round(interval / unit)) * unit
