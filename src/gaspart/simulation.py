@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,11 +20,11 @@ from gaspart.scene.validation import count_of, number
 from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.given import check_apart, taken_state
 from gaspart.state.initial import initial_state
+from gaspart.state.optional_tallies import OptionalTally, StressTally
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
 if TYPE_CHECKING:
-    from gaspart.engines.engine import FluxDynamics
     from gaspart.rendering.view import View
 
 ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
@@ -52,11 +52,12 @@ class Simulation:
 
     `seed`: a whole number, or a tuple of them, that fixes the initial state and the random
     numbers of thermal walls. stress: whether `tally` has the stress tensor and the heat flux, of a periodic
-    scene without gravity. initial: a state whose positions, velocities and spins are those at time 0, instead
-    of what the scene states; its particles and the size of its container must be the scene's. Velocities are
-    about the flow of a sheared scene: kept at the shear rate of the state, else peculiar ones with the flow
-    added. Its images keep their displacement and a piston its motion, which is at rest at its side if the
-    state has none; faces that vibrate begin anew.
+    scene without gravity; tallies: what it has that not every run counts (`state.optional_tallies`), of which
+    `stress` adds a `StressTally`. initial: a state whose positions, velocities and spins are those at time 0,
+    instead of what the scene states; its particles and the size of its container must be the scene's.
+    Velocities are about the flow of a sheared scene: kept at the shear rate of the state, else peculiar ones
+    with the flow added. Its images keep their displacement and a piston its motion, which is at rest at its
+    side if the state has none; faces that vibrate begin anew.
 
     Raises SceneError if the scene cannot be set up, the engine cannot model it, or particles of `initial`
     overlap or are not inside the container.
@@ -69,6 +70,7 @@ class Simulation:
         seed: int | tuple[int, ...] = 0,
         stress: bool = False,
         initial: State | None = None,
+        tallies: Iterable[OptionalTally] = (),
     ) -> None:
         if not isinstance(scene, Scene):
             raise SceneError("scene", scene, "must be a Scene, such as Scene.from_file(path)")
@@ -77,7 +79,8 @@ class Simulation:
                 "engine", engine, "must be an engine: EventDriven(), TimeStepped(time_step) or DSMC()"
             )
         self.scene, self.engine, self.seed = scene, engine, seed
-        self._asked, self._stress, self._given = engine, stress, initial
+        self._asked, self._given = engine, initial
+        self._tallies = (*tallies, *([StressTally()] if stress else []))
         self._log: EventLog | None = None
         self._advanced = False
         self._set_up()
@@ -103,10 +106,9 @@ class Simulation:
                 check_apart(self.scene, self._initial)
         self._energy = self._initial.energy
         self._moving = self._initial.kinetic_energy + self._initial.vibrational_energy
-        if self._stress:
-            self.engine.check_stress(self.scene)
-        asked = {"stress": True} if self._stress else {}  # an engine that has no such tally need not know it
-        self._dynamics = self.engine.start(self.scene, self._initial, self.seed, **asked)
+        for tally in self._tallies:
+            self.engine.check_tally(tally, self.scene)
+        self._dynamics = self.engine.start(self.scene, self._initial, self.seed, self._tallies)
 
     def add(
         self,
@@ -211,13 +213,13 @@ class Simulation:
         """Counters and sums since the start, or since the last `reset_tally`; a copy."""
         return self._dynamics.tally
 
-    @property
-    def flux_sums(self) -> np.ndarray:
-        """(2 d^2 + d,) the sums of the stress tensor, of its collisional part and of the heat flux, as in
-        `tally` but read faster. Raises SceneError unless they are tallied."""
-        if not self._stress:
-            raise SceneError("stress", False, "was not asked for when the simulation was made")
-        return cast("FluxDynamics", self._dynamics).flux_sums
+    def sums_of(self, tally: str) -> np.ndarray:
+        """The sums of the optional tally of this name, as in `tally` but read faster: of "stress" (2 d^2 +
+        d,) those of the stress tensor, of its collisional part and of the heat flux. Raises SceneError unless
+        it was asked for."""
+        if not any(asked.name == tally for asked in self._tallies):
+            raise SceneError(tally, False, "was not asked for when the simulation was made")
+        return self._dynamics.sums_of(tally)
 
     def reset_tally(self) -> None:
         """Set all counters and sums to zero."""
@@ -248,7 +250,7 @@ class Simulation:
 
     def again(self) -> Simulation:
         """The same simulation at its start."""
-        return Simulation(self.scene, self.engine, self.seed, self._stress, self._given)
+        return Simulation(self.scene, self.engine, self.seed, initial=self._given, tallies=self._tallies)
 
     def replay(self, by: str = "time", interval: float | None = None) -> Iterator[State]:
         """The states from the start to the present time, by running it again: at every `interval`

@@ -11,6 +11,7 @@ import gaspart as gp
 from gaspart.analysis.run import repeated
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
+from gaspart.state.optional_tallies import StressTally
 from gaspart.state.state import State
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.reading import open_trajectory
@@ -160,7 +161,7 @@ class Start:
         if self.scene.shear_rate is not None:  # correlations of the motion have no meaning
             del found["correlations"]
         try:
-            self.engine.check_stress(self.scene)
+            self.engine.check_tally(StressTally(), self.scene)
         except SceneError:
             del found["fluxes"]
         return found

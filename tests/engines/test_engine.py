@@ -25,7 +25,7 @@ class Skeleton(Engine):
     name: ClassVar[str] = "skeleton"
     title: ClassVar[str] = "skeleton"
 
-    def start(self, scene, state, seed=0):
+    def start(self, scene, state, seed=0, tallies=()):
         self.check_features(scene)
         return None
 """

@@ -10,6 +10,9 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.state.optional_tallies import StressTally
+from gaspart.trajectory.recipe import Recipe, read_recipe
+from gaspart.trajectory.run import simulation_of
 
 CUBE, FLAT = gp.Container((4.0,) * 3, "periodic"), gp.Container((9.0, 7.0), "periodic")
 PAIR = [gp.Species(20, 0.3, temperature=1.0), gp.Species(10, 0.2, mass=3.0, temperature=1.0)]
@@ -226,6 +229,21 @@ def test_viscosity_and_conductivity_of_a_dilute_gas_are_those_of_chapman_and_ens
     )
     assert float(conductivity.error) < 0.04 * expected
     assert abs(float(conductivity.estimate) - expected) < 3.0 * float(conductivity.error)
+
+
+def test_a_file_has_the_optional_tallies_that_its_recipe_lists(tmp_path):
+    """And no header of a run that lists none tells of them."""
+    recipe = Recipe(gas(3, 20, 0.2), gp.EventDriven(), 1, 1.0, 0.5)
+    assert "tallies" not in recipe.attributes() and "heat_sum" not in recipe.layout.variables
+    asked = replace(recipe, tallies=(StressTally(),))
+    (tmp_path / "run.nc").write_bytes(asked.header(""))
+    assert read_recipe(tmp_path / "run.nc") == asked
+    assert asked.layout.shape("stress_sum") == (3, 3)
+    sim = simulation_of(asked)
+    sim.advance(until=1.0)
+    assert np.array_equal(sim.sums_of("stress")[-3:], sim.tally.heat_sum)
+    with pytest.raises(gp.SceneError, match="stress = False: was not asked for"):
+        gp.Simulation(asked.scene, asked.engine, 1).sums_of("stress")
 
 
 def test_green_and_kubo_agree_with_helfand(tmp_path):

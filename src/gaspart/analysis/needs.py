@@ -17,8 +17,9 @@ from gaspart.analysis.observables import TOO_SHORT
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.state.insertion import per_particle
+from gaspart.state.optional_tallies import tallied_fields, tallies_of
 from gaspart.state.tally import Tally
-from gaspart.trajectory.correlator import Correlations, stress_sums, sums_of
+from gaspart.trajectory.correlator import Correlations, sum_names
 from gaspart.trajectory.pairs import pairs_of
 from gaspart.yaml_text import dump_yaml
 
@@ -59,20 +60,20 @@ def _few(scene: Scene) -> Scene:
 def _unrun(scene: Scene, correlations: Correlations | None, displacements: bool, pairs: bool) -> xr.Dataset:
     """Two frames, from time 0 to 1, of particles anywhere, which move and never meet."""
     count, dimension, random = scene.count, scene.dimension, np.random.default_rng(0)
-    sizes = {"atom": count, "spatial": dimension, "axis": dimension, "direction": dimension}
-    sizes |= {"face": 2 * dimension + len(scene.walls)}
+    sizes = {"atom": count, "spatial": dimension, "face": 2 * dimension + len(scene.walls)}
     along: dict[str, tuple[str, ...]] = dict.fromkeys(("kinetic_energy", "piston_position"), ())
-    stress = correlations is not None and correlations.stress
-    for field in fields(Tally):
-        if field.name != "time" and (stress or field.metadata.get("only") != "stress"):
-            along[field.name] = field.metadata.get("along", ())
+    tallies = (*tallies_of(scene), *(correlations.tallies if correlations else ()))
+    for tally in tallies:
+        sizes |= tally.axes(scene)
+    counted = {*tallied_fields(tallies)} - {"time"}
+    along |= {field.name: field.metadata.get("along", ()) for field in fields(Tally) if field.name in counted}
     if displacements:
         along["displacements"] = ("atom", "spatial")
     if pairs:
         along["pair_collisions"], sizes["pair"] = ("pair",), len(pairs_of(scene))
     attributes, lags = {"scene": dump_yaml(scene.to_dict())}, {}
     if correlations is not None:
-        names, sizes["lag"] = stress_sums() if stress else sums_of(displacements), correlations.lags + 1
+        names, sizes["lag"] = sum_names(correlations, displacements), correlations.lags + 1
         along |= {"correlated_samples": (), **dict.fromkeys(names, ("lag",))}
         attributes["correlations"] = correlations.to_json()
         lags = {"lag": correlations.interval * np.arange(sizes["lag"])}

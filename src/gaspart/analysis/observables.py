@@ -14,6 +14,7 @@ from gaspart.analysis import conditions as where
 from gaspart.analysis.declaration import Named, units_in
 from gaspart.errors import SceneError, unknown_word
 from gaspart.scene.scene import Scene
+from gaspart.state.optional_tallies import StressTally, WallShearTally
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -425,8 +426,8 @@ def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
     if engine.equation in one.nothing:
         raise SceneError("observable", name, one.nothing[engine.equation])
     if one.needs == "fluxes":
-        engine.check_stress(scene)
-    if one.needs == "shear" and not engine.tallies_shear:
+        engine.check_tally(StressTally(), scene)
+    if one.needs == "shear" and WallShearTally.name not in engine.tallies:
         raise SceneError("observable", name, "needs an engine that tallies momentum along faces")
     if one.needs == "pairs" and not engine.records_events:
         raise SceneError("observable", name, "needs an engine that records events")

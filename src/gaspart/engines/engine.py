@@ -7,13 +7,13 @@ An engine is a frozen dataclass derived from `Engine`, each field of which decla
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import MISSING, asdict, dataclass, fields
 from typing import TYPE_CHECKING, ClassVar, Protocol, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.scene.features import FEATURES, features
 from gaspart.scene.keys import validate
-from gaspart.scene.stress import require_tallied
 from gaspart.scene.validation import choice, from_mapping
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from gaspart.engines.event_log import EventLog
     from gaspart.scene.scene import Scene
+    from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
     from gaspart.state.tally import Tally
 
@@ -59,6 +60,9 @@ class Dynamics(Protocol):
         for a run that cannot go on.
         """
 
+    def sums_of(self, tally: str) -> np.ndarray:
+        """See `Simulation.sums_of`."""
+
     def reset_tally(self) -> None:
         """Begin to count from zero."""
 
@@ -69,14 +73,6 @@ class Dynamics(Protocol):
         """Continue from a checkpoint of the same scene and engine."""
 
 
-class FluxDynamics(Dynamics, Protocol):
-    """A scene in progress whose stress tensor and heat flux are tallied."""
-
-    @property
-    def flux_sums(self) -> np.ndarray:
-        """See `Simulation.flux_sums`."""
-
-
 @dataclass(frozen=True)
 class Engine:
     """Settings of an engine.
@@ -84,9 +80,8 @@ class Engine:
     name: by which files, configs and the command line know it; title: in messages and captions;
     records_events: whether its events can be recorded and counted; counters: fields of `Tally` that only
     such an engine fills; same_bits: settings that change no bit of its results; keeps_apart: whether
-    particles never overlap; tallies_stress: whether it can tally the stress tensor; tallies_shear: whether
-    it counts the momentum along thermal faces; models: names of the
-    `scene.features` that it models, and excludes: pairs of them that it does not model together;
+    particles never overlap; tallies: names of the `state.optional_tallies` that it can make; models: names of
+    the `scene.features` that it models, and excludes: pairs of them that it does not model together;
     first_stretch: the work, in events or steps, that a run begins with between two looks at the clock.
     """
 
@@ -98,8 +93,7 @@ class Engine:
     excludes: ClassVar[tuple[tuple[str, str], ...]] = ()
     same_bits: ClassVar[tuple[str, ...]] = ()
     keeps_apart: ClassVar[bool] = True
-    tallies_stress: ClassVar[bool] = False
-    tallies_shear: ClassVar[bool] = False
+    tallies: ClassVar[frozenset[str]] = frozenset()
     first_stretch: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
@@ -158,18 +152,26 @@ class Engine:
         """Settings with which the scene with only a few particles needs the same kernels."""
         return self
 
-    def check_stress(self, scene: Scene) -> None:
-        """Raise SceneError if the stress tensor of a scene cannot be tallied by this engine."""
-        if not self.tallies_stress:
-            able = " or ".join(f'"{engine.name}"' for engine in ENGINES.values() if engine.tallies_stress)
-            raise SceneError("stress", True, f"needs the {able} engine")
-        require_tallied(scene)
+    def check_tally(self, tally: OptionalTally, scene: Scene) -> None:
+        """Raise SceneError if this engine cannot make an optional tally of a scene."""
+        if tally.name not in self.tallies:
+            able = " or ".join(
+                f'"{engine.name}"' for engine in ENGINES.values() if tally.name in engine.tallies
+            )
+            raise SceneError(tally.name, True, f"needs the {able} engine")
+        tally.check(scene)
 
-    def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> Dynamics:
+    def start(
+        self,
+        scene: Scene,
+        state: State,
+        seed: int | tuple[int, ...] = 0,
+        tallies: Sequence[OptionalTally] = (),
+    ) -> Dynamics:
         """Set the engine up for a scene in a given state; `seed` is that of thermal walls and kicks.
 
-        One that `tallies_stress` has the argument `stress`, whether to do so, by default False. Raises
-        SceneError for what it does not model.
+        tallies: those that are made beside what every run counts, each as `check_tally` allows. Raises
+        SceneError for what the engine does not model.
         """
         raise NotImplementedError
 

@@ -71,7 +71,7 @@ class Tally:
     multiple_contacts: int = 0
     rebuilds: int = 0
     wall_shear: np.ndarray | None = field(
-        default=None, metadata={"along": ("face", "axis"), "units": IMPULSE, "only": "dragged"}
+        default=None, metadata={"along": ("face", "axis"), "units": IMPULSE, "only": "wall_shear"}
     )
     stress_sum: np.ndarray | None = field(
         default=None, metadata={"along": ("axis", "direction"), "units": ACTION, "only": "stress"}

@@ -9,13 +9,14 @@ from __future__ import annotations
 import os
 import struct
 import zlib
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import fields
 from typing import BinaryIO
 
 import numpy as np
 
 from gaspart.engines import ENGINES, Engine
+from gaspart.state.optional_tallies import OptionalTally, tallied_fields
 from gaspart.state.tally import Tally
 from gaspart.trajectory.correlator import meaning_of
 
@@ -58,12 +59,11 @@ _FIRST_NAME = struct.pack(">I", 5) + b"frame"
 """What follows the number of dimensions: the name of the first one."""
 
 
-def counters(engine: Engine, also: Collection[str] = ()) -> tuple[str, ...]:
+def counters(engine: Engine, tallies: Iterable[OptionalTally] = ()) -> tuple[str, ...]:
     """Sums since time 0 that a file of this engine has, one variable each; those of other engines alone would
-    be zero. also: what some sums belong to that are not of every run, "stress" or "dragged"."""
+    be zero. tallies: the optional ones that the run has."""
     absent = {name for kind in ENGINES.values() for name in kind.counters} - set(engine.counters)
-    absent |= {field.name for field in fields(Tally) if field.metadata.get("only") not in {None, *also}}
-    return tuple(field.name for field in fields(Tally) if field.name not in {"time", *absent})
+    return tuple(name for name in tallied_fields(tallies) if name not in {"time", *absent})
 
 
 def face_names(dimension: int, walls: int = 0) -> list[str]:
@@ -77,7 +77,7 @@ class Layout:
 
     count: particles in the file; extra: which variables of `_EXTRA` the file has; walls: the number of
     interior walls; counters: names of those that the file has; sums: of the correlations; axes: the lengths
-    of the axes that not every file has, `lag` and `pair`.
+    of the axes that not every file has, those of optional tallies, `lag` and `pair`.
     """
 
     def __init__(
@@ -97,11 +97,6 @@ class Layout:
             "cell_angular": 3,
             "label": 5,
             "face": 2 * dimension + walls,
-            **{
-                axis: dimension
-                for axis in ("axis", "direction")
-                if any(axis in _ALONG[it] for it in counters)
-            },
             **axes,
             **({"motion": 2} if "piston" in extra else {}),
         }

@@ -19,6 +19,7 @@ from gaspart.scene.faces import mean_velocity
 from gaspart.scene.scene import Scene
 from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
+from gaspart.state.optional_tallies import OptionalTally, StressTally
 from gaspart.state.tally import ACTION, HEAT
 
 SUMS = {
@@ -67,6 +68,11 @@ class Correlations:
         """The number of the first sample, in intervals from time 0."""
         return round(self.start / self.interval)
 
+    @property
+    def tallies(self) -> tuple[OptionalTally, ...]:
+        """The optional tallies that it needs."""
+        return (StressTally(),) if self.stress else ()
+
     def to_json(self) -> str:
         """Its form in the attributes of a file."""
         return json.dumps({key: value for key, value in asdict(self).items() if value is not False})
@@ -86,6 +92,11 @@ def stress_sums() -> list[str]:
     """The names of the sums of a run that correlates the stress tensor and the heat flux."""
     means = [f"bulk_{kind}_sum" for kind in ("ends", "change")]
     return [f"{name}_{kind}_sum" for name in STRESS for kind in ("product", "square")] + means
+
+
+def sum_names(settings: Correlations, displacements: bool) -> list[str]:
+    """The names of the sums of a run with these correlations, with or without displacements."""
+    return stress_sums() if settings.stress else sums_of(displacements)
 
 
 def stress_units() -> dict[str, str]:
@@ -228,7 +239,7 @@ class StressCorrelator(_Correlator):
         from gaspart.kernels.correlation import add_flux_products, flux_components
 
         integrals = np.empty_like(self._latest)
-        flux_components(simulation.flux_sums, self._dimension, integrals)
+        flux_components(simulation.sums_of(StressTally.name), self._dimension, integrals)
         if self._begun:
             now = np.array([(integrals - self._latest) / self.interval, integrals])
 
@@ -254,3 +265,13 @@ class StressCorrelator(_Correlator):
         """Continue from a checkpoint of a correlator of the same settings."""
         super().restore(arrays)
         self._latest, self._begun = arrays[_PREFIX + "latest"].copy(), bool(arrays[_PREFIX + "begun"])
+
+
+def correlator_for(
+    settings: Correlations, simulation: Simulation, displacements: bool
+) -> Correlator | StressCorrelator:
+    """The correlator of a run with these settings; displacements: whether positions are correlated too.
+    Raises SceneError if no particle moves."""
+    if settings.stress:
+        return StressCorrelator(settings, simulation.scene.dimension)
+    return Correlator(settings, simulation.scene, simulation.initial_state.masses, displacements)

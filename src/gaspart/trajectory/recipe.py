@@ -12,17 +12,17 @@ import numpy as np
 from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.scene.driving import has_dragged_faces
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.validation import count_of, number
 from gaspart.state.given import given_state, taken_state
 from gaspart.state.insertion import per_particle
+from gaspart.state.optional_tallies import OptionalTally, tallies_of, tally_from_dict, tally_to_dict
 from gaspart.state.random import stream
 from gaspart.state.state import State
 from gaspart.trajectory import amber, provenance
-from gaspart.trajectory.correlator import Correlations, stress_sums, sums_of
+from gaspart.trajectory.correlator import Correlations, sum_names
 from gaspart.trajectory.opening import opened
 from gaspart.trajectory.pairs import pair_names, pairs_of
 from gaspart.trajectory.until import Until
@@ -52,6 +52,7 @@ class Recipe:
     the file; None: all. correlations: sample_interval is an integer multiple of their interval. until: what
     ends the run in place of a duration, which is then None. pairs: count the collisions of each pair of
     species. initial: the state at time 0, if it is not that of the scene and the seed; the file holds it.
+    tallies: the optional tallies that frames have, beside those that the correlations need.
     """
 
     scene: Scene
@@ -65,6 +66,7 @@ class Recipe:
     until: Until | None = None
     pairs: bool = False
     initial: State | None = field(default=None, compare=False, repr=False)
+    tallies: tuple[OptionalTally, ...] = ()
 
     def __post_init__(self) -> None:
         stream(self.seed)  # raises SceneError for an invalid seed
@@ -85,6 +87,8 @@ class Recipe:
             raise SceneError("sample_interval", self.sample_interval, rule)
         if self.initial is not None:
             object.__setattr__(self, "initial", taken_state(self.scene, self.initial))
+        for tally in self.asked:
+            self.engine.check_tally(tally, self.scene)
         if self.correlations:
             self._check_correlations(self.correlations)
         if self.pairs:
@@ -94,9 +98,7 @@ class Recipe:
 
     def _check_correlations(self, asked: Correlations) -> None:
         """Refuse correlations that this run cannot have, with SceneError."""
-        if asked.stress:
-            self.engine.check_stress(self.scene)
-        else:
+        if not asked.stress:
             refuse_sheared(self.scene, "carries particles along: correlations need stress")
         interval = "correlations.interval", asked.interval
         if self.engine.quantum:
@@ -137,16 +139,16 @@ class Recipe:
         return self.scene.count if self.follow is None else self.follow
 
     @property
-    def stress(self) -> bool:
-        """Whether the stress tensor and the heat flux are tallied, for their correlations."""
-        return self.correlations is not None and self.correlations.stress
+    def asked(self) -> tuple[OptionalTally, ...]:
+        """The optional tallies that its simulation is asked for."""
+        needed = self.correlations.tallies if self.correlations else ()
+        return tuple(dict.fromkeys((*self.tallies, *needed)))
 
     @property
-    def tallied(self) -> set[str]:
-        """What is tallied that is not of every run, see `amber.counters`."""
-        dragged = self.engine.tallies_shear and has_dragged_faces(self.scene)
-        present = {"stress": self.stress, "dragged": dragged}
-        return {name for name, there in present.items() if there}
+    def tallied(self) -> tuple[OptionalTally, ...]:
+        """All optional tallies that its frames have: with these those of its scene."""
+        made = (tally for tally in tallies_of(self.scene) if tally.name in self.engine.tallies)
+        return (*made, *self.asked)
 
     @property
     def layout(self) -> amber.Layout:
@@ -160,9 +162,12 @@ class Recipe:
             "pair_collisions": self.pairs,
         }
         extra = [name for name, present in names.items() if present]
-        sums, axes = [], {}
+        sums: list[str] = []
+        axes: dict[str, int] = {}
+        for tally in self.tallied:
+            axes |= tally.axes(scene)
         if self.correlations:
-            sums = stress_sums() if self.stress else sums_of(self.displacements)
+            sums = sum_names(self.correlations, self.displacements)
             axes["lag"] = self.correlations.lags + 1
         if self.pairs:
             axes["pair"] = len(pair_names(scene))
@@ -183,6 +188,7 @@ class Recipe:
             **({} if self.follow is None else {"follow": np.int32(self.follow)}),
             **({} if self.correlations is None else {"correlations": self.correlations.to_json()}),
             **({"pairs": np.int32(1)} if self.pairs else {}),
+            **({"tallies": json.dumps([*map(tally_to_dict, self.tallies)])} if self.tallies else {}),
         }
 
     def _length(self) -> dict:
@@ -249,6 +255,7 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
             until=Until.from_json(stored["until"], stored.get("at_most")) if "until" in stored else None,
             pairs=bool(stored.get("pairs", False)),
             initial=_stored_initial(file, scene),
+            tallies=tuple(tally_from_dict(tally) for tally in json.loads(stored.get("tallies", "[]"))),
         )
     except SceneError:
         raise

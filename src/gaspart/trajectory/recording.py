@@ -17,7 +17,7 @@ from gaspart.simulation import Simulation
 from gaspart.state.state import State
 from gaspart.trajectory import amber
 from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
-from gaspart.trajectory.correlator import Correlator, StressCorrelator
+from gaspart.trajectory.correlator import correlator_for
 from gaspart.trajectory.frames import Frames
 from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.recipe import Recipe, multiple
@@ -53,12 +53,8 @@ class Recording:
         self._recipe, self._simulation, self._frames = recipe, simulation, frames
         self._path, self._every, self._progress = path, every, progress
         self._origin = simulation.initial_state.unwrapped
-        self._correlator: Correlator | StressCorrelator | None = None
-        if recipe.correlations and recipe.stress:
-            self._correlator = StressCorrelator(recipe.correlations, recipe.scene.dimension)
-        elif recipe.correlations:
-            masses = simulation.initial_state.masses
-            self._correlator = Correlator(recipe.correlations, recipe.scene, masses, recipe.displacements)
+        asked = recipe.correlations
+        self._correlator = asked and correlator_for(asked, simulation, recipe.displacements)
         self._pairs = PairCounter(simulation) if recipe.pairs else None
         self._examine = examine
         self._duration = recipe.longest if examine is None else self._estimate(0, math.inf)

@@ -129,7 +129,7 @@ def extend(path: str | Path, duration: float, manner: Manner) -> Path:
 
 def simulation_of(recipe: Recipe) -> Simulation:
     """The simulation of a recipe, at its start."""
-    return Simulation(recipe.scene, recipe.engine, recipe.seed, recipe.stress, recipe.initial)
+    return Simulation(recipe.scene, recipe.engine, recipe.seed, initial=recipe.initial, tallies=recipe.asked)
 
 
 def _carry_out(wanted: Recipe, path: Path, manner: Manner) -> Path:

@@ -10,11 +10,9 @@ from gaspart.engines.dsmc.rates import accessible
 from gaspart.engines.features.faces import WALL_DRAWS, kinds_and_levels, sliding_velocities
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Tools
-from gaspart.kernels.dsmc.stress import Stress
 from gaspart.kernels.model import ContactLaw, flight_dtype
 from gaspart.kernels.physics.exact_sum import WIDTH
 from gaspart.scene.scene import Scene
-from gaspart.state.drift import drift_of
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 
@@ -91,14 +89,6 @@ def tools_for(engine: DSMC, scene: Scene, state: State, step: float, seed: int |
         wall_impulse=np.zeros((threads, faces, WIDTH), np.int64),
         wall_heat=np.zeros((threads, faces, WIDTH), np.int64),
     )
-
-
-def stress_for(scene: Scene, state: State, threads: int) -> Stress:
-    """The sums of the stress tensor and the heat flux, at zero."""
-    d = scene.dimension
-    number = 2 * d * d + d
-    sums, cell = np.zeros((threads, number, WIDTH), np.int64), np.zeros((threads, number))
-    return Stress(sums, cell, np.zeros((threads, 2, d + 1)), drift_of(scene, state))
 
 
 TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,14 +13,16 @@ from gaspart.engines.belonging import check_parts
 from gaspart.engines.dsmc.crowding import EPOCH, HIGHEST
 from gaspart.engines.dsmc.limits import check_made, check_scene
 from gaspart.engines.dsmc.pace import FINEST
+from gaspart.engines.dynamics import EngineDynamics
 from gaspart.engines.features.law import LawPart, contact_law
-from gaspart.engines.features.part import Part, arrays_of, write_parts
+from gaspart.engines.features.part import Part, arrays_of, sums_of, write_parts
 from gaspart.engines.features.thermostat import step_kicks
 from gaspart.errors import SceneError
 from gaspart.kernels.physics.running_sum import net
 from gaspart.scene.scene import Scene
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
-from gaspart.state.tally import Tally, tallied_fluxes
+from gaspart.state.tally import Tally
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
@@ -30,7 +33,7 @@ _WHOLE = 2**FINEST
 """Parts of a step, in which the place within it is counted."""
 
 
-class DsmcDynamics:
+class DsmcDynamics(EngineDynamics):
     """A scene under way; its time is a whole number of steps.
 
     time_step: what was chosen. A step may be made in parts, and cells may become narrower: see `pace` and
@@ -38,10 +41,16 @@ class DsmcDynamics:
     """
 
     def __init__(
-        self, engine: DSMC, scene: Scene, state: State, seed: int | tuple[int, ...], stress: bool
+        self,
+        engine: DSMC,
+        scene: Scene,
+        state: State,
+        seed: int | tuple[int, ...],
+        tallies: Sequence[OptionalTally] = (),
     ) -> None:
         from gaspart.engines.dsmc import arrays
         from gaspart.engines.dsmc.resolution import Resolution
+        from gaspart.engines.dsmc.tallies import WallShearPart, tally_parts
         from gaspart.kernels.dsmc import loop, model
         from gaspart.kernels.model import Space
         from gaspart.kernels.physics import exact_sum
@@ -58,10 +67,16 @@ class DsmcDynamics:
         self._gravity = scene.gravity
         law = contact_law(scene, state)
         self._faces, self._law = arrays.faces_for(scene, engine.threads), arrays.law_for(law)
-        self._stress = arrays.stress_for(scene, state, engine.threads) if stress else None
         self._kicks = step_kicks(scene, self.time_step, seed)
-        parts = (LawPart(law) if law else None, Part({"given": self._kicks.given}) if self._kicks else None)
+        parts = (
+            LawPart(law) if law else None,
+            Part({"given": self._kicks.given}) if self._kicks else None,
+            WallShearPart(self._faces.shear) if self._faces and self._faces.shear is not None else None,
+        )
         self._parts = [part for part in parts if part]
+        self._parts += tally_parts(tallies, scene, state, engine.threads)
+        stress = self._tally_part("stress")
+        self._stress = stress and stress.kernel
         self._place(np.arange(state.count), state.positions, state.velocities, state.images)
         self._lost = np.zeros(2)  # net and gross, before the tally began
         self._start, self._steps, self._place_in_step, self._since = state.time, 0, 0, np.zeros(2, np.int64)
@@ -172,10 +187,7 @@ class DsmcDynamics:
     def _counted(self) -> dict[str, np.ndarray]:
         """The arrays (threads, ...) that count, by their names in a checkpoint."""
         found = {key: getattr(self._tools, key) for key in self._arrays.TALLY}
-        stress, shear = self._stress and self._stress.sums, self._faces and self._faces.shear
-        return found | {
-            key: sums for key, sums in {"stress": stress, "shear": shear}.items() if sums is not None
-        }
+        return found | sums_of(self._parts)
 
     @property
     def _heat(self) -> np.ndarray:
@@ -204,12 +216,6 @@ class DsmcDynamics:
         return float(self._lost[1]) + gross + abs(net(self._given))
 
     @property
-    def flux_sums(self) -> np.ndarray:
-        """(2 d^2 + d,) the sums of the stress tensor, of its collisional part and of the heat flux."""
-        assert self._stress is not None
-        return self._sums.exact_parts(self._stress.sums)[:, 0]
-
-    @property
     def state(self) -> State:
         """All particles at the present time."""
         d = self._scene.dimension
@@ -228,10 +234,8 @@ class DsmcDynamics:
         """What was counted since the last `reset_tally`."""
         tools, layout, value = self._tools, self._layout, self._sums.exact_parts
         more: dict[str, Any] = {}
-        if self._stress is not None:
-            more = tallied_fluxes(self.flux_sums, self._stress.drift)
-        if self._faces is not None and self._faces.shear is not None:
-            more["wall_shear"] = value(self._faces.shear)[..., 0]
+        for part in self._parts:
+            more |= part.counts(0.0)
         counts = tools.counts.sum(axis=0)
         return Tally(
             time=(self._steps - int(self._since[0])) * self.time_step,

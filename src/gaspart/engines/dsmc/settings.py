@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -12,6 +13,7 @@ from gaspart.scene.keys import PER_SIDE, POSITIVE, choice, count, declared
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.dynamics import DsmcDynamics
     from gaspart.scene.scene import Scene
+    from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
 
 MODELS = ("boltzmann", "enskog")
@@ -63,8 +65,7 @@ class DSMC(Engine):
     title: ClassVar[str] = "DSMC"
     same_bits: ClassVar[tuple[str, ...]] = ("threads",)
     keeps_apart: ClassVar[bool] = False
-    tallies_stress: ClassVar[bool] = True
-    tallies_shear: ClassVar[bool] = True
+    tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear"))
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
     ) | {"centres_to_walls", "thermal", "sliding"}
@@ -153,9 +154,13 @@ class DSMC(Engine):
         return self.resolved(scene)._with(cells_per_side=1, adapts=(self.adapts_steps, False))
 
     def start(
-        self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0, stress: bool = False
+        self,
+        scene: Scene,
+        state: State,
+        seed: int | tuple[int, ...] = 0,
+        tallies: Sequence[OptionalTally] = (),
     ) -> DsmcDynamics:
         """Set the engine up for a scene in a given state; `seed` is that of collisions and thermal walls."""
         from gaspart.engines.dsmc.dynamics import DsmcDynamics
 
-        return DsmcDynamics(self, scene, state, seed, stress)
+        return DsmcDynamics(self, scene, state, seed, tallies)

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from operator import attrgetter
 
 import numpy as np
 
 from gaspart.engines.belonging import check_parts
+from gaspart.engines.dynamics import EngineDynamics
 from gaspart.engines.event.clock_epochs import Epochs
 from gaspart.engines.event.model import event_model, event_parts, particles_of, wrap
 from gaspart.engines.event.search import chosen_search, make_lists, neighbour_lists
 from gaspart.engines.event.stalling import MANY, CollapsePart, check_clocks, check_events, check_progress
-from gaspart.engines.event.tally import EventTally
+from gaspart.engines.event.tally import EventTally, tally_parts
 from gaspart.engines.event_log import EventLog
 from gaspart.engines.features.part import arrays_of, write_parts
-from gaspart.engines.features.stress import stress_part
 from gaspart.errors import SimulationError
 from gaspart.kernels.event import loop, prediction
 from gaspart.kernels.event import neighbour_lists as lists
@@ -26,6 +27,7 @@ from gaspart.kernels.event.queue import EVENT_COUNT, empty_queue
 from gaspart.kernels.physics.flight import advance_all, restart_clocks
 from gaspart.scene.faces import GRADIENT
 from gaspart.scene.scene import Scene
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.oversized import boxes_and_largest
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
@@ -33,7 +35,7 @@ from gaspart.state.tally import Tally
 _NUMBERS = ("start", "epoch", "base", "quiet", "clock")  # of a checkpoint
 
 
-class EventDynamics:
+class EventDynamics(EngineDynamics):
     """A scene in progress. Clocks count from the start of the current epoch, so that they lose no
     precision."""
 
@@ -44,7 +46,7 @@ class EventDynamics:
         seed: int | tuple[int, ...],
         search: str,
         boxes_per_side: int | tuple[int, ...] | None,
-        stress: bool = False,
+        tallies: Sequence[OptionalTally] = (),
     ) -> None:
         self._scene, self._reference, n = scene, state, state.count
         self._search = chosen_search(scene, search, boxes_per_side is not None)
@@ -61,8 +63,7 @@ class EventDynamics:
         self._model, unit_mass = event_model(scene, state, seed, self._grid, largest)
         self._collapse = CollapsePart(self._model, n)
         self._parts = [*event_parts(scene, state, seed, self._model, unit_mass), self._collapse]
-        self._stress = stress_part(self._flights, self._model, unit_mass, scene, state) if stress else None
-        self._parts += [self._stress] if self._stress else []
+        self._parts += tally_parts(tallies, self._flights, self._model, unit_mass, scene, state)
         self._epochs = Epochs(scene, state.masses, sum(part.gained for part in self._parts))
         self._base, self._quiet = self._base_from(0.0), 0
         epochs, self._clock = divmod(state.time, self._base)
@@ -71,7 +72,7 @@ class EventDynamics:
             part.set_clock(self._clock)
         self._begin_epoch(self._base)
         self._flights["clock"] = self._clock
-        self._tally = EventTally(scene, unit_mass, self._parts, self._stress)
+        self._tally = EventTally(scene, unit_mass, self._parts)
         self._tally.begin(self.time, self._clock)
         self._predict()
 
@@ -225,12 +226,6 @@ class EventDynamics:
     def tally(self) -> Tally:
         """What was counted since the last `reset_tally`."""
         return self._tally.read(self.time, self._clock)
-
-    @property
-    def flux_sums(self) -> np.ndarray:
-        """(2 d^2 + d,) the sums of the stress tensor, of its collisional part and of the heat flux."""
-        assert self._stress is not None
-        return self._stress.read(self._clock)
 
     @property
     def dissipated(self) -> float:

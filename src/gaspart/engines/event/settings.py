@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
@@ -13,6 +14,7 @@ from gaspart.scene.keys import PER_SIDE, choice, declared
 if TYPE_CHECKING:
     from gaspart.engines.event.dynamics import EventDynamics
     from gaspart.scene.scene import Scene
+    from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
 
 SEARCHES = ("automatic", "boxes", "lists", "direct", "pairs")
@@ -46,8 +48,7 @@ class EventDriven(Engine):
     name: ClassVar[str] = "event"
     title: ClassVar[str] = "event-driven"
     records_events: ClassVar[bool] = True
-    tallies_stress: ClassVar[bool] = True
-    tallies_shear: ClassVar[bool] = True
+    tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear"))
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     same_bits: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
     first_stretch: ClassVar[int] = 256  # events with crossings and predictions
@@ -73,9 +74,13 @@ class EventDriven(Engine):
         return EventDriven(search=self._search(scene), boxes_per_side=boxes)
 
     def start(
-        self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0, stress: bool = False
+        self,
+        scene: Scene,
+        state: State,
+        seed: int | tuple[int, ...] = 0,
+        tallies: Sequence[OptionalTally] = (),
     ) -> EventDynamics:
         """Set the engine up for a scene in a given state; `seed` is that of thermal walls and kicks."""
         from gaspart.engines.event.dynamics import EventDynamics
 
-        return EventDynamics(scene, state, seed, self.search, self.boxes_per_side, stress)
+        return EventDynamics(scene, state, seed, self.search, self.boxes_per_side, tallies)

@@ -2,17 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
-from gaspart.engines.features.part import Part
-from gaspart.engines.features.stress import StressPart
+from gaspart.engines.features.part import Part, TallyPart
+from gaspart.engines.features.stress import stress_part
 from gaspart.kernels import model as kernels
 from gaspart.kernels.physics.running_sum import net, values
 from gaspart.scene.scene import Scene
+from gaspart.state.optional_tallies import OptionalTally
+from gaspart.state.state import State
 from gaspart.state.tally import Tally
+
+PARTS = {"stress": stress_part}
+"""What makes the part of an optional tally that was asked for, by its name."""
+_OPTIONAL = kernels.Tally._field_defaults  # entries that a part has
+
+
+def tally_parts(
+    asked: Iterable[OptionalTally],
+    flights: np.ndarray,
+    model: kernels.Model,
+    unit_mass: float,
+    scene: Scene,
+    state: State,
+) -> list[TallyPart]:
+    """The parts of optional tallies. flights (N,): the particles; state: that at time 0."""
+    return [PARTS[tally.name](tally, flights, model, unit_mass, scene, state) for tally in asked]
 
 
 class EventTally:
@@ -22,11 +40,9 @@ class EventTally:
     energy taken before it, see `dissipated` and `exchanged`.
     """
 
-    def __init__(
-        self, scene: Scene, unit_mass: float, parts: Sequence[Part], stress: StressPart | None
-    ) -> None:
+    def __init__(self, scene: Scene, unit_mass: float, parts: Sequence[Part]) -> None:
         self._unit_mass, self._parts = unit_mass, parts
-        self._stress = stress.sums if stress else None
+        self._optional = {part.name: part.kernel for part in parts if isinstance(part, TallyPart)}
         self._surfaces = 2 * scene.dimension + len(scene.walls)
         self.lost = np.zeros(2)
 
@@ -37,7 +53,7 @@ class EventTally:
 
     def begin(self, time: float, clock: float) -> None:
         """The same without what was counted before."""
-        self.arrays = kernels.empty_tally(self._surfaces)._replace(stress=self._stress)
+        self.arrays = kernels.empty_tally(self._surfaces)._replace(**self._optional)
         for part in self._parts:
             part.reset(clock)
         self.since = time
@@ -45,7 +61,7 @@ class EventTally:
     @property
     def changing(self) -> dict[str, np.ndarray]:
         """The arrays by name, without those of parts."""
-        return {key: array for key, array in self.arrays._asdict().items() if key != "stress"}
+        return {key: array for key, array in self.arrays._asdict().items() if key not in _OPTIONAL}
 
     def read(self, time: float, clock: float) -> Tally:
         """What was counted up to the present `time`."""

@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 class Part:
     """A feature in a run. Each method is for what a feature may have, and does nothing by default.
 
-    arrays: those that a run changes, by their names in a checkpoint; times: those of them that are times on
-    the clocks of the epoch; scheduled (1,): the time of the next event that it has scheduled; gained: the
-    square of the largest speed that it can give a particle.
+    arrays: those that a run changes, by their names in a checkpoint; sums: likewise those (threads, ...) that
+    several threads add to, of which a checkpoint has the sum; times: those of `arrays` that are times on the
+    clocks of the epoch; scheduled (1,): the time of the next event that it has scheduled; gained: the square
+    of the largest speed that it can give a particle.
     """
 
     gained = 0.0
@@ -33,7 +34,9 @@ class Part:
         arrays: dict[str, np.ndarray],
         times: Iterable[np.ndarray] = (),
         scheduled: np.ndarray | None = None,
+        sums: dict[str, np.ndarray] | None = None,
     ) -> None:
+        self.sums = sums or {}
         self.arrays, self._times, self._scheduled = arrays, times, scheduled
 
     @property
@@ -81,6 +84,8 @@ class Part:
 
     def reset(self, clock: float) -> None:
         """Begin to count from zero at this time on the clocks of the epoch."""
+        for sums in self.sums.values():
+            sums[...] = 0
 
     def counts(self, clock: float) -> dict[str, Any]:
         """What it has counted from the last `reset` until this time on the clocks of the epoch, by the fields
@@ -92,9 +97,36 @@ class Part:
         state."""
 
 
+class TallyPart(Part):
+    """An optional tally in a run (`state.optional_tallies`).
+
+    name: that of the tally; kernel: what the kernels add to, in an entry of their own tally that has this
+    name.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        kernel: Any,
+        arrays: dict[str, np.ndarray],
+        sums: dict[str, np.ndarray] | None = None,
+    ) -> None:
+        super().__init__(arrays, sums=sums)
+        self.name, self.kernel = name, kernel
+
+    def read(self, clock: float) -> np.ndarray:
+        """All its sums from the last `reset` until this time on the clocks of the epoch, in one array."""
+        raise NotImplementedError
+
+
 def arrays_of(parts: Iterable[Part]) -> dict[str, np.ndarray]:
     """The arrays of several parts, by name."""
     return {key: array for part in parts for key, array in part.arrays.items()}
+
+
+def sums_of(parts: Iterable[Part]) -> dict[str, np.ndarray]:
+    """The arrays of several parts that threads add to, by name."""
+    return {key: array for part in parts for key, array in part.sums.items()}
 
 
 def write_parts(parts: Iterable[Part], state: State, clock: float = 0.0) -> None:

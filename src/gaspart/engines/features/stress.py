@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.engines.features.part import Part
+from gaspart.engines.features.part import TallyPart
 from gaspart.kernels.event.sheared_stress import add_sheared_flights
 from gaspart.kernels.event.stress import Stress, add_flights
 from gaspart.kernels.model import Model
@@ -14,36 +14,39 @@ from gaspart.kernels.physics.running_sum import values
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.scene import Scene
 from gaspart.state.drift import drift_of
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.state.tally import tallied_fluxes
 
 
-class StressPart(Part):
+class StressPart(TallyPart):
     """What is tallied of them.
 
-    sums: those that the kernels add to; flights (N,): the particles, each with a velocity that holds at any
-    time until its next contact; drift (d,): the velocity of their centre of mass.
+    flights (N,): the particles, each with a velocity that holds at any time until its next contact; drift
+    (d,): the velocity of their centre of mass.
     """
+
+    kernel: Stress
 
     def __init__(self, flights: np.ndarray, model: Model, unit_mass: float, drift: np.ndarray) -> None:
         self._flights, self._unit_mass = flights, unit_mass
         self._masses = model.space, model.masses, model.law
         self._drift, d = drift, len(drift)
-        self.sums = Stress(np.zeros((2 * d * d + d, 2)), np.zeros((2, d + 1)), drift.copy())
-        super().__init__({"stress": self.sums.sums})
+        sums = np.zeros((2 * d * d + d, 2))
+        super().__init__("stress", Stress(sums, np.zeros((2, d + 1)), drift.copy()), {"stress": sums})
 
     def end_epoch(self, length: float, start: float) -> None:
         """Add what the particles have carried in the epoch."""
-        add_flights(self._flights, length, *self._masses, self.sums)
+        add_flights(self._flights, length, *self._masses, self.kernel)
 
     def reset(self, clock: float) -> None:
         """Begin to count from zero."""
-        self.sums.sums[...] = 0.0
-        add_flights(self._flights, -clock, *self._masses, self.sums)
+        self.kernel.sums[...] = 0.0
+        add_flights(self._flights, -clock, *self._masses, self.kernel)
 
     def read(self, clock: float) -> np.ndarray:
         """(2 d^2 + d,) the sums until this time on the clocks of the epoch."""
-        total = self.sums._replace(sums=self.sums.sums.copy())
+        total = self.kernel._replace(sums=self.kernel.sums.copy())
         add_flights(self._flights, clock, *self._masses, total)
         return values(total.sums) * self._unit_mass
 
@@ -65,30 +68,30 @@ class ShearedStressPart(StressPart):
         and less."""
         assert model.shear is not None  # or there were no such part
         across = self._drift[GRADIENT]
-        self.sums.drift[FLOW] = self._drift[FLOW] - model.shear.rate * across * start
+        self.kernel.drift[FLOW] = self._drift[FLOW] - model.shear.rate * across * start
         return model
 
     def close_epoch(self, length: float) -> None:
         """Add what the particles have carried until the end of the epoch."""
-        add_sheared_flights(self._flights, length, 1.0, self._model, self.sums)
+        add_sheared_flights(self._flights, length, 1.0, self._model, self.kernel)
 
     def end_epoch(self, length: float, start: float) -> None:
         """Nothing: the flights begin anew."""
 
     def reset(self, clock: float) -> None:
         """Begin to count from zero."""
-        self.sums.sums[...] = 0.0
-        add_sheared_flights(self._flights, clock, -1.0, self._model, self.sums)
+        self.kernel.sums[...] = 0.0
+        add_sheared_flights(self._flights, clock, -1.0, self._model, self.kernel)
 
     def read(self, clock: float) -> np.ndarray:
         """(2 d^2 + d,) the sums until this time on the clocks of the epoch."""
-        total = self.sums._replace(sums=self.sums.sums.copy())
+        total = self.kernel._replace(sums=self.kernel.sums.copy())
         add_sheared_flights(self._flights, clock, 1.0, self._model, total)
         return values(total.sums) * self._unit_mass
 
 
 def stress_part(
-    flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
+    asked: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> StressPart:
     """The part for a gas that is sheared or not, which is in this `state` at time 0."""
     kind = StressPart if model.shear is None else ShearedStressPart

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from gaspart.engines.belonging import check_parts
+from gaspart.engines.dynamics import EngineDynamics
 from gaspart.engines.event_log import EventLog
 from gaspart.engines.features.masses import largest_terms
 from gaspart.engines.features.part import arrays_of, write_parts
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 _MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
 
 
-class StepDynamics:
+class StepDynamics(EngineDynamics):
     """A scene under way; its time is a whole number of steps."""
 
     def __init__(self, engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:

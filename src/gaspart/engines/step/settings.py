@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
@@ -13,6 +14,7 @@ from gaspart.scene.keys import FLAG, PER_SIDE, POSITIVE, choice, count, declared
 if TYPE_CHECKING:
     from gaspart.engines.step.dynamics import StepDynamics
     from gaspart.scene.scene import Scene
+    from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
 
 PRECISIONS = ("float64", "float32")
@@ -104,7 +106,13 @@ class TimeStepped(Engine):
         """With one box, if there are any."""
         return self if self.boxes_per_side is None else replace(self, boxes_per_side=1)
 
-    def start(self, scene: Scene, state: State, seed: int | tuple[int, ...] = 0) -> StepDynamics:
+    def start(
+        self,
+        scene: Scene,
+        state: State,
+        seed: int | tuple[int, ...] = 0,
+        tallies: Sequence[OptionalTally] = (),
+    ) -> StepDynamics:
         """Set the engine up for a scene in a given state; `seed` is that of thermal walls."""
         from gaspart.engines.step.dynamics import StepDynamics
 

@@ -25,6 +25,7 @@ from gaspart.reproduction.jobs.stretches import (
     SLACK,
     stretches,
 )
+from gaspart.state.optional_tallies import StressTally
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -74,7 +75,7 @@ def parameters(point: Point) -> dict:
     if "record_events" in extras and not point.engine.records_events:
         raise point.refused("record_events", "has a meaning with job: measure_cost and engine: event only")
     if "stress" in extras:
-        point.engine.check_stress(point.scene)
+        point.engine.check_tally(StressTally(), point.scene)
     return {"extras": extras, "rival": _rival(point), **stretches(point)}
 
 
@@ -179,7 +180,7 @@ def _timed(
 
     from gaspart.engines.event_log import EventLog
 
-    dynamics = engine.start(scene, state, **({"stress": True} if "stress" in extras else {}))
+    dynamics = engine.start(scene, state, tallies=[StressTally()] if "stress" in extras else [])
     log = EventLog(scene.dimension, scene.rough) if "record_events" in extras else None
     step = engine.quantum or 0.0
     # This loads the kernels, and the first step touches all memory.
