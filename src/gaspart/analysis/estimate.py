@@ -1,88 +1,144 @@
-"""A number with its standard uncertainty."""
+"""Numbers with standard uncertainties."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # single numbers, as claims have, need no numpy
+    import numpy as np
     import xarray
 
-Scalar = Any
-"""A number of any library, an array without dimensions too; kept as a float."""
+Number = Any
+"""A number, or an array of numbers, of any library; kept as a float, or as an array of floats."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Estimate:
-    """A number and its standard uncertainty, 0 where it is exact.
+    """A number and its standard uncertainty, 0 where it is exact; or an array of them.
 
     freedom: degrees of freedom of the uncertainty, if it comes from the scatter of a few samples (their
     number less one); infinite if it is known otherwise. A deviation is then distributed as Student's t. Sums,
     products and quotients propagate the uncertainties of independent numbers to first order, and the degrees
-    of freedom by the formula of Welch and Satterthwaite (Biometrics Bulletin 2, 110 (1946)). Raises
-    ValueError for a negative uncertainty, and for degrees of freedom that are not positive.
+    of freedom by the formula of Welch and Satterthwaite (Biometrics Bulletin 2, 110 (1946)).
+
+    Of arrays, which broadcast to one shape, every element is a number of its own, and is propagated as a
+    single one would be: to the last bit. An estimate of an array has a length, can be iterated over along its
+    first axis, and indexed; the array is not to be changed. Raises ValueError for a negative uncertainty, for
+    degrees of freedom that are not positive, and for arrays of shapes that do not broadcast.
     """
 
-    value: Scalar
-    error: Scalar = 0.0
-    freedom: Scalar = math.inf
+    value: Number
+    error: Number = 0.0
+    freedom: Number = math.inf
+
+    __array_ufunc__ = None  # of an array and an estimate, the estimate does the arithmetic
 
     def __post_init__(self) -> None:
-        for name in ("value", "error", "freedom"):
-            object.__setattr__(self, name, float(getattr(self, name)))
-        if self.error < 0.0:
+        parts = [_floats(part) for part in (self.value, self.error, self.freedom)]
+        if not all(isinstance(part, float) for part in parts):
+            parts = _arrays(parts)
+        for name, part in zip(("value", "error", "freedom"), parts, strict=True):
+            object.__setattr__(self, name, part)
+        if _any(self.error < 0.0):
             raise ValueError(f"error: {self.error} (must not be negative)")
-        if self.freedom <= 0.0:
+        if _any(self.freedom <= 0.0):
             raise ValueError(f"freedom: {self.freedom} (must be positive)")
 
     @classmethod
     def of(cls, dataset: xarray.Dataset, name: str) -> Estimate:
-        """The scalar variable `name` of a dataset, with the variable `name`_error as its uncertainty, and
-        `name`_freedom, if there is one and it is finite, as the degrees of freedom of the uncertainty."""
-        freedom = float(dataset.get(f"{name}_freedom", math.inf))
-        return cls(dataset[name], dataset[f"{name}_error"], freedom if freedom > 0.0 else math.inf)
+        """The variable `name` of a dataset, with the variable `name`_error as its uncertainty, and
+        `name`_freedom, where there is one and it is positive, as the degrees of freedom of the uncertainty."""
+        import numpy as np
+
+        freedom = np.asarray(dataset.get(f"{name}_freedom", math.inf), dtype=float)
+        known = np.where(freedom > 0.0, freedom, math.inf)  # NaN where there is none
+        return cls(dataset[name], dataset[f"{name}_error"], known)
+
+    @classmethod
+    def stack(cls, estimates: Sequence[Estimate]) -> Estimate:
+        """Estimates of one shape along a new first axis; of none, an empty array."""
+        parts = ([one._parts[k] for one in estimates] for k in range(3))
+        return cls(*parts)
 
     @property
-    def deviation(self) -> float:
+    def deviation(self) -> Number:
         """Distance from 0 in standard deviations, infinite for an exact number that is not 0.
 
         Where the uncertainty comes from a few samples, the Gaussian deviation of the same probability as that
         of Student's t.
         """
-        if self.error == 0.0:
-            return math.copysign(math.inf, self.value) if self.value else 0.0
-        t = self.value / self.error
-        if math.isinf(self.freedom) or t == 0.0 or not math.isfinite(t):
-            return t
-        from scipy.special import ndtri, stdtr
+        return _each(_deviation, 1)(self.value, self.error, self.freedom)
 
-        beyond = max(float(stdtr(self.freedom, -abs(t))), 1e-300)
-        return math.copysign(-float(ndtri(beyond)), t)
+    @property
+    def weights(self) -> np.ndarray:
+        """1 / error^2 of each element of an array, over their sum."""
+        weights: np.ndarray = self.error**-2
+        return weights / weights.sum()
 
     def __str__(self) -> str:
-        return concise(self.value, self.error)
+        if isinstance(self.value, float):
+            return concise(self.value, self.error)
+        return f"[{', '.join(map(str, self))}]"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Estimate):
+            return NotImplemented
+        if isinstance(self.value, float) and isinstance(other.value, float):
+            return self._parts == other._parts
+        import numpy as np
+
+        return all(map(np.array_equal, self._parts, other._parts))
+
+    def __hash__(self) -> int:
+        return hash(self._parts)  # TypeError for arrays
+
+    @property
+    def _parts(self) -> tuple[Number, Number, Number]:
+        return self.value, self.error, self.freedom
+
+    def __bool__(self) -> bool:
+        return isinstance(self.value, float) or len(self) > 0
+
+    def __len__(self) -> int:
+        return len(self.value)
+
+    def __iter__(self) -> Iterator[Estimate]:
+        return (Estimate(*parts) for parts in zip(*self._parts, strict=True))
+
+    def __getitem__(self, key: Any) -> Estimate:
+        return Estimate(self.value[key], self.error[key], self.freedom[key])
 
     def __neg__(self) -> Estimate:
         return Estimate(-self.value, self.error, self.freedom)
 
-    def __add__(self, other: Estimate | Scalar) -> Estimate:
+    def __add__(self, other: Estimate | Number) -> Estimate:
         other = as_estimate(other)
         return _sum(self.value + other.value, (self.error, self.freedom), (other.error, other.freedom))
 
-    def __sub__(self, other: Estimate | Scalar) -> Estimate:
+    def __sub__(self, other: Estimate | Number) -> Estimate:
         return self + -as_estimate(other)
 
-    def __mul__(self, other: Estimate | Scalar) -> Estimate:
+    def __mul__(self, other: Estimate | Number) -> Estimate:
         other = as_estimate(other)
         mine, its = self.error * abs(other.value), abs(self.value) * other.error
         return _sum(self.value * other.value, (mine, self.freedom), (its, other.freedom))
 
-    def __truediv__(self, other: Estimate | Scalar) -> Estimate:
+    def __truediv__(self, other: Estimate | Number) -> Estimate:
         other = as_estimate(other)
         value = self.value / other.value
         mine, its = self.error / abs(other.value), abs(value) * other.error / abs(other.value)
         return _sum(value, (mine, self.freedom), (its, other.freedom))
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __rsub__(self, other: Number) -> Estimate:
+        return as_estimate(other) - self
+
+    def __rtruediv__(self, other: Number) -> Estimate:
+        return as_estimate(other) / self
 
 
 def concise(value: float, error: float) -> str:
@@ -99,15 +155,70 @@ def concise(value: float, error: float) -> str:
     return f"{round(value, decimals):.0f}({round(error, decimals):.0f})"
 
 
-def _sum(value: float, *parts: tuple[float, float]) -> Estimate:
-    """The value with the uncertainty of all parts, each (error, degrees of freedom)."""
-    error = math.hypot(*(error for error, _ in parts))
-    if error == 0.0 or not math.isfinite(error):
-        return Estimate(value, error)
-    inverse = sum((part / error) ** 4 / freedom for part, freedom in parts)
-    return Estimate(value, error, 1.0 / inverse if inverse > 0.0 else math.inf)
-
-
-def as_estimate(number: Estimate | Scalar) -> Estimate:
-    """An estimate as it is, another number as an exact one."""
+def as_estimate(number: Estimate | Number) -> Estimate:
+    """An estimate as it is, another number or array as an exact one."""
     return number if isinstance(number, Estimate) else Estimate(number)
+
+
+def _floats(number: Number) -> float | np.ndarray:
+    """A number as a float, an array of at least one dimension as an array of floats."""
+    if isinstance(number, (float, int)):
+        return float(number)
+    import numpy as np
+
+    array = np.asarray(number, dtype=float)
+    return array if array.ndim else float(array)
+
+
+def _arrays(parts: list) -> list[np.ndarray]:
+    """Copies of arrays, of one shape, which nobody can change."""
+    import numpy as np
+
+    copies = [np.array(part) for part in np.broadcast_arrays(*parts)]
+    for copy in copies:
+        copy.flags.writeable = False
+    return copies
+
+
+def _any(wrong: bool | np.ndarray) -> bool:
+    return bool(wrong if isinstance(wrong, bool) else wrong.any())
+
+
+def _sum(value: Number, *parts: tuple[Number, Number]) -> Estimate:
+    """The value with the uncertainty of two parts, each (error, degrees of freedom)."""
+    return Estimate(value, *_each(_together, 2)(*parts[0], *parts[1]))
+
+
+def _each(function: Callable[..., Any], results: int) -> Callable[..., Any]:
+    """A function of floats, also of arrays: math and numpy differ in last bits."""
+
+    def of_any(*numbers: Number) -> Any:
+        if all(isinstance(number, float) for number in numbers):
+            return function(*numbers)
+        import numpy as np
+
+        return np.vectorize(function, otypes=[float] * results)(*numbers)
+
+    return of_any
+
+
+def _together(error: float, freedom: float, other: float, other_freedom: float) -> tuple[float, float]:
+    """The error of a sum of two numbers, from their errors, and its degrees of freedom."""
+    both = math.hypot(error, other)
+    if both == 0.0 or not math.isfinite(both):
+        return both, math.inf
+    inverse = (error / both) ** 4 / freedom + (other / both) ** 4 / other_freedom
+    return both, 1.0 / inverse if inverse > 0.0 else math.inf
+
+
+def _deviation(value: float, error: float, freedom: float) -> float:
+    """See `Estimate.deviation`."""
+    if error == 0.0:
+        return math.copysign(math.inf, value) if value else 0.0
+    t = value / error
+    if math.isinf(freedom) or t == 0.0 or not math.isfinite(t):
+        return t
+    from scipy.special import ndtri, stdtr
+
+    beyond = max(float(stdtr(freedom, -abs(t))), 1e-300)
+    return math.copysign(-float(ndtri(beyond)), t)

@@ -34,9 +34,14 @@ class Fit:
         """Standard errors of the parameters."""
         return np.sqrt(np.diag(self.covariance))
 
+    @property
+    def estimates(self) -> Estimate:
+        """The parameters (parameters,), with their uncertainties."""
+        return Estimate(self.values, self.errors, self.freedoms)
+
     def estimate(self, number: int) -> Estimate:
         """One of the parameters, with its uncertainty."""
-        return Estimate(self.values[number], self.errors[number], self.freedoms[number])
+        return self.estimates[number]
 
 
 @dataclass(frozen=True)

@@ -39,8 +39,9 @@ def mean_of(values: ArrayLike) -> Estimate:
     return Estimate(float(values.mean()), error, values.size - 1)
 
 
-def average(estimates: Sequence[Estimate]) -> Estimate:
-    """Mean of independent estimates that count alike, with their own uncertainties."""
+def average(estimates: Estimate | Sequence[Estimate]) -> Estimate:
+    """Mean of independent estimates, or of those of one array along its first axis, that count alike, with
+    their own uncertainties."""
     return sum(estimates, Estimate(0.0)) / len(estimates)
 
 
@@ -94,10 +95,10 @@ def combine(values: ArrayLike, errors: ArrayLike, freedoms: ArrayLike = math.inf
     )
 
 
-def combine_estimates(estimates: Sequence[Estimate]) -> Estimate:
-    """Mean of independent estimates, weighted by 1 / error^2."""
-    values, errors, freedoms = zip(*((one.value, one.error, one.freedom) for one in estimates), strict=True)
-    return combine(values, errors, freedoms).estimate
+def combine_estimates(estimates: Estimate | Sequence[Estimate]) -> Estimate:
+    """Mean of independent estimates, or of the elements of one, weighted by 1 / error^2; NaN of none."""
+    one = estimates if isinstance(estimates, Estimate) else Estimate.stack(estimates)
+    return combine(one.value, one.error, one.freedom).estimate if one else Estimate(math.nan, math.nan)
 
 
 def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int = 1000) -> Estimate:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from gaspart.analysis.estimate import Estimate, Scalar, as_estimate
+from gaspart.analysis.estimate import Estimate, Number, as_estimate
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -43,15 +43,15 @@ class Claim:
 
     claim: str
     measured: Estimate
-    expected: Estimate | Scalar
-    required: Scalar
+    expected: Estimate | Number
+    required: Number
     source: str
     fails_if: str
     kind: str = "test"
     bounds: tuple[float, float] | None = None
     exact_deviation: float | None = None
     allowance_source: str = ""
-    alternative: Scalar | None = None
+    alternative: Number | None = None
     follows: bool = False
     no_verdict: str = ""
     why: str = ""
@@ -74,19 +74,19 @@ class Claim:
             )
 
     @classmethod
-    def at_least(cls, *, claim: str, bound: Scalar, **others: Any) -> Claim:
+    def at_least(cls, *, claim: str, bound: Number, **others: Any) -> Claim:
         """The measured number is `bound` or more. others: the remaining fields of the claim."""
         text = f"{claim} (at least {bound:g})"
         return cls(claim=text, expected=bound, bounds=(bound, math.inf), **others)
 
     @classmethod
-    def at_most(cls, *, claim: str, bound: Scalar, **others: Any) -> Claim:
+    def at_most(cls, *, claim: str, bound: Number, **others: Any) -> Claim:
         """The measured number is `bound` or less. others: the remaining fields of the claim."""
         text = f"{claim} (at most {bound:g})"
         return cls(claim=text, expected=bound, bounds=(-math.inf, bound), **others)
 
     @classmethod
-    def within(cls, *, claim: str, expected: Scalar, half_width: Scalar, **others: Any) -> Claim:
+    def within(cls, *, claim: str, expected: Number, half_width: Number, **others: Any) -> Claim:
         """The measured number lies within `half_width` of `expected`. others: the remaining fields.
 
         The required uncertainty defaults to half of half_width: the measurement's 95 % interval is then no
@@ -100,7 +100,7 @@ class Claim:
 
     @classmethod
     def chi_square(
-        cls, *, chi_square: Scalar, degrees_of_freedom: int, error_freedom: Scalar = math.inf, **others: Any
+        cls, *, chi_square: Number, degrees_of_freedom: int, error_freedom: Number = math.inf, **others: Any
     ) -> Claim:
         """Chi-square of many deviations at once; measured is chi-square per degree of freedom, expected 1.
 
