@@ -50,7 +50,7 @@ class Estimate:
     @classmethod
     def of(cls, dataset: xarray.Dataset, name: str) -> Estimate:
         """The variable `name` of a dataset, with the variable `name`_error as its uncertainty, and
-        `name`_freedom, where there is one and it is positive, as the degrees of freedom of the uncertainty."""
+        `name`_freedom, where there is one and it is positive, as its degrees of freedom."""
         import numpy as np
 
         freedom = np.asarray(dataset.get(f"{name}_freedom", math.inf), dtype=float)

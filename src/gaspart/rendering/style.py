@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gaspart.analysis.estimate import Estimate
+
 if TYPE_CHECKING:  # the colours are used without matplotlib
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
@@ -139,14 +141,21 @@ def split(axis: Axes, rows: int, columns: int) -> np.ndarray:
 
 def points(
     axis: Axes,
-    x: ArrayLike,
-    y: ArrayLike,
+    x: ArrayLike | Estimate,
+    y: ArrayLike | Estimate,
     error: ArrayLike | None = None,
     kind: int = 0,
     hollow: bool = False,
     **options: Any,
 ) -> ErrorbarContainer:
-    """Measured points with error bars: colour and marker number `kind`, or `color` and `marker`."""
+    """Measured points: colour and marker number `kind`, or `color` and `marker`.
+
+    x, y: (n,); those that are estimates have error bars. options: of `Axes.errorbar`.
+    """
+    if isinstance(y, Estimate):
+        y, error = y.value, y.error
+    if isinstance(x, Estimate):
+        x, options["xerr"] = x.value, x.error
     colour = options.pop("color", COLOURS[kind % len(COLOURS)])
     options.setdefault("marker", MARKERS[kind % len(MARKERS)])
     options.setdefault("linestyle", "none")
@@ -159,6 +168,15 @@ def points(
 def measured(axis: Axes, x: ArrayLike, y: np.ndarray, kind: int = 0, **options: Any) -> ErrorbarContainer:
     """`points` of values and their errors, y (2, ...)."""
     return points(axis, x, y[0], y[1], kind, **options)
+
+
+def labelled(axis: Axes, x: str = "", y: str = "", legend: str = "", columns: int = 1, **limits: Any) -> None:
+    """Label a panel's axes, and give it a legend, if its place is stated. limits: as of `Axes.set`."""
+    labels = {"xlabel": x, "ylabel": y}
+    axis.set(**{key: text for key, text in labels.items() if text}, **limits)
+    if legend:
+        place: dict[str, Any] = {"loc": legend, "ncols": columns}
+        axis.legend(**place)
 
 
 def band(axis: Axes, low: float, high: float, **options: Any) -> Rectangle:

@@ -63,17 +63,22 @@ class PowerLaw:
         return Estimate(self.exponent, self.exponent_error, self.exponent_freedom)
 
 
+Values = ArrayLike | Estimate
+"""Values, or an Estimate of an array, which brings their errors and degrees of freedom."""
+
+
 def fit_linear(
-    design: ArrayLike, y: ArrayLike, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf
+    design: ArrayLike, y: Values, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf
 ) -> Fit:
     """Least-squares fit of y = design @ values (design: (points, parameters)), weighted by 1 / errors^2.
 
     With errors: covariance from them, and a chi-square test of the model. Without: all points count alike,
     and the covariance is scaled by the residuals' scatter (so there is no test). freedoms: degrees of freedom
     of the errors, those of all points or of each, if they come from the scatter of a few samples; see
-    `_of_estimated_errors`. Raises ValueError if there are fewer points than parameters (or as many, without
-    errors), or the columns are dependent.
+    `_of_estimated_errors`. An Estimate as y brings both. Raises ValueError if there are fewer points than
+    parameters (or as many, without errors), or the columns are dependent.
     """
+    y, errors, freedoms = _with_errors(y, errors, freedoms)
     y = series_of("y", y, 1)
     design = np.asarray(design, dtype=float)
     if design.ndim != 2 or design.shape[0] != y.size or not np.all(np.isfinite(design)):
@@ -106,6 +111,11 @@ def fit_linear(
     return Fit(values, covariance, own, chi_square, freedom, error_freedom, p_value, residuals)
 
 
+def _with_errors(y: Values, errors: ArrayLike | None, freedoms: ArrayLike) -> tuple:
+    """Values, their errors and degrees of freedom."""
+    return (y.value, y.error, y.freedom) if isinstance(y, Estimate) else (y, errors, freedoms)
+
+
 def _of_estimated_errors(
     shares: np.ndarray, left: np.ndarray, covariance: np.ndarray, few: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float, float]:
@@ -135,7 +145,7 @@ def _of_estimated_errors(
 
 def fit_polynomial(
     x: ArrayLike,
-    y: ArrayLike,
+    y: Values,
     errors: ArrayLike | None = None,
     powers: Sequence[int] = (0, 1),
     fixed: Mapping[int, float] | None = None,
@@ -147,6 +157,7 @@ def fit_polynomial(
     see it.
     """
     x = series_of("x", x, 1)
+    y, errors, freedoms = _with_errors(y, errors, freedoms)
     y = series_of("y", y, 1)
     if x.size != y.size:
         raise ValueError(f"x, y: {x.size} and {y.size} values (must be as many)")
@@ -155,13 +166,14 @@ def fit_polynomial(
 
 
 def fit_power_law(
-    x: ArrayLike, y: ArrayLike, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf
+    x: ArrayLike, y: Values, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf
 ) -> PowerLaw:
     """Fit y = amplitude x^exponent as a line of ln y against ln x (x, y > 0; errors: of y); see `fit_linear`.
 
     The errors become errors / y of the logarithm, good while they are below some 20 %.
     """
     x = series_of("x", x, 2)
+    y, errors, freedoms = _with_errors(y, errors, freedoms)
     y = series_of("y", y, 2)
     if x.size != y.size or np.any(x <= 0.0) or np.any(y <= 0.0):
         raise ValueError("x, y: must be as many, and positive")

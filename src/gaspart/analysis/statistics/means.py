@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.statistics.fits import fit_linear
+from gaspart.analysis.statistics.fits import Values, fit_linear
 from gaspart.analysis.statistics.inputs import series_of
 
 
@@ -79,10 +79,10 @@ def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
     return Estimate(fit.values[0], fit.errors[0], fit.degrees_of_freedom)
 
 
-def combine(values: ArrayLike, errors: ArrayLike, freedoms: ArrayLike = math.inf) -> Combination:
+def combine(values: Values, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf) -> Combination:
     """Mean weighted by 1 / error^2, with the chi-square of the values about it; see `fit_linear`."""
-    values = series_of("values", values, 1)
-    fit = fit_linear(np.ones((values.size, 1)), values, errors, freedoms)
+    number = len(values) if isinstance(values, Estimate) else np.size(values)
+    fit = fit_linear(np.ones((number, 1)), values, errors, freedoms)
     mean = fit.estimate(0)
     return Combination(
         value=mean.value,
@@ -98,7 +98,7 @@ def combine(values: ArrayLike, errors: ArrayLike, freedoms: ArrayLike = math.inf
 def combine_estimates(estimates: Estimate | Sequence[Estimate]) -> Estimate:
     """Mean of independent estimates, or of the elements of one, weighted by 1 / error^2; NaN of none."""
     one = estimates if isinstance(estimates, Estimate) else Estimate.stack(estimates)
-    return combine(one.value, one.error, one.freedom).estimate if one else Estimate(math.nan, math.nan)
+    return combine(one).estimate if one else Estimate(math.nan, math.nan)
 
 
 def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int = 1000) -> Estimate:

@@ -1,0 +1,206 @@
+"""The numbers of a figure as a table: a row for each point, whose columns are numbers, words or estimates.
+
+`table` makes the data set of a measurement from the columns of each point, `Table` reads it, for claims and
+pictures, and `each` states one claim about every row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.estimate import Estimate
+from gaspart.reproduction.claims import Claim
+
+Inner = tuple[str, ...] | Mapping[str, tuple[str, ...]]
+
+
+class _Columns:
+    """The variables, coordinates and attributes of a data set, as attributes; see `Table`."""
+
+    dataset: xr.Dataset
+
+    def __getattr__(self, name: str) -> Any:
+        if name == "dataset" or name.startswith("_"):
+            raise AttributeError(name)  # while an object is copied
+        if name not in self.dataset.variables:
+            if name in self.dataset.attrs:
+                return _plain(self.dataset.attrs[name])
+            raise AttributeError(
+                f"{name}: no such column (columns: {', '.join(map(str, self.dataset.variables))})"
+            )
+        if f"{name}_error" in self.dataset.variables:
+            return Estimate.of(self.dataset, name)
+        values = self.dataset[name].values
+        return values if values.ndim else values.item()
+
+
+class Row(_Columns):
+    """One row of a table: its columns as single numbers or words, single estimates, or arrays over the inner
+    dimensions; `"{count:.0f} discs".format_map(row)` is a text about it."""
+
+    def __init__(self, dataset: xr.Dataset) -> None:
+        self.dataset = dataset
+
+    def __getitem__(self, name: str) -> Any:
+        return getattr(self, name)
+
+
+class Table(_Columns):
+    """The rows of a data set along its dimension `over`; none if it has no such dimension.
+
+    A column is an attribute: `table.Z` is an Estimate of all rows if there is a variable Z_error, else an
+    array (rows, ...); what is not over rows is as the data set has it, attributes too. `table[condition]` has
+    the rows for which the condition (rows,) holds, or those of a slice or of a list of numbers; `table[0]` is
+    a Row, and so is what it is iterated over. A table without rows is false. Raises AttributeError for what
+    is no column.
+    """
+
+    def __init__(self, dataset: xr.Dataset, over: str) -> None:
+        self.dataset, self._over = dataset.transpose(over, ..., missing_dims="ignore"), over
+
+    def __len__(self) -> int:
+        return int(self.dataset.sizes.get(self._over, 0))
+
+    def __getitem__(self, rows: Any) -> Any:
+        chosen = np.arange(len(self))[rows]
+        part = self.dataset.isel({self._over: chosen}) if len(self) else self.dataset
+        return Table(part, self._over) if chosen.ndim else Row(part)
+
+    def __iter__(self) -> Iterator[Row]:
+        return (self[n] for n in range(len(self)))
+
+    def by(self, *keys: str | np.ndarray) -> Iterator[tuple[Any, ...]]:
+        """(value of each key, ..., the rows that have these) by ascending values. keys: names of columns, or
+        arrays (rows,)."""
+        if not self:
+            return
+        columns = [np.asarray(getattr(self, key) if isinstance(key, str) else key) for key in keys]
+        for values in sorted(set(zip(*(column.tolist() for column in columns), strict=True))):
+            same = [column == value for column, value in zip(columns, values, strict=True)]
+            yield *values, self[np.all(same, axis=0)]
+
+    def sorted_by(self, *names: str) -> Table:
+        """The rows by ascending values of these columns; those of equal values keep their order."""
+        part = self.dataset.sortby(list(names)) if self else self.dataset
+        return Table(part, self._over)
+
+    def assign(self, **columns: Any) -> Table:
+        """The table with further columns, each (rows,), or one value for all rows."""
+        filled = {
+            name: (self._over, values if np.ndim(values) else [values] * len(self))
+            for name, values in _spread(columns).items()
+        }
+        return Table(self.dataset.assign(filled), self._over)
+
+
+def table(
+    over: str,
+    points: Sequence[Any],
+    row: Callable[..., Mapping[str, Any]],
+    *rest: Any,
+    inner: Inner = (),
+    units: Mapping[str, str] | None = None,
+) -> xr.Dataset:
+    """A data set with a row for each point: row(point, *rest) gives its columns by name.
+
+    An Estimate under `name` gives the variables `name`, `name`_error and `name`_freedom. inner, units: see
+    `from_rows`.
+    """
+    return from_rows(over, [_spread(row(point, *rest)) for point in points], inner, units)
+
+
+def each(rows: Table, claim: str, form: Callable[..., Claim] = Claim, **stated: Any) -> list[Claim]:
+    """A claim about each row.
+
+    form: what makes it, as `Claim.at_most`; stated: its arguments. Texts may name columns, as "Z at
+    {packing_fraction:.2g}". Lists, arrays and estimates of arrays have one element for each row; ValueError
+    if they do not.
+    """
+    made = []
+    for n, row in enumerate(rows):
+        fields = {name: _of_row(name, value, n, len(rows), row) for name, value in stated.items()}
+        made.append(form(claim=claim.format_map(row), **fields))
+    return made
+
+
+def _of_row(name: str, value: Any, n: int, count: int, row: Row) -> Any:
+    if isinstance(value, str):
+        return value.format_map(row)
+    many = value.value if isinstance(value, Estimate) else value
+    if not isinstance(many, (list, np.ndarray)):
+        return value
+    if len(many) != count:
+        raise ValueError(f"{name}: {len(many)} values for {count} rows")
+    return _plain(value[n])
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _spread(row: Mapping[str, Any]) -> dict[str, Any]:
+    """The variables of a row: of an estimate its value, error and degrees of freedom."""
+    spread: dict[str, Any] = {}
+    for name, value in row.items():
+        spread |= entries({name: value}) if isinstance(value, Estimate) else {name: value}
+    return spread
+
+
+def from_rows(
+    over: str,
+    rows: Sequence[Mapping[str, Any]],
+    inner: Inner = (),
+    units: Mapping[str, str] | None = None,
+) -> xr.Dataset:
+    """One variable over the dimension `over` for each key of the rows.
+
+    inner: the further dimensions of arrays, the same for all of them, or by key. Arrays that are shorter than
+    the longest are filled up with NaN, and so is what a row does not have. units: by key, "1" for others; by
+    default none are stated. A key with the suffix _error has the dimensions and the unit of the one without,
+    one with _freedom the dimensions.
+    """
+    columns = {}
+    for name in dict.fromkeys(name for row in rows for name in row):
+        key = name.removesuffix("_error")
+        values = _stacked([np.asarray(row.get(name, np.nan)) for row in rows])
+        dims = (
+            inner[: values.ndim - 1]
+            if isinstance(inner, tuple)
+            else inner.get(key.removesuffix("_freedom"), ())
+        )
+        attributes = {} if units is None or values.dtype.kind in "OSU" else {"units": units.get(key, "1")}
+        columns[name] = (over, *dims), values, attributes
+    return xr.Dataset(columns)
+
+
+def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | None = None) -> dict[str, Any]:
+    """The entries of a row for numbers with uncertainties: `name`, `name`_error, and `name`_freedom.
+
+    numbers: by name, each an Estimate, or a value and its error, numbers or arrays. freedom: the degrees of
+    freedom of the latter; without it they have no such entry.
+    """
+    row: dict[str, Any] = {}
+    for name, number in numbers.items():
+        if isinstance(number, Estimate):
+            row |= {name: number.value, f"{name}_error": number.error, f"{name}_freedom": number.freedom}
+        else:
+            row[name], row[f"{name}_error"] = number
+            if freedom is not None:
+                row[f"{name}_freedom"] = freedom
+    return row
+
+
+def _stacked(arrays: list[np.ndarray]) -> np.ndarray:
+    """Arrays of one number of dimensions along a new first one; NaN alone stands for an empty array."""
+    shape = max((array.shape for array in arrays), key=len)
+    if all(array.shape == shape for array in arrays):
+        return np.stack(arrays)
+    arrays = [array if array.ndim == len(shape) else np.empty((0,) * len(shape)) for array in arrays]
+    stacked = np.full((len(arrays), *np.max([array.shape for array in arrays], axis=0)), np.nan)
+    for row, array in zip(stacked, arrays, strict=True):
+        row[tuple(map(slice, array.shape))] = array
+    return stacked
