@@ -133,12 +133,13 @@ def _differences(before: Any, after: Any) -> tuple[list[str], int]:
     return lines, bits
 
 
-def _flat(where: str, value: Any) -> Iterator[tuple[str, Any]]:
+def _flat(where: str, value: Any) -> Iterator[tuple[str, np.ndarray]]:
+    nested = (dict, list, tuple, np.ndarray)
     if isinstance(value, dict):
         for key, part in value.items():
             yield from _flat(f"{where}.{key}", part)
-    elif isinstance(value, (list, tuple)) and any(isinstance(part, (dict, list, tuple)) for part in value):
-        yield f"{where}.length", len(value)
+    elif isinstance(value, (list, tuple)) and any(isinstance(part, nested) for part in value):
+        yield f"{where}.length", np.asarray(len(value))
         for number, part in enumerate(value):
             yield from _flat(f"{where}[{number}]", part)
     else:

@@ -32,9 +32,11 @@ class _Columns:
             raise AttributeError(
                 f"{name}: no such column (columns: {', '.join(map(str, self.dataset.variables))})"
             )
-        if f"{name}_error" in self.dataset.variables:
+        column = self.dataset[name]
+        error = self.dataset.variables.get(f"{name}_error")
+        if error is not None and error.dims == column.dims:
             return Estimate.of(self.dataset, name)
-        values = self.dataset[name].values
+        values = column.values
         return values if values.ndim else values.item()
 
 
@@ -52,7 +54,7 @@ class Row(_Columns):
 class Table(_Columns):
     """The rows of a data set along its dimension `over`; none if it has no such dimension.
 
-    A column is an attribute: `table.Z` is an Estimate of all rows if there is a variable Z_error, else an
+    A column is an attribute: `table.Z` is an Estimate of all rows if there is a Z_error like it, else an
     array (rows, ...); what is not over rows is as the data set has it, attributes too. `table[condition]` has
     the rows for which the condition (rows,) holds, or those of a slice or of a list of numbers; `table[0]` is
     a Row, and so is what it is iterated over. A table without rows is false. Raises AttributeError for what

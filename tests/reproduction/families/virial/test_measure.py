@@ -3,13 +3,14 @@ import pytest
 from reproduction.families.virial.data import ETA, FITS, equation_of_state
 
 from gaspart import theory
+from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.virial.measure import fit_coefficients, fit_table
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_exact_data_give_the_exact_coefficients(dimension):
     z = theory.virial_with_tail(ETA, dimension)
-    fit, held_error = fit_coefficients(ETA, z, 1e-4 * (z - 1.0), dimension, free=5, held=True)
+    fit, held_error = fit_coefficients(ETA, Estimate(z, 1e-4 * (z - 1.0)), dimension, free=5, held=True)
     exact, _ = theory.virial_coefficients(dimension, 5)
     assert fit.values == pytest.approx(exact[1:], rel=1e-6)
     assert np.all(held_error >= 0.0) and np.all(held_error < fit.errors * 10)
@@ -28,7 +29,7 @@ def test_fitted_coefficients_scatter_as_their_errors_say(dimension):
 
 def test_a_cut_series_is_biased():
     z = theory.compressibility_factor(ETA, 2)
-    fit, held_error = fit_coefficients(ETA, z, 1e-4 * (z - 1.0), 2, free=4, held=False)
+    fit, held_error = fit_coefficients(ETA, Estimate(z, 1e-4 * (z - 1.0)), 2, free=4, held=False)
     assert fit.values[2] > 1.3 * theory.virial_coefficients(2, 4)[0][3]  # B4 takes up what was cut
     assert not held_error.any()
 

@@ -8,12 +8,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart import theory
+from gaspart.analysis.estimate import Estimate
 from gaspart.rendering import style
+from gaspart.reproduction.table import Table
 
 SERIES = (2, 3, 4, 6, 10)
 """Partial sums are drawn up to these coefficients."""
 REQUIRED = {2: 1e-3, 3: 1e-2, 4: 1e-1}
 """Scale of the lowest panel: the required relative accuracy of each coefficient."""
+Lines = dict[str, tuple[np.ndarray, dict]]
+"""By name: Z on the grid of packing fractions, and how it is drawn."""
 
 
 def virial_discs(dataset: xr.Dataset) -> Figure:
@@ -27,31 +31,30 @@ def virial_spheres(dataset: xr.Dataset) -> Figure:
     return _draw(dataset, "Kolafa–Labík–Malijevský", curves, ceiling=11.0, percent=0.5)
 
 
-def _draw(dataset: xr.Dataset, name: str, curves: dict, ceiling: float, percent: float) -> Figure:
+def _draw(dataset: xr.Dataset, name: str, equations: dict, ceiling: float, percent: float) -> Figure:
     """Three panels. name: the reference's; ceiling: top of Z's axis; percent: residuals' half height."""
-    dimension = int(dataset.attrs["dimension"])
-    eta = dataset["packing_fraction"].values
-    grid = np.linspace(1e-3, 1.04 * eta.max(), 300)
+    gases = Table(dataset, "packing_fraction")
+    grid = np.linspace(1e-3, 1.04 * gases.packing_fraction.max(), 300)
     figure, (upper, middle, lower) = style.new((2.6, 1.7), (2.2,))
-    lines = _equations(grid, dimension, curves)
-    reference = theory.compressibility_factor(grid, dimension)
-
+    reference = theory.compressibility_factor(grid, gases.dimension)
+    lines = _equations(grid, gases.dimension, equations)
+    sums = {order: theory.partial_sum(grid, order, gases.dimension) for order in SERIES}
     upper.plot(grid, reference, color=style.REFERENCE, label=name, zorder=2)
-    _state(upper, dataset, grid, lines, dimension, ceiling)
-    _residuals(middle, dataset, grid, reference, lines, dimension, percent)
+    _state(upper, gases, grid, lines, sums, ceiling)
+    _residuals(middle, gases, grid, reference, lines, sums, percent)
     upper.set_xlim(0.0, grid[-1])
-    _coefficients(lower, dataset)
+    _coefficients(lower, Table(dataset, "fit"))
     style.letters(upper, middle, lower)
     return figure
 
 
-def _equations(grid: np.ndarray, dimension: int, curves: dict) -> dict:
-    """Curves by name: Z on the grid (NaN beyond an equation's divergence), and how to draw them."""
+def _equations(grid: np.ndarray, dimension: int, equations: dict) -> Lines:
+    """Z is NaN beyond an equation's divergence."""
     limit = 0.999 / 2.0 ** (dimension - 1)
     waals = np.where(grid < limit, theory.van_der_waals(np.minimum(grid, limit), dimension), np.nan)
     lines = {"van der Waals": (waals, {"color": style.COLOURS[3], "linestyle": (0, (5, 1.5, 1, 1.5))})}
-    for k, (name, curve) in enumerate(curves.items()):
-        lines[name] = (curve(grid), {"color": style.COLOURS[1 + k], "linestyle": ("--", ":")[k]})
+    for k, (name, equation) in enumerate(equations.items()):
+        lines[name] = (equation(grid), {"color": style.COLOURS[1 + k], "linestyle": ("--", ":")[k]})
     return lines
 
 
@@ -60,88 +63,67 @@ def _shade(order: int) -> str:
     return str(0.70 - 0.50 * SERIES.index(order) / (len(SERIES) - 1))
 
 
-def _state(
-    axis: Axes,
-    dataset: xr.Dataset,
-    grid: np.ndarray,
-    lines: dict[str, tuple[np.ndarray, dict]],
-    dimension: int,
-    ceiling: float,
-) -> None:
+def _state(axis: Axes, gases: Table, grid: np.ndarray, lines: Lines, sums: dict, ceiling: float) -> None:
     for name, (curve, look) in lines.items():
         axis.plot(grid, curve, label=name, **look)
     labelled = 0.0
-    for order in SERIES:
-        curve = theory.partial_sum(grid, order, dimension)
+    for order, curve in sums.items():
         axis.plot(grid, curve, color=_shade(order), linewidth=0.8, zorder=1)
-        if curve[-1] - labelled < 0.06 * ceiling:
-            continue  # the labels of neighbours would overlap
-        labelled = curve[-1]
-        axis.annotate(
-            f"$B_{{{order}}}$", (grid[-1], curve[-1]), xytext=(2, 0), textcoords="offset points",
-            va="center", color=_shade(order), annotation_clip=True,
-        )  # fmt: skip
-    style.points(axis, dataset["packing_fraction"], dataset["Z"], color=style.DATA, label="measured")
-    axis.set_ylim(0.8, ceiling)
-    axis.set_ylabel("compressibility factor $Z$")
-    axis.legend(loc="upper left")
+        if curve[-1] - labelled >= 0.06 * ceiling:  # or the labels of neighbours would overlap
+            labelled = curve[-1]
+            _name(axis, order, (grid[-1], curve[-1]), (2, 0), va="center", annotation_clip=True)
+    style.points(axis, gases.packing_fraction, gases.Z.value, color=style.DATA, label="measured")
+    style.labelled(axis, y="compressibility factor $Z$", legend="upper left", ylim=(0.8, ceiling))
+
+
+def _name(axis: Axes, order: int, place: tuple, apart: tuple[int, int], **options: object) -> None:
+    look: dict = {"textcoords": "offset points", "color": _shade(order), **options}
+    axis.annotate(f"$B_{{{order}}}$", place, xytext=apart, **look)
 
 
 def _residuals(
     axis: Axes,
-    dataset: xr.Dataset,
+    gases: Table,
     grid: np.ndarray,
     reference: np.ndarray,
-    lines: dict[str, tuple[np.ndarray, dict]],
-    dimension: int,
+    lines: Lines,
+    sums: dict,
     percent: float,
 ) -> None:
     """100 (Z / Z_reference - 1), with one standard error."""
     style.level(axis, 0.0)
-    for order in SERIES:
-        excess = 100.0 * (theory.partial_sum(grid, order, dimension) / reference - 1.0)
+    for order, curve in sums.items():
+        excess = 100.0 * (curve / reference - 1.0)
         axis.plot(grid, excess, color=_shade(order), linewidth=0.8, zorder=1)
         below = np.flatnonzero(excess < -percent)
         if below.size:
-            axis.annotate(
-                f"$B_{{{order}}}$", (grid[below[0]], -percent), xytext=(2, 2), textcoords="offset points",
-                va="bottom", ha="left", color=_shade(order),
-            )  # fmt: skip
+            _name(axis, order, (grid[below[0]], -percent), (2, 2), va="bottom", ha="left")
     for curve, look in lines.values():
         axis.plot(grid, 100.0 * (curve / reference - 1.0), **look)
-    measured = dataset["Z"] / dataset["reference"]
-    error = 100.0 * np.hypot(dataset["Z_error"], dataset["reference_error"]) / dataset["reference"]
-    style.points(axis, dataset["packing_fraction"], 100.0 * (measured - 1.0), error, color=style.DATA)
-    axis.set_ylim(-percent, percent)
-    axis.set_xlabel("packing fraction $\\eta$")
-    axis.set_ylabel("$Z/Z_\\mathrm{ref}-1$  (%)")
+    ratio = (gases.Z + Estimate(0.0, gases.reference.error)) / gases.reference.value
+    style.points(axis, gases.packing_fraction, 100.0 * (ratio - 1.0), color=style.DATA)
+    labels = "packing fraction $\\eta$", "$Z/Z_\\mathrm{ref}-1$  (%)"
+    style.labelled(axis, *labels, ylim=(-percent, percent))
 
 
-def _coefficients(axis: Axes, dataset: xr.Dataset) -> None:
+def _coefficients(axis: Axes, fits: Table) -> None:
     """Each fitted coefficient's deviation from the exact one, in units of the accuracy required, by fit."""
     style.band(axis, -1.0, 1.0)
     style.level(axis, 0.0)
-    fits = np.arange(dataset.sizes["fit"])
+    places = np.arange(len(fits))
     for k, (order, required) in enumerate(REQUIRED.items()):
-        at = dataset.sel(order=order)
-        scale = required * float(at["exact"])
-        error = np.hypot(at["coefficient_error"], at["held_error"]) / scale
-        deviation = (at["coefficient"] - at["exact"]) / scale
+        of_order = Table(fits.dataset.sel(order=order), "fit")
+        found, exact = of_order.coefficient + Estimate(0.0, of_order.held_error), of_order.exact.value
         label = f"$B_{order}$ / {100 * required:g} %"
-        style.points(axis, fits + 0.22 * (k - 1), deviation, error, kind=k, label=label)
+        scaled = (found - exact) / (required * exact)
+        style.points(axis, places + 0.22 * (k - 1), scaled, kind=k, label=label)
     # Fits that cut the series deviate widely: linear within the accuracy required, logarithmic beyond.
     axis.set_yscale("symlog", linthresh=1.0, linscale=1.0)
-    axis.set_ylim(-30.0, 30.0)
+    axis.set(ylim=(-30.0, 30.0), xlim=(-0.6, max(places.size, 1) - 0.4))
     axis.set_yticks([-10, -1, 0, 1, 10], ["$-10$", "$-1$", "0", "1", "10"])
     axis.minorticks_off()
-    axis.set_xlim(-0.6, max(fits.size, 1) - 0.4)
-    axis.set_xticks(fits, [_name(dataset.isel(fit=k)) for k in fits])
+    names = [f"$B_2$–$B_{fit.free}$\n$\\leq${fit.up_to:g}\n{'held' if fit.held else 'zero'}" for fit in fits]
+    axis.set_xticks(places, names)
     axis.tick_params(axis="x", length=0)
-    axis.set_ylabel("deviation / required")
-    axis.set_xlabel("free coefficients, largest $\\eta$, higher coefficients")
+    style.labelled(axis, "free coefficients, largest $\\eta$, higher coefficients", "deviation / required")
     axis.legend(ncols=3, loc="upper center", columnspacing=1.0, handletextpad=0.1)
-
-
-def _name(fit: xr.Dataset) -> str:
-    higher = "held" if int(fit["held"]) else "zero"
-    return f"$B_2$–$B_{int(fit['free'])}$\n$\\leq${float(fit['up_to']):g}\n{higher}"
