@@ -5,7 +5,8 @@ python benchmarks/compare_families.py record <folder> <tests>...
 python benchmarks/compare_families.py compare <before> <after> <data>... [--measure <project>]
     before, after: folders of the two versions; data: folders of data sets, which were recorded so, or are
     results/measurements of a reproduction; figures can be chosen by --figures. With --measure, figures of the
-    config are measured again, from the points kept in <project>/results/points, where all of them are there.
+    config (of each version, config/config.yaml by default, or config/smoke.yaml) are measured again, from the
+    points kept in <project>/results/points, where all of them are there.
 
 It prints every difference beyond 1e-9 of a number, and how many arrays differ in their last bits; exit code 1
 if there is a difference.
@@ -50,6 +51,7 @@ def main() -> int:
         comparing.add_argument("data", nargs="*", type=Path)
         comparing.add_argument("--figures", nargs="+", default=[])
         comparing.add_argument("--measure", type=Path)
+        comparing.add_argument("--config", default="config/config.yaml")
     options = parser.parse_args()
     return {"record": _record, "compare": _compare, "state": _state}[options.command](options)
 
@@ -92,6 +94,7 @@ def _compare(options: argparse.Namespace) -> int:
                 command += ["--measure", str(options.measure.resolve())]
             if options.figures:
                 command += ["--figures", *options.figures]
+            command += ["--config", options.config]
             paths = os.pathsep.join([str(tree.resolve() / "src")])
             subprocess.run(
                 command, cwd=tree, check=True, env={**os.environ, "PYTHONPATH": paths, "OMP_NUM_THREADS": "1"}
@@ -171,12 +174,13 @@ def _state(options: argparse.Namespace) -> int:
 
     assert Path(gaspart.__file__).is_relative_to(Path.cwd()), gaspart.__file__
     stated: dict[str, Any] = {}
-    for name, family, function, arguments in _data(options.data, options.figures):
+    config = _config(options.config)
+    for name, family, function, arguments in _data(options.data, options.figures, config):
         for part, describe in zip(PARTS, (_claims, _drawn), strict=True):
             given = arguments if part == "claims" else arguments[:1]
             stated[f"{name} {part}"] = _result(describe, family, part, function, given)
     if options.measure:
-        stated |= _measured(options.measure, options.figures)
+        stated |= _measured(options.measure, options.figures, config)
     options.out.write_bytes(pickle.dumps(stated))
     return 0
 
@@ -194,14 +198,16 @@ def _result(describe: Any, family: str, part: str, function: str, arguments: lis
         return failure
 
 
-def _config() -> dict:
+def _config(path: str) -> dict:
+    from gaspart.reproduction.config import read_numbers
     from gaspart.reproduction.points.overlay import laid_over
 
-    config: dict = laid_over(Path("config/config.yaml"))[0]
+    config, files = laid_over(Path(path))
+    read_numbers(config, files)
     return config
 
 
-def _data(folders: list[Path], figures: list[str]) -> Iterator[tuple[str, str, str, list]]:
+def _data(folders: list[Path], figures: list[str], config: dict) -> Iterator[tuple[str, str, str, list]]:
     """(name, family, function, arguments) of each data set."""
     import xarray as xr
 
@@ -215,17 +221,16 @@ def _data(folders: list[Path], figures: list[str]) -> Iterator[tuple[str, str, s
         for path in sorted(folder.glob("*.nc")):
             if figures and path.stem not in figures:
                 continue
-            block = _config()["figures"][path.stem]
+            block = config["figures"][path.stem]
             family, function = registry.functions(path.stem, block)
             stated = [block.get("claims", [])] if "kind" in block else []
             yield f"{folder.name}/{path.stem}", family, function, [xr.load_dataset(path), *stated]
 
 
-def _measured(project: Path, figures: list[str]) -> dict[str, Any]:
+def _measured(project: Path, figures: list[str], config: dict) -> dict[str, Any]:
     from gaspart.reproduction.families import registry
     from gaspart.reproduction.points.points import all_points, figure_points
 
-    config = _config()
     planned, stated, tree = all_points(config), {}, Path.cwd()
     for figure, block in config["figures"].items():
         family, function = registry.functions(figure, block)

@@ -109,8 +109,8 @@ def table(
 ) -> xr.Dataset:
     """A data set with a row for each point: row(point, *rest) gives its columns by name.
 
-    An Estimate under `name` gives the variables `name`, `name`_error and `name`_freedom. inner, units: see
-    `from_rows`.
+    An Estimate under `name` gives the variables `name`, `name`_error and `name`_freedom, a pair of a value
+    and its error the first two. inner, units: see `from_rows`.
     """
     return from_rows(over, [_spread(row(point, *rest)) for point in points], inner, units)
 
@@ -145,10 +145,10 @@ def _plain(value: Any) -> Any:
 
 
 def _spread(row: Mapping[str, Any]) -> dict[str, Any]:
-    """The variables of a row: of an estimate its value, error and degrees of freedom."""
+    """The variables of a row; see `table`."""
     spread: dict[str, Any] = {}
     for name, value in row.items():
-        spread |= entries({name: value}) if isinstance(value, Estimate) else {name: value}
+        spread |= entries({name: value}) if isinstance(value, (Estimate, tuple)) else {name: value}
     return spread
 
 

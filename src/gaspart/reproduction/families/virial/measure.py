@@ -51,8 +51,10 @@ def _gas(point: Point) -> dict:
         "Z": z,
         "finite_size": shift,
         "poisson_error": (z.value - 1.0) / math.sqrt(collisions),
-        "reference": float(theory.compressibility_factor(*state)),
-        "reference_error": float(theory.compressibility_uncertainty(*state)),
+        "reference": (
+            float(theory.compressibility_factor(*state)),
+            float(theory.compressibility_uncertainty(*state)),
+        ),
         "collision_rate": run.collision_rate / float(enskog),
         "replica_chi_square": run.chi_square,
         "replica_degrees_of_freedom": run.degrees_of_freedom,

@@ -8,83 +8,70 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart import theory
+from gaspart.analysis.estimate import Estimate
 from gaspart.rendering import style
 from gaspart.reproduction.families.shared.claims import PARTICLES
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.table import Table
+
+Z = r"$P/(n k_\mathrm{B}T)$"
 
 
-def wall_pressure(ds: xr.Dataset) -> Figure:
+def wall_pressure(dataset: xr.Dataset) -> Figure:
     """Three panels: P/(n k T) against T; the same against packing fraction, raw and corrected; residuals."""
-    figure, (upper, middle, lower) = style.new((2.0,), (2.4, 1.7))
-    _temperatures(upper, ds)
-    _densities(middle, ds)
-    _residuals(lower, ds)
-    style.letters(upper, middle, lower)
+    figure, panels = style.new((2.0,), (2.4, 1.7))
+    for draw, panel in zip((_temperatures, _densities, _residuals), panels, strict=True):
+        draw(panel, Table(dataset, "point"))
+    style.letters(*panels)
     return figure
 
 
-def _temperatures(axis: Axes, ds: xr.Dataset) -> None:
+def _temperatures(axis: Axes, table: Table) -> None:
     """P / (n k T) against T where one density has several temperatures; lines: theory, ideal gas."""
-    density = ds["density"].values.round(9)
-    series = [n for n in sorted(set(density)) if np.ptp(ds["temperature"].values[density == n]) > 1.0]
-    for kind, n in enumerate(series):
-        part = ds.isel(point=density == n).sortby("temperature")
-        line = np.array([0.0, 1.1 * float(part["temperature"].max())])
-        z = np.full(2, float(part["expected"][0]) / n)
-        axis.plot(line, z, color=style.COLOURS[kind], zorder=1)
-        style.measured(
-            axis,
-            part["temperature"],
-            estimates(part, "pressure") / n,
-            kind=kind,
-            label=rf"$\eta={float(part['packing_fraction'][0]):.2g}$",
-        )
+    series = [(n, part) for n, part in table.by(table.density.round(9)) if np.ptp(part.temperature) > 1.0]
+    for kind, (n, part) in enumerate(series):
+        part = part.sorted_by("temperature")
+        line = np.array([0.0, 1.1 * part.temperature.max()])
+        axis.plot(line, np.full(2, part.expected.value[0] / n), color=style.COLOURS[kind], zorder=1)
+        label = rf"$\eta={part.packing_fraction[0]:.2g}$"
+        style.points(axis, part.temperature, part.pressure / n, kind=kind, label=label)
     if series:
         axis.plot(line, np.ones(2), color=style.GREY, linestyle=":", label="ideal gas")
-        axis.set_xlim(0.0, float(line[1]))
-        axis.legend(loc="lower right")
+        axis.set_xlim(0.0, line[1])
     axis.set_ylim(bottom=0.8)
-    axis.set_xlabel(r"temperature $T$")
-    axis.set_ylabel(r"$P/(n k_\mathrm{B}T)$")
+    style.labelled(axis, r"temperature $T$", Z, "lower right" if series else "")
 
 
-def _densities(axis: Axes, ds: xr.Dataset) -> None:
+def _densities(axis: Axes, table: Table) -> None:
     """P / (n k T): the force over the whole wall (hollow), and corrected to the infinite fluid (filled)."""
-    for kind, dimension in enumerate(sorted(set(ds["dimension"].values))):
-        part = ds.isel(point=(ds["dimension"] == dimension).values)
-        eta = part["packing_fraction"].values
+    for kind, (dimension, part) in enumerate(table.by("dimension")):
+        eta, name = part.packing_fraction, PARTICLES[dimension]
         curve = np.linspace(1e-3, 1.05 * eta.max(), 200)
-        name = PARTICLES[int(dimension)]
-        z = theory.compressibility_factor(curve, int(dimension))
+        z = theory.compressibility_factor(curve, dimension)
         axis.plot(curve, z, color=style.COLOURS[kind], zorder=1, label=f"{name}, bulk")
-        raw = part["whole_pressure"] / part["density"]
+        raw = part.whole_pressure / part.density
         style.points(axis, eta, raw, kind=kind, hollow=True, label=f"{name}, $F/$wall")
-        corrected = part["pressure"] / part["expected"] * part["bulk_pressure"] / part["density"]
-        error = part["pressure_error"] / part["expected"] * part["bulk_pressure"] / part["density"]
-        style.points(axis, eta, corrected, error, kind=kind, label=f"{name}, corrected")
+        corrected = part.pressure / part.expected.value * part.bulk_pressure / part.density
+        style.points(axis, eta, corrected, kind=kind, label=f"{name}, corrected")
     style.level(axis, 1.0)
-    axis.set_ylabel(r"$P/(n k_\mathrm{B}T)$")
-    axis.legend(loc="lower right")
+    style.labelled(axis, y=Z, legend="lower right")
 
 
-def _residuals(axis: Axes, ds: xr.Dataset) -> None:
+def _residuals(axis: Axes, table: Table) -> None:
     """100 (P / theory - 1) of every container, with both uncertainties."""
     style.level(axis, 0.0)
-    error = 100.0 * np.hypot(ds["pressure_error"], ds["expected_error"]) / ds["expected"]
-    excess = 100.0 * (ds["pressure"] / ds["expected"] - 1.0)
-    for kind, dimension in enumerate(sorted(set(ds["dimension"].values))):
-        for slit in (True, False):
-            chosen = ((ds["dimension"] == dimension) & ((ds["axes"] < dimension) == slit)).values
-            if chosen.any():
-                # Shifted slightly: many containers have the same packing fraction.
-                eta = ds["packing_fraction"].values[chosen] + 0.003 * (0 if slit else 1)
-                label = f"{PARTICLES[int(dimension)]}, {'slit' if slit else 'closed'}"
-                style.points(
-                    axis, eta, excess[chosen], error[chosen], kind=kind, hollow=not slit, label=label
-                )
-    widest = 1.2 * float(np.max(np.abs(excess) + error))
-    axis.set_ylim(-widest, 1.6 * widest)
-    axis.set_xlim(0.0, 0.43)
-    axis.set_xlabel(r"packing fraction $\eta$ of the container")
-    axis.set_ylabel(r"$P/P_\mathrm{theory}-1$  (%)")
-    axis.legend(loc="upper left", ncols=2)
+    for kind, (dimension, part) in enumerate(table.by("dimension")):
+        for closed, containers in part.by(part.axes == dimension):
+            # Shifted slightly: many containers have the same packing fraction.
+            eta = containers.packing_fraction + 0.003 * closed
+            label = f"{PARTICLES[dimension]}, {'closed' if closed else 'slit'}"
+            style.points(axis, eta, _excess(containers), kind=kind, hollow=closed, label=label)
+    excess = _excess(table)
+    widest = 1.2 * float(np.max(np.abs(excess.value) + excess.error))
+    axis.set(ylim=(-widest, 1.6 * widest), xlim=(0.0, 0.43))
+    labels = r"packing fraction $\eta$ of the container", r"$P/P_\mathrm{theory}-1$  (%)"
+    style.labelled(axis, *labels, legend="upper left", columns=2)
+
+
+def _excess(table: Table) -> Estimate:
+    both = table.pressure + Estimate(0.0, table.expected.error)
+    return 100.0 * (both / table.expected.value - 1.0)

@@ -14,9 +14,12 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.series import face_pressures
 from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
+
+UNITS = {"length": "diameters", "density": "1 / sigma^d", "temperature": "scene's energy"}
+UNITS |= dict.fromkeys(("pressure", "whole_pressure", "bulk_pressure", "expected"), "k_B T / sigma^d")
 
 
 def wall_pressure(points: list[Point], settings: dict) -> xr.Dataset:
@@ -25,14 +28,11 @@ def wall_pressure(points: list[Point], settings: dict) -> xr.Dataset:
     Returns over `point`: pressure with its error, the mean force on a wall over the area that centres can
     touch; whole_pressure, the same force over the full area of the wall; bulk_pressure, of an infinite fluid
     with as many particles per volume of the container; expected with its error, theory for this container;
-    density, particles per volume of the container, and packing_fraction; temperature, with force, the
-    pressure in the scene's own units, and its error; hits; count, dimension, axes with walls, length along
+    density, particles per volume of the container, and packing_fraction; temperature of
+    the scene; hits; count, dimension, axes with walls, length along
     them. Raises SceneError for containers without walls, or with walled sides of several lengths.
     """
-    units = {"length": "diameters", "density": "1 / sigma^d", "temperature": "scene's energy"}
-    pressures = ("pressure", "whole_pressure", "bulk_pressure", "expected")
-    units |= dict.fromkeys(pressures, "k_B T / sigma^d")
-    return from_rows("point", [_row(point) for point in points], units=units)
+    return table("point", points, _row, units=UNITS)
 
 
 def _row(point: Point) -> dict:
@@ -52,7 +52,8 @@ def _row(point: Point) -> dict:
     density = count / float(lengths.prod())
     eta = float(theory.packing_fraction(density, dimension))
     return {
-        **entries({"pressure": pressure, "expected": expected}),
+        "pressure": pressure,
+        "expected": expected,
         "whole_pressure": pressure.value * share,
         "bulk_pressure": density * float(theory.compressibility_factor(eta, dimension)),
         "density": density,
