@@ -22,6 +22,7 @@ import sys
 import tempfile
 import traceback
 from collections.abc import Iterator
+from copy import deepcopy
 from dataclasses import fields, is_dataclass
 from functools import wraps
 from importlib import import_module
@@ -77,7 +78,7 @@ def _recording(function: Any, folder: Path, family: str, name: str) -> Any:
     @wraps(function)
     def recorded(*arguments: Any) -> Any:
         number = len(list(folder.glob(f"{name}-*.pickle")))
-        stored = (family, name, [one.copy(deep=True) if hasattr(one, "copy") else one for one in arguments])
+        stored = (family, name, list(deepcopy(arguments)))
         (folder / f"{name}-{number:03}.pickle").write_bytes(pickle.dumps(stored))
         return function(*arguments)
 
@@ -109,6 +110,8 @@ def _compare(options: argparse.Namespace) -> int:
             print(f"{name}: {line}")
         if len(found) > 12:
             print(f"{name}: and {len(found) - 12} more")
+    for name in (name for name, one in before.items() if isinstance(one, Exception)):
+        print(f"{name}: not compared, fails before: {before[name]}")
     print(f"{len(before)} results, {faults} differences, {bits} arrays differ within {TOLERANCE:g}")
     return int(faults > 0)
 
@@ -190,8 +193,7 @@ def _result(describe: Any, family: str, part: str, function: str, arguments: lis
 
     try:
         made = getattr(import_module(registry.module(family, part)), function)
-        copies = [one.copy(deep=True) if hasattr(one, "copy") else one for one in arguments]
-        return describe(made, *copies)
+        return describe(made, *deepcopy(arguments))
     except Exception as error:
         failure = RuntimeError(f"{type(error).__name__}: {error}")
         failure.where = traceback.format_exc()  # type: ignore[attr-defined]

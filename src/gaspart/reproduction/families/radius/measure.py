@@ -19,6 +19,7 @@ Predicted counts (periodic container of side L, n boxes of width w = L/n a side,
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import xarray as xr
 
@@ -26,9 +27,9 @@ from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.reproduction.families.shared.pressure import Series, combine, series_of, totals
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 from gaspart.scene.scene import Scene
 
 
@@ -49,18 +50,18 @@ def radius_grid(points: list[Point], settings: dict) -> xr.Dataset:
         for name in experiments
     }
     series = ["packing fraction" if fixed[point.experiment] else "count" for point in points]
-    return from_rows("point", [_row(point) for point in points]).assign(
+    return table("point", points, _row).assign(
         series=("point", series),
         engine=("point", [point.settings.get("engine", "event") for point in points]),
     )
 
 
-def _row(point: Point) -> dict[str, float]:
+def _row(point: Point) -> dict[str, Any]:
     scene, engine = point.scene, point.engine
     per_side = getattr(engine, "boxes_per_side", None)
     assert isinstance(per_side, tuple), "every point of this figure gives its boxes"
     eta, dimension = scene.packing_fraction, scene.dimension
-    row = {
+    row: dict[str, Any] = {
         "radius": scene.largest_radius,
         "count": scene.count,
         "packing_fraction": eta,
@@ -79,10 +80,13 @@ def _row(point: Point) -> dict[str, float]:
     shift = float(theory.finite_size_correction(eta, dimension, scene.count, ensemble="canonical"))
     width = scene.container.lengths[0] / per_side[0] / (2.0 * scene.largest_radius)
     return row | {
-        **entries({"Z": z - shift, "crossings": _crossings(replicas, scene, per_side[0])}),
+        "Z": z - shift,
+        "crossings": _crossings(replicas, scene, per_side[0]),
         "finite_size": shift,
-        "reference": float(theory.compressibility_factor(eta, dimension)),
-        "reference_error": float(theory.compressibility_uncertainty(eta, dimension)),
+        "reference": (
+            float(theory.compressibility_factor(eta, dimension)),
+            float(theory.compressibility_uncertainty(eta, dimension)),
+        ),
         "collisions": counted["collisions"],
         "pair_tests": counted["pair_tests"] / counted["collisions"],
         "box_visits": counted["box_visits"] / counted["collisions"],

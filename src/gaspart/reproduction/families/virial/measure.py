@@ -16,6 +16,8 @@ from gaspart.reproduction.table import Table, table
 from gaspart.scene.gas import plain_gas
 from gaspart.theory.virial import linear_tail_uncertainty
 
+ONE = {"units": "1"}
+
 
 def equation_of_state(points: list[Point], settings: dict) -> xr.Dataset:
     """Z against packing fraction of one dimension, with the reference, and fits of B2, B3, B4.
@@ -77,9 +79,8 @@ def fit_table(dataset: xr.Dataset, choices: list[dict]) -> xr.Dataset:
     highest = max((choice["free"] for choice, _ in pairs), default=4)
     exact, exact_error = theory.virial_coefficients(dimension, highest)
     fits = table("fit", pairs, _fit, dimension, inner=("order",), units={}) if pairs else _no_fits(highest)
-    return fits.assign(exact=("order", exact[1:]), exact_error=("order", exact_error[1:])).assign_coords(
-        order=np.arange(2, highest + 1)
-    )
+    fits = fits.assign(exact=("order", exact[1:], ONE), exact_error=("order", exact_error[1:], ONE))
+    return fits.assign_coords(order=np.arange(2, highest + 1))
 
 
 def _fit(pair: tuple[dict, Table], dimension: int) -> dict:
