@@ -51,11 +51,11 @@ class Estimate:
     def of(cls, dataset: xarray.Dataset, name: str) -> Estimate:
         """The variable `name` of a dataset, with the variable `name`_error as its uncertainty, and
         `name`_freedom, where there is one and it is positive, as its degrees of freedom."""
-        import numpy as np
-
-        freedom = np.asarray(dataset.get(f"{name}_freedom", math.inf), dtype=float)
-        known = np.where(freedom > 0.0, freedom, math.inf)  # NaN where there is none
-        return cls(dataset[name], dataset[f"{name}_error"], known)
+        column, freedom = dataset[name], dataset.get(f"{name}_freedom", math.inf)
+        if f"{name}_freedom" in dataset:
+            freedom = freedom.where(freedom > 0.0, math.inf)  # NaN where there is none
+            freedom = freedom.broadcast_like(column).transpose(*column.dims)
+        return cls(column, dataset[f"{name}_error"], freedom)
 
     @classmethod
     def stack(cls, estimates: Sequence[Estimate]) -> Estimate:

@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.families.vibrated.claims import expected_temperature, small_parameter
+from gaspart.reproduction.table import Table
 
 
 def beds(limit=1.0, given=1.0, lost=1.0, height=1.0, restitutions=(0.99, 0.98, 0.95, 0.9)):
@@ -15,7 +16,7 @@ def beds(limit=1.0, given=1.0, lost=1.0, height=1.0, restitutions=(0.99, 0.98, 0
     known = {"sine": sine, "restitution": e, "layers": np.full(e.size, 2.0), "speed": 0.3 + 0.1 * sine}
     known["packing_fraction"] = np.full(e.size, 0.008)
     ds = xr.Dataset({key: ("bed", values) for key, values in known.items()}, {"place": ("bin", place)})
-    x, unit = small_parameter(ds), expected_temperature(ds)
+    x, unit = small_parameter(Table(ds, "bed")), expected_temperature(Table(ds, "bed"))
     columns = {
         "temperature": (limit - 0.5 * x + 0.2 * x**2) * unit,
         "temperature_error": 0.003 * unit,

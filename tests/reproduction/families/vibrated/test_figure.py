@@ -4,6 +4,7 @@ from reproduction.families.vibrated.data import beds
 
 from gaspart.reproduction.families.vibrated import figure
 from gaspart.reproduction.families.vibrated.claims import expected_temperature, small_parameter
+from gaspart.reproduction.table import Table
 
 
 def test_temperatures_and_profiles():
@@ -12,9 +13,9 @@ def test_temperatures_and_profiles():
     temperatures, profiles = [], []
     for kind, name in enumerate(("sawtooth", "sine")):
         own = ds.isel(bed=(ds["sine"] == kind).values)
-        unit = expected_temperature(own)
+        unit = expected_temperature(Table(own, "bed"))
         measured = own["temperature"] / unit, own["temperature_error"] / unit
-        temperatures.append(Points(name, small_parameter(own), *measured))
+        temperatures.append(Points(name, small_parameter(Table(own, "bed")), *measured))
         bed = own.isel(bed=0)  # the most elastic one
         profiles.append(Points(name, bed["place"], bed["density"], bed["density_error"]))
     shows(upper, "epsilon", "energy balance", *temperatures)

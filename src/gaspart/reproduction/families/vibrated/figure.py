@@ -7,42 +7,39 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.reproduction.families.vibrated.claims import (
     WAVEFORMS,
     expected_temperature,
     extrapolation,
     small_parameter,
 )
+from gaspart.reproduction.table import Table
 
 
-def vibrated_bed(ds: xr.Dataset) -> Figure:
+def vibrated_bed(dataset: xr.Dataset) -> Figure:
     """Two panels: temperature over theory's, with fits, and density profiles of the most elastic beds."""
     figure, (upper, lower) = style.new((2.4,), (2.4,))
+    table = Table(dataset, "bed")
     style.level(upper, 1.0)
-    heights = np.linspace(0.0, float(ds["place"].max()), 100)
+    heights = np.linspace(0.0, table.place.max(), 100)
     lower.plot(heights, np.exp(-heights), color=style.REFERENCE, label=r"$e^{-gz/T}$")
     for kind, name in WAVEFORMS.items():
-        beds = ds.isel(bed=(ds["sine"] == kind).values)
-        if not beds.sizes["bed"]:
+        beds = table[table.sine == kind]
+        if not beds:
             continue
-        x, unit = small_parameter(beds), expected_temperature(beds)
-        style.measured(upper, x, estimates(beds, "temperature") / unit, kind, label=name)
+        x = small_parameter(beds)
+        style.points(upper, x, beds.temperature / expected_temperature(beds), kind=kind, label=name)
         if x.size > 2:
             fine = np.linspace(0.0, x.max(), 100)
             curve = np.polynomial.polynomial.polyval(fine, extrapolation(beds).values)
             upper.plot(fine, curve, color=style.COLOURS[kind], zorder=1)
-        bed = beds.isel(bed=int(np.argmin(x)))
-        e = float(bed["restitution"])
-        label = rf"{name}, $\epsilon={e:g}$"
-        style.measured(lower, bed["place"], estimates(bed, "density"), kind, label=label)
-    upper.set_xlim(0.0, 1.08 * small_parameter(ds).max())
-    upper.set_xlabel(r"$(1-\epsilon^2)(\sqrt{\pi}\,(N-1)d/2W+1/\sqrt{2\pi})$")
-    upper.set_ylabel(r"$T$ / energy balance")
-    upper.legend()
+        bed = beds[np.argmin(x)]
+        label = rf"{name}, $\epsilon={bed.restitution:g}$"
+        style.points(lower, bed.place, bed.density, kind=kind, label=label)
+    upper.set_xlim(0.0, 1.08 * small_parameter(table).max())
+    small = r"$(1-\epsilon^2)(\sqrt{\pi}\,(N-1)d/2W+1/\sqrt{2\pi})$"
+    style.labelled(upper, small, r"$T$ / energy balance", "best")
     lower.set_yscale("log")
-    lower.set_xlabel(r"height $gz/T$")
-    lower.set_ylabel(r"density / $(Ng/WT)$")
-    lower.legend()
+    style.labelled(lower, r"height $gz/T$", r"density / $(Ng/WT)$", "best")
     style.letters(upper, lower)
     return figure

@@ -8,11 +8,12 @@ from typing import Any
 import xarray as xr
 
 from gaspart.analysis.bins import Grid
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import means_of
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 from gaspart.scene.faces import Vibrating
 
 _FLOOR = 2  # the number of the face y_low
@@ -30,7 +31,7 @@ def vibrated_bed(points: list[Point], settings: dict) -> xr.Dataset:
     the share of discs in a bin over its width, in units of T/g, at `place`. All with errors from replicas.
     """
     units = {"temperature": "energy", **dict.fromkeys(("speed", "given", "lost"), "length / time")}
-    beds = from_rows("bed", [_bed(point, settings) for point in points], ("bin",), units)
+    beds = table("bed", points, _bed, settings, inner=("bin",), units=units)
     return beds.assign_coords(place=("bin", _grid(settings).middles[0]))
 
 
@@ -50,10 +51,10 @@ def _bed(point: Point, settings: dict) -> dict[str, Any]:
         "speed": floor.greatest_speed / math.sqrt(2.0) if sine else floor.greatest_speed,
     }
     replicas = [means(run, settings) for run in runs(point)]
-    samples = {name: [one[name] for one in replicas] for name in replicas[0]}
-    row |= entries({name: means_of(values) for name, values in samples.items()}, len(replicas) - 1)
+    for name in replicas[0]:
+        row[name] = Estimate(*means_of([one[name] for one in replicas]), len(replicas) - 1)
     weight = species.count * -scene.gravity[1] / width
-    row["packing_fraction"] = math.pi * species.radius**2 * weight / row["temperature"]
+    row["packing_fraction"] = math.pi * species.radius**2 * weight / row["temperature"].value
     return row
 
 
