@@ -1,5 +1,7 @@
+import numpy as np
 import pytest
 
+from gaspart.analysis.estimate import Estimate
 from gaspart.rendering import style
 
 
@@ -69,3 +71,16 @@ def test_numbers_of_a_short_logarithmic_axis_do_not_run_into_each_other(tmp_path
             assert 2 <= len(inside) <= most
             assert not any(a.overlaps(b) for n, a in enumerate(inside) for b in inside[n + 1 :])
         assert {"5", "10", "20"} <= {text.get_text() for text in axis.get_xticklabels()}
+
+
+def test_estimates_are_points_with_error_bars_and_labels_are_those_stated():
+    with style.applied():
+        _, (axis,) = style.new((2.0,))
+        x, y = Estimate([1.0, 2.0], [0.1, 0.2]), Estimate([3.0, 4.0], [0.3, 0.4])
+        drawn = style.points(axis, x, y, label="seen")
+        style.labelled(axis, "time", legend="upper left", columns=2, xscale="log")
+    across, along = (np.array([path.vertices for path in bars.get_paths()]) for bars in drawn.lines[2])
+    np.testing.assert_allclose(across[:, :, 0], [[0.9, 1.1], [1.8, 2.2]])
+    np.testing.assert_allclose(along[:, :, 1], [[2.7, 3.3], [3.6, 4.4]])
+    assert (axis.get_xlabel(), axis.get_ylabel(), axis.get_xscale()) == ("time", "", "log")
+    assert [text.get_text() for text in axis.get_legend().get_texts()] == ["seen"]

@@ -51,11 +51,12 @@ class Estimate:
     def of(cls, dataset: xarray.Dataset, name: str) -> Estimate:
         """The variable `name` of a dataset, with the variable `name`_error as its uncertainty, and
         `name`_freedom, where there is one and it is positive, as its degrees of freedom."""
-        column, freedom = dataset[name], dataset.get(f"{name}_freedom", math.inf)
-        if f"{name}_freedom" in dataset:
-            freedom = freedom.where(freedom > 0.0, math.inf)  # NaN where there is none
-            freedom = freedom.broadcast_like(column).transpose(*column.dims)
-        return cls(column, dataset[f"{name}_error"], freedom)
+        column, error = dataset[name], dataset[f"{name}_error"]
+        if f"{name}_freedom" not in dataset:
+            return cls(column, error)
+        freedom = dataset[f"{name}_freedom"]  # NaN where there is none
+        freedom = freedom.where(freedom > 0.0, math.inf).broadcast_like(column).transpose(*column.dims)
+        return cls(column, error, freedom)
 
     @classmethod
     def stack(cls, estimates: Sequence[Estimate]) -> Estimate:

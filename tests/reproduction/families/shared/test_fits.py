@@ -16,6 +16,7 @@ from gaspart.reproduction.families.displacement.measure import size_series
 from gaspart.reproduction.families.shared.claims import combined
 from gaspart.reproduction.families.vibrated.claims import extrapolation
 from gaspart.reproduction.families.virial.measure import fit_coefficients
+from gaspart.reproduction.table import Table
 from gaspart.theory.state import compressibility_factor
 
 REPEATED = 400
@@ -39,7 +40,7 @@ def scattered(rng, ds, freedom, names):
 
 def bed(rng):
     """The sine's limit of elastic discs."""
-    return [extrapolation(scattered(rng, BEDS, 7, ["temperature"])).estimate(0) - 1.0]
+    return [extrapolation(Table(scattered(rng, BEDS, 7, ["temperature"]), "bed")).estimate(0) - 1.0]
 
 
 def well(rng):
@@ -70,8 +71,8 @@ def state(rng):
     error = (z - 1.0) / 2e3
     seen = z + error * rng.standard_normal(z.size)
     own = error * np.sqrt(rng.chisquare(freedom, z.size) / freedom)
-    found, _ = fit_coefficients(ETA, seen, own, 2, 4, True, freedom)
-    exact, _ = fit_coefficients(ETA, z, error, 2, 4, True)
+    found, _ = fit_coefficients(ETA, Estimate(seen, own, freedom), 2, 4, True)
+    exact, _ = fit_coefficients(ETA, Estimate(z, error), 2, 4, True)
     return [found.estimate(n) - exact.values[n] for n in range(3)]
 
 

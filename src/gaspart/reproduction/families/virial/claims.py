@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -14,7 +16,7 @@ RELATIVE_ERROR = 1e-3
 """The largest standard error of Z, relative to it, at which its comparison means anything."""
 WANTED = {2: 1e-3, 3: 1e-2, 4: 1e-1}
 """Wanted relative accuracy of each virial coefficient; its standard error is to be half of it."""
-REFERENCE = {
+REFERENCE: dict[int, dict[str, Any]] = {
     2: {
         "source": "virial series to B10 ([Clisby 2006]) and a linear tail",
         "allowance_source": "of the virial coefficients ([Clisby 2006]), and the tail's distance from Liu's "

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -12,7 +14,7 @@ from gaspart.reproduction.table import Table, each
 
 RELATIVE_ERROR = 1e-3
 """The largest standard error of a pressure, relative to it, at which a mean of comparisons means anything."""
-THEORY = {
+THEORY: dict[str, Any] = {
     "source": "bulk equation of state; surfaces, edges and corners of the container to fifth order in the "
     "density, by cluster integrals (gaspart.theory.clusters); canonical ensemble to first order in 1/N",
     "allowance_source": "surfaces, edges and corners: a sixth order as large as the larger of the two before",
