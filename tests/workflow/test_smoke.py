@@ -9,8 +9,9 @@ import pytest
 from browser import CHROMIUM, found_by
 from digests import digests
 
+from gaspart.reproduction.budget import budgets
 from gaspart.reproduction.claims import KINDS, VERDICTS
-from gaspart.reproduction.families.registry import families
+from gaspart.reproduction.families.registry import families, of_claims
 from gaspart.yaml_text import read_yaml
 
 pytestmark = pytest.mark.workflow
@@ -38,6 +39,20 @@ def test_every_figure_is_drawn_twice_and_has_a_claim_with_a_verdict(smoke, figur
         assert claim["kind"] in KINDS
         assert claim["why"] or claim["verdict"] in ("agrees", "reproduced", "disagrees")
         assert claim["fails_if"]
+
+
+def test_the_budget_has_the_time_and_the_decided_claims_of_every_figure(smoke, monkeypatch):
+    monkeypatch.chdir(smoke.path)
+    found = {one.figure: one for one in budgets("config/smoke.yaml")}
+    assert set(found) == set(FIGURES)
+    with (smoke.path / "results/smoke/tables/claims.csv").open(newline="") as file:
+        verdicts = {(row["figure"], row["claim"]): row["verdict"] for row in csv.DictReader(file)}
+    for figure, one in found.items():
+        assert one.seconds > 0.0 or figure in of_claims()
+        assert 0.0 <= one.shared <= one.seconds
+        for need in one.needs:
+            assert need.verdict == verdicts[figure, need.claim]
+            assert (need.multiple > 1.0) <= (need.verdict in ("inconclusive", "disagrees", "source in error"))
 
 
 def test_every_figure_is_drawn_for_a_column_of_a_journal_and_is_legible(smoke):

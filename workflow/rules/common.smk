@@ -114,10 +114,7 @@ def settings_of(wildcards):
 
 
 def stated_of(wildcards):
-    """[the claims that the config states], of a figure whose kind has a setting for them; [] for others."""
-    block = config["figures"][wildcards.figure]
-    stated = "kind" in block and "claims" in registry.settings_of_kind(block["kind"])
-    return [block.get("claims", [])] if stated else []
+    return registry.stated_claims(config["figures"][wildcards.figure])
 
 
 def other_claims(wildcards):

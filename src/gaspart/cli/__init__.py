@@ -34,6 +34,7 @@ _COMMANDS = {
     "theory": ("theory", "values of theory, with sources"),
     "advise": ("advise", "the cheapest engine and settings for an accuracy"),
     "check": ("check", "validate a scene, a config or a trajectory, also of other programs"),
+    "budget": ("budget", "where the time of a finished run of the workflow went, and which length suffices"),
     "archive": ("archive", "a finished run of the workflow as one file to deposit"),
     "verify": ("verify", "digests of an archive, and points simulated again"),
     "completion": ("completion", "let a shell complete commands, options and names"),

@@ -97,15 +97,29 @@ def reason(claim: Claim, verdict: str) -> str:
         return ""
     if not claim.is_finite:
         return "not measured in this run"
+    more = f"{sufficient(claim):.3g} times the measurement would decide it"
     if claim.measured.error > claim.required:
-        more = (claim.measured.error / claim.required) ** 2 if claim.required else math.inf
-        return f"the uncertainty is above the required one: {more:.3g} times the measurement would decide it"
+        return f"the uncertainty is above the required one: {more}"
     if not claim.has_power:
-        difference = abs(float(claim.alternative or 0.0) - claim.expected.value) / POWER
-        room = difference**2 - claim.expected.error**2
-        if room <= 0.0:
+        if math.isinf(sufficient(claim)):
             return "the theory's own uncertainty hides the alternative: only a better theory would decide it"
-        more = claim.measured.error**2 / room
-        return f"the alternative is not excluded: {more:.3g} times the measurement would decide it"
-    more = (3.0 / claim.deviation_sigma) ** 2
-    return f"outside the bounds, but not significantly: {more:.3g} times the measurement would decide it"
+        return f"the alternative is not excluded: {more}"
+    outside = (3.0 / claim.deviation_sigma) ** 2
+    return f"outside the bounds, but not significantly: {outside:.3g} times the measurement would decide it"
+
+
+def sufficient(claim: Claim) -> float:
+    """The multiple of the measurement that would just make a claim conclusive, since its uncertainty falls as
+    the inverse root of the length: below 1 where less would do, infinite where none would. NaN without
+    numbers, and for a measurement without uncertainty."""
+    error = claim.measured.error
+    if not claim.is_finite or not error > 0.0:
+        return math.nan
+    if not claim.required > 0.0:
+        return math.inf
+    multiple = (error / claim.required) ** 2
+    if claim.alternative is not None:
+        distance = abs(float(claim.alternative) - claim.expected.value) / POWER
+        room = distance**2 - claim.expected.error**2
+        multiple = max(multiple, error**2 / room if room > 0.0 else math.inf)
+    return multiple

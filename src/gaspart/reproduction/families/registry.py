@@ -147,3 +147,10 @@ def settings_of_kind(kind: str) -> dict[str, Kind]:
     """The settings of a kind of figures, of this or another installed package. Raises SceneError."""
     settings: dict[str, Kind] = kinds()[kind] if kind in _kinds() else installed.package(kind).KINDS[kind]
     return settings
+
+
+def stated_claims(entry: Mapping[str, Any]) -> list[Any]:
+    """[the claims that the config states], which the function of the claims of a figure takes beside its
+    numbers if its kind has a setting for them; [] of others. entry: that of the config."""
+    takes = "kind" in entry and "claims" in settings_of_kind(entry["kind"])
+    return [entry.get("claims", [])] if takes else []

@@ -1,0 +1,161 @@
+"""Where the processor time of a reproduction went, and how long the runs of each figure need to be.
+
+An uncertainty falls as the inverse root of the length of the runs: a claim with the uncertainty u that
+requires u0 needs (u / u0)^2 times what was measured.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gaspart.errors import SceneError
+from gaspart.files import whole_file
+from gaspart.reproduction.claims.claim import Claim
+from gaspart.reproduction.claims.judging import judge, sufficient
+from gaspart.reproduction.config import checked
+from gaspart.reproduction.families import registry
+from gaspart.reproduction.points.point import Point
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_WITHOUT_CHANCE = ("identity", "family")
+"""Kinds of claims that longer runs do not decide."""
+_COLUMNS = ("figure", "cpu_seconds", "shared_seconds", "claim", "verdict", "required", "reached", "multiple")
+
+
+@dataclass(frozen=True)
+class Need:
+    """A claim; required, reached: uncertainties; multiple: of the measurement, which would just decide it."""
+
+    claim: str
+    verdict: str
+    required: float
+    reached: float
+    multiple: float
+
+
+@dataclass(frozen=True)
+class Budget:
+    """A figure; seconds: processor time of its points, its numbers and its picture; shared: of points that
+    other figures show as well; needs: its claims that runs decide, the most demanding first."""
+
+    figure: str
+    seconds: float
+    shared: float
+    needs: tuple[Need, ...]
+
+    @property
+    def conclusive(self) -> tuple[Need, ...]:
+        """The claims that are decided."""
+        return tuple(need for need in self.needs if need.multiple <= 1.0)
+
+    @property
+    def sufficient(self) -> float:
+        """The multiple of the figure's runs at which all claims that are decided just would be; 0 without."""
+        return max((need.multiple for need in self.conclusive), default=0.0)
+
+
+def budgets(path: str | Path) -> list[Budget]:
+    """The budget of each figure of a config of which the workflow has made all, the dearest figure first.
+
+    Raises SceneError for an invalid config, and if a figure or a time is not there.
+    """
+    import xarray as xr
+
+    with checked(path) as (config, planned):
+        results = Path("results") / (config.get("run") or "")
+        every = {figure: _shown(block, planned) for figure, block in config["figures"].items()}
+        made = []
+        for figure, points in every.items():
+            dataset = results / "measurements" / f"{figure}.nc"
+            if not dataset.is_file():
+                raise SceneError("results", str(dataset), "is not there: run the workflow first")
+            others = {point for other in every if other != figure for point in every[other]}
+            times = {point: _seconds(results, point) for point in points}
+            made.append(
+                Budget(
+                    figure,
+                    sum(times.values()) + _made(results, figure),
+                    sum(seconds for point, seconds in times.items() if point in others),
+                    _needs(_claims(figure, config["figures"][figure], xr.load_dataset(dataset))),
+                )
+            )
+    return sorted(made, key=lambda one: -one.seconds)
+
+
+def lines(path: str | Path, target: str | Path | None = None) -> list[str]:
+    """The lines that `gaspart budget` prints of a config; raises as `budgets` does. target: a CSV file, to
+    which they are written instead, a line for each claim."""
+    found = budgets(path)
+    if target is not None:
+        _write(found, target)
+        return []
+    text = [f"{'figure':26s} {'CPU s':>8s} {'shared':>8s}  decided  of {'length that suffices':>22s}"]
+    for one in found:
+        length = f"{one.sufficient:.2g}" if one.conclusive else ""
+        counted = f"{len(one.conclusive):7d} {len(one.needs):4d}"
+        text.append(f"{one.figure:26s} {one.seconds:8.1f} {one.shared:8.1f}  {counted} {length:>22s}")
+        text += [f"    {need.multiple:8.2g} times: {need.claim}" for need in one.needs if need.multiple > 1.0]
+    return text
+
+
+def _write(found: Sequence[Budget], target: str | Path) -> None:
+    with whole_file(target) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(_COLUMNS)
+        for one in found:
+            own = one.figure, f"{one.seconds:.1f}", f"{one.shared:.1f}"
+            for need in one.needs:
+                numbers = (f"{number:.3g}" for number in (need.required, need.reached, need.multiple))
+                table.writerow((*own, need.claim, need.verdict, *numbers))
+
+
+def _shown(block: Mapping, planned: Mapping[str, Mapping[str, Point]]) -> list[tuple[str, str]]:
+    """The experiment and the name of each point of a figure."""
+    return [(experiment, name) for experiment in block["experiments"] for name in planned[experiment]]
+
+
+def _seconds(results: Path, point: tuple[str, str]) -> float:
+    """The processor time of a point's job. Raises SceneError if it was not made."""
+    for rule in ("simulate", "compute"):
+        file = results / "benchmarks" / rule / point[0] / f"{point[1]}.tsv"
+        if file.is_file():
+            return _time(file)
+    raise SceneError("results", str(results / "benchmarks"), f"has no time of the point {'/'.join(point)}")
+
+
+def _made(results: Path, figure: str) -> float:
+    """The processor time of what is made of a figure's points: numbers, picture."""
+    files = (results / "benchmarks" / rule / f"{figure}.tsv" for rule in ("measure", "draw"))
+    return sum(_time(file) for file in files if file.is_file())
+
+
+def _time(file: Path) -> float:
+    with file.open(encoding="utf-8") as lines:
+        return sum(float(row["cpu_time"]) for row in csv.DictReader(lines, delimiter="\t"))
+
+
+def _claims(figure: str, block: Mapping, dataset: xr.Dataset) -> Sequence[Claim]:
+    """The claims of a figure, as the workflow judges them."""
+    family, name = registry.functions(figure, block)
+    state = getattr(import_module(registry.module(family, "claims")), name)
+    return list(state(dataset, *registry.stated_claims(block)))
+
+
+def _needs(stated: Sequence[Claim]) -> tuple[Need, ...]:
+    """Those claims of a figure that runs decide, the most demanding first."""
+    found = []
+    for claim, verdict in zip(stated, judge(stated), strict=True):
+        multiple = sufficient(claim)
+        if claim.kind in _WITHOUT_CHANCE or claim.form == "distribution" or claim.no_verdict:
+            continue
+        if math.isfinite(multiple):
+            found.append(Need(claim.claim, verdict, claim.required, claim.measured.error, multiple))
+    return tuple(sorted(found, key=lambda need: -need.multiple))
