@@ -103,7 +103,7 @@ def run(
     wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, engine, follow, correlations)
-        _require_end(asked, scene, at_most, initial is not None)
+        require_end(asked, scene, at_most, initial is not None)
         displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
@@ -211,7 +211,7 @@ def require_measurable(
         raise SceneError("until", asked.name, "needs all particles in the file, without follow")
 
 
-def _require_end(asked: Requirement, scene: Scene, at_most: float | None, given: bool) -> None:
+def require_end(asked: Requirement, scene: Scene, at_most: float | None, given: bool) -> None:
     """Raise SceneError for a run in which nothing ever happens, and, without a longest duration, for one that
     comes to no steady state. given: whether it starts from a given state."""
     kinds = [kind for kind in scene.kinds if kind.count]

@@ -164,7 +164,7 @@ def _animation(config: dict, animation: str, block: dict | None) -> None:
     """Refuse a film of an experiment that the config does not have, or that makes no trajectories."""
     experiment = block["experiment"] if block else None
     kinds = {name: made.get("job", "simulate") for name, made in config["experiments"].items()}
-    if block and kinds.get(experiment) not in TRAJECTORIES:
+    if block and kinds.get(experiment) != TRAJECTORIES:
         rule = "must be the name of an experiment that makes trajectories"
         raise SceneError(f"animations.{animation}.experiment", experiment, rule)
     figure = block.get("figure") if block else None

@@ -18,7 +18,7 @@ from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import Engine, EventDriven, engine_to_dict
 from gaspart.errors import SceneError, unknown_word
 from gaspart.reproduction.config import check_point, gridded_points
-from gaspart.reproduction.jobs import simulate
+from gaspart.reproduction.jobs.simulate import recipes
 from gaspart.reproduction.points.keys import ENGINES, EXTENTS, GAS, PREFIX
 from gaspart.reproduction.points.measurable import distinct, require_observable
 from gaspart.reproduction.points.point import Point
@@ -128,7 +128,7 @@ def _checked(scene: Any, engine: Any) -> Engine:
 def _experiment(point: dict[str, Any], axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
     """The experiment of a config, with what its points share."""
     grid = {key if key in point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
-    return {"job": "simulate_until" if "until" in point else "simulate", "point": point, "grid": grid}
+    return {"job": "simulate", "point": point, "grid": grid}
 
 
 def _make(plan: _Plan, workers: int, overwrite: bool, progress: Progress) -> None:
@@ -283,8 +283,7 @@ def _planned(experiment: dict, root: str, seed: int) -> _Plan:
     for point in planned:
         try:
             check_point(point)
-            if point.job == "simulate":
-                simulate.recipe(point.parameters, point.seed())
+            recipes(**point.arguments)
         except SceneError as error:
             errors[point.name] = _of_sweep(error)
     if len(errors) == len(planned):

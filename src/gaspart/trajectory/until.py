@@ -85,6 +85,11 @@ class Until:
         return json.dumps(asked)
 
     @classmethod
+    def from_dict(cls, values: dict) -> Until:
+        """The inverse of `dataclasses.asdict`. Raises SceneError."""
+        return cls(tuple(Requirement(**one) for one in values["accuracies"]), values["at_most"])
+
+    @classmethod
     def from_json(cls, text: str, at_most: float | None) -> Until:
         """The inverse of `to_json`. Raises SceneError, and TypeError or ValueError for another text."""
         return cls(tuple(Requirement(**one) for one in json.loads(text)), at_most)

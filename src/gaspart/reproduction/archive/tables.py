@@ -77,11 +77,11 @@ def point_files(run: Finished) -> list[PointFile]:
     rows = []
     for point in run.points:
         named = point.experiment, point.name, point.job
-        paths = point.replica_paths if point.job in TRAJECTORIES else [point.path]
+        paths = point.replica_paths if point.job == TRAJECTORIES else [point.path]
         for replica, path in enumerate(paths):
             file = run.root / path
             size, content = str(file.stat().st_size), digest_of_file(file)
-            if point.job in TRAJECTORIES:
+            if point.job == TRAJECTORIES:
                 own = str(replica), path, size, content, digest_of_numbers(file), stored_revision(file)
             else:
                 own = "", path, size, content, "", ""

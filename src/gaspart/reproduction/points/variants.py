@@ -100,7 +100,7 @@ def task(point: Point) -> str:
     all of its features, whether it tallies the stress, and whether it records events."""
     from gaspart.scene.scene import Scene
 
-    parameters, full = point.parameters, point.scene
+    full, engine = point.scene, None
     scene = {key: value[:_FEW] if isinstance(value, list) else value for key, value in full.to_dict().items()}
     for kind in scene.get("species", ()):
         kind["count"] = min(kind["count"], _FEW)
@@ -108,9 +108,8 @@ def task(point: Point) -> str:
             kind["arrangement"] = "random"
     if features(Scene.from_dict(scene)) != features(full):
         scene = full.to_dict()
-    engine = parameters.get("engine") or parameters.get("engines", [None])[0]
-    if engine:
-        engine = engine_to_dict(engine_from_dict(engine).for_few(full))
+    if engines := point.kind_of_job.engines(point):
+        engine = engine_to_dict(engines[0].for_few(full))
     asked = {"stress": "stress", "events": "pairs"}  # of the task, by a key of the point
     extra = {name: True for name, key in asked.items() if point.settings.get(key)}
     return json.dumps({"scene": scene, "engine": engine, **extra})
