@@ -21,7 +21,8 @@ if " " in sys.executable:
 
 from gaspart.reproduction.claims.captions import filled
 from gaspart.reproduction.claims.table import summary
-from gaspart.reproduction.config import check, explained, read_numbers
+from gaspart.reproduction.config import check, explained
+from gaspart.reproduction.config_files import read_numbers
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.families.registry import caption, functions, of_claims, titles
 from gaspart.reproduction.points.modules import digest, kernel_digest

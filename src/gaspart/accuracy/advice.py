@@ -24,8 +24,8 @@ from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import number
 from gaspart.trajectory.recipe import Recipe
+from gaspart.values import number
 
 ACCURACIES = 1e-8, 1.0
 """The best relative accuracy that float64 sums and the table support, and the worst."""

@@ -24,9 +24,9 @@ from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import number
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.until import Requirement, Until
+from gaspart.values import number
 
 _FRAMES = 384
 """Of a run: 288 independent intervals give an error 17 degrees of freedom, and 15 are required."""

@@ -16,7 +16,7 @@ from gaspart.scene.gas import plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.stress import require_tallied
-from gaspart.scene.validation import choice, count_of, number
+from gaspart.values import count_of, number, one_of
 
 Selection = Mapping[str, Any]
 GROUPS = 16
@@ -234,7 +234,7 @@ def alike(scene: Scene, selection: Selection) -> None:
 def has_axis(scene: Scene, selection: Selection) -> None:
     """The axis that is selected."""
     if selection.get("axis") is not None:
-        choice("axis", selection["axis"], tuple("xyz"[: scene.dimension]))
+        one_of("axis", selection["axis"], tuple("xyz"[: scene.dimension]))
 
 
 def tallied(scene: Scene, selection: Selection) -> None:

@@ -25,7 +25,7 @@ from gaspart.analysis.pairs import STRETCHES
 from gaspart.analysis.run import Source, measured
 from gaspart.errors import SceneError
 from gaspart.scene.gas import plain_gas
-from gaspart.scene.validation import count_of
+from gaspart.values import count_of
 
 PLACES = 512
 """Places that are tried in each frame, by default."""

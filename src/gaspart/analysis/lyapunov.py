@@ -15,8 +15,8 @@ import numpy as np
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, scalar
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
+from gaspart.values import number
 
 ALIGNMENT = 0.25
 """The part of the events in which the deviation turns to the direction of fastest growth, not measured."""

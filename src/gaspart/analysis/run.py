@@ -21,12 +21,12 @@ from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, Mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
-from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_particle
 from gaspart.state.tally import Tally
 from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.reading import open_trajectory
+from gaspart.values import count_of, number
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 Source: TypeAlias = str | Path | xr.Dataset | Simulation

@@ -20,9 +20,9 @@ from gaspart.rendering.particles import FASTEST, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.rendering.shown import Film
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
+from gaspart.values import count_of, number
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -20,13 +20,13 @@ from gaspart.rendering.shown import Picture
 from gaspart.scene.faces import Piston, Vibrating, pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import fixed_images
-from gaspart.scene.validation import count_of
 from gaspart.scene.walls import Wall
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
 from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
 from gaspart.trajectory.reading import open_trajectory
+from gaspart.values import count_of
 from gaspart.yaml_text import parse_yaml
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from gaspart.errors import SceneError
 from gaspart.files import Kind, begins_with
 from gaspart.rendering.camera import CAMERA, camera_for
 from gaspart.rendering.particles import DrawnParticles
-from gaspart.scene.validation import count_of, number
+from gaspart.values import count_of, number
 
 PICTURE = Kind("a PNG picture", begins_with(b"\x89PNG\r\n\x1a\n"))
 SIZE = (1000, 750)

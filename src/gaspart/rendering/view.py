@@ -20,9 +20,9 @@ from gaspart.rendering.frames import opened, particles_of
 from gaspart.rendering.particles import FASTEST, DrawnParticles
 from gaspart.rendering.style import COLOURS
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import count_of
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
+from gaspart.values import count_of
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,9 +14,9 @@ from typing import Any
 from gaspart.analysis.declaration import DIMENSIONS
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import ENGINES
-from gaspart.kinds import Kind, choice, names, record
+from gaspart.keys import Kind, choice, names, record
 from gaspart.reproduction.families import registry
-from gaspart.reproduction.points import config_keys, keys
+from gaspart.reproduction.points import config_keys, point_keys
 from gaspart.scene.features import EXCLUDED, FEATURES
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
@@ -57,7 +57,7 @@ def schema(installed: tuple[tuple[str, str], ...] = ()) -> Kind:
     }
     figures |= {figure: _of_kind(kind) for figure, kind in installed}
     (own,) = map(_of_kind, registry.kinds())
-    return {"$schema": _DRAFT, **record(config_keys.config(figures, own))}
+    return Kind({"$schema": _DRAFT, **record(config_keys.config(figures, own))})
 
 
 def _of_kind(kind: str) -> Kind:
@@ -68,10 +68,10 @@ def _of_kind(kind: str) -> Kind:
 
 def scene_schema() -> Kind:
     """The JSON schema of a scene file; rules that concern several keys are not part of it."""
-    from gaspart.scene.keys import schema_of
+    from gaspart.keys import schema_of
     from gaspart.scene.scene import Scene
 
-    return {"$schema": _DRAFT, **schema_of(Scene)}
+    return Kind({"$schema": _DRAFT, **schema_of(Scene)})
 
 
 def documents() -> dict[str, str]:
@@ -90,11 +90,14 @@ def reference() -> str:
     parts = [_INTRODUCTION, "## Config\n", _table(_outline(top))]
     parts += ["### Experiment\n", _table(_outline(config_keys.EXPERIMENT))]
     for title, tables in (
-        ("Point: one species in a container (exactly three of the first four)", keys.EXTENTS | keys.GAS),
-        ("Point: a scene file", keys.SCENE_FILE),
-        ("Point: engine", keys.ENGINE),
-        *((f"Point: engine `{name}`", table) for name, table in keys.ENGINES.items()),
-        ("Point: length (exactly one of them)", keys.LENGTHS),
+        (
+            "Point: one species in a container (exactly three of the first four)",
+            point_keys.EXTENTS | point_keys.GAS,
+        ),
+        ("Point: a scene file", point_keys.SCENE_FILE),
+        ("Point: engine", point_keys.ENGINE),
+        *((f"Point: engine `{name}`", table) for name, table in point_keys.ENGINES.items()),
+        ("Point: length (exactly one of them)", point_keys.LENGTHS),
         ("Point: run", config_keys.RUN),
         ("Animation", config_keys.ANIMATION),
     ):
@@ -174,7 +177,7 @@ def _parts(scene: Kind) -> list[tuple[str, Kind]]:
 
 def _outline(table: dict[str, Kind]) -> dict[str, Kind]:
     """A table of keys without those inside their mappings, which have tables of their own."""
-    return {name: {**kind, "properties": {}} for name, kind in table.items()}
+    return {name: kind.stating(properties={}) for name, kind in table.items()}
 
 
 def _table(kinds: dict[str, Kind]) -> str:

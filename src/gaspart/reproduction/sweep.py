@@ -19,18 +19,18 @@ from gaspart.engines import Engine, EventDriven, engine_to_dict
 from gaspart.errors import SceneError, unknown_word
 from gaspart.reproduction.config import check_point, gridded_points
 from gaspart.reproduction.jobs.simulate import recipes
-from gaspart.reproduction.points.keys import ENGINES, EXTENTS, GAS, PREFIX
 from gaspart.reproduction.points.measurable import distinct, require_observable
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.points.point_keys import ENGINES, EXTENTS, GAS, PREFIX
 from gaspart.reproduction.sweep_axes import axes_of, names_of
 from gaspart.reproduction.sweep_points import make_all
 from gaspart.reproduction.sweep_table import Measured, measured, table
 from gaspart.runs import Accuracy
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import count_of, number
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
 from gaspart.trajectory.until import Until
+from gaspart.values import count_of, number
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -18,7 +18,7 @@ from gaspart.scene.faces import (
     pistons,
 )
 from gaspart.scene.limits import closest_packing
-from gaspart.scene.validation import size, vector
+from gaspart.values import finite_vector, size
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -71,7 +71,7 @@ def _check_sheared(scene: Scene, name: str, surface: LeesEdwards) -> None:
 
 def _check_velocity(scene: Scene, name: str, velocity: tuple[float, ...]) -> None:
     """Raise SceneError for a velocity that is not along the face."""
-    vector(f"faces.{name}.velocity", velocity, scene.dimension)
+    finite_vector(f"faces.{name}.velocity", velocity, scene.dimension)
     if velocity[FACES.index(name) // 2] != 0.0:
         rule = "must have no component across the face, which stays in its place"
         raise SceneError(f"faces.{name}.velocity", velocity, rule)
@@ -94,7 +94,7 @@ def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
             rule = f"must not be true where {name} vibrates: give fixed particles positions, in `particles`"
             raise SceneError(f"species[{n}].fixed", True, rule)
     for n, particle in enumerate(scene.particles):
-        x = vector(f"particles[{n}].position", particle.position, scene.dimension)[axis]
+        x = finite_vector(f"particles[{n}].position", particle.position, scene.dimension)[axis]
         if particle.fixed and (length - x if upper else x) < clear + particle.radius:
             rule = f"leaves less than a largest diameter between the particle and {name}, which vibrates"
             raise SceneError(f"particles[{n}].position", particle.position, rule)

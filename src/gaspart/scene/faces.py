@@ -10,10 +10,19 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from gaspart.errors import SceneError
-from gaspart.kinds import described
-from gaspart.scene.keys import NOT_NEGATIVE, NUMBER, POSITIVE, VECTOR, declared, schema_of, validate
-from gaspart.scene.keys import choice as choice_of
-from gaspart.scene.validation import choice, from_mapping, size
+from gaspart.keys import (
+    choice,
+    declared,
+    described,
+    from_mapping,
+    not_negative,
+    positive,
+    schema_of,
+    signed,
+    validate,
+    vector,
+)
+from gaspart.values import one_of, size
 
 if TYPE_CHECKING:
     import numpy as np
@@ -69,14 +78,14 @@ class Thermal(Surface):
     A wall with a `velocity` moves along itself, and the distribution is that about its velocity.
     """
 
-    temperature: float = field(metadata=declared(POSITIVE, "temperature of the wall"))
+    temperature: float = field(metadata=declared(positive("temperature of the wall")))
     components: str = field(
         default="all",
-        metadata=declared(choice_of(*COMPONENTS), "velocity components that are drawn"),
+        metadata=declared(choice("velocity components that are drawn", *COMPONENTS)),
     )
     velocity: tuple[float, ...] | None = field(
         default=None,
-        metadata=declared(VECTOR, "velocity of the wall, along itself; without it the wall is at rest"),
+        metadata=declared(vector("velocity of the wall, along itself; without it the wall is at rest")),
     )
 
     kind: ClassVar[str] = "thermal"
@@ -108,12 +117,12 @@ class Well(Surface):
     energy -`depth`. It leaves if m v_n^2 / 2 > depth, and is reflected if not. The wall itself is hard, or
     with a `temperature` as in `Thermal`."""
 
-    depth: float = field(metadata=declared(POSITIVE, "depth of the well: an energy"))
+    depth: float = field(metadata=declared(positive("depth of the well: an energy")))
     width: float = field(
-        metadata=declared(POSITIVE, "distance of a particle's surface from the wall up to which it lies")
+        metadata=declared(positive("distance of a particle's surface from the wall up to which it lies"))
     )
     temperature: float | None = field(
-        default=None, metadata=declared(POSITIVE, "temperature of the wall; without it the wall is hard")
+        default=None, metadata=declared(positive("temperature of the wall; without it the wall is hard"))
     )
 
     kind: ClassVar[str] = "well"
@@ -139,7 +148,7 @@ class Sticky(Surface):
     binds it, so that particles that stick are not balanced by those that leave: detailed balance is broken.
     """
 
-    momentum: float = field(metadata=declared(POSITIVE, "normal momentum below which a particle stays"))
+    momentum: float = field(metadata=declared(positive("normal momentum below which a particle stays")))
 
     kind: ClassVar[str] = "sticky"
 
@@ -158,9 +167,9 @@ class Vibrating(Surface):
     back at once at the end of each period. Contacts follow the scene's law in the frame of the wall.
     """
 
-    amplitude: float = field(metadata=declared(POSITIVE, "half the distance that the wall moves"))
-    period: float = field(metadata=declared(POSITIVE, "duration of one vibration"))
-    waveform: str = field(default="sine", metadata=declared(choice_of(*WAVEFORMS), "how the wall moves"))
+    amplitude: float = field(metadata=declared(positive("half the distance that the wall moves")))
+    period: float = field(metadata=declared(positive("duration of one vibration")))
+    waveform: str = field(default="sine", metadata=declared(choice("how the wall moves", *WAVEFORMS)))
 
     kind: ClassVar[str] = "vibrating"
     moves: ClassVar[bool] = True
@@ -201,9 +210,9 @@ class Piston(Surface):
     smooth and elastic, and nothing else is in the container.
     """
 
-    mass: float = field(metadata=declared(POSITIVE, "mass of the piston"))
+    mass: float = field(metadata=declared(positive("mass of the piston")))
     pressure: float = field(
-        metadata=declared(NOT_NEGATIVE, "external pressure: the force on the piston over its area")
+        metadata=declared(not_negative("external pressure: the force on the piston over its area"))
     )
 
     kind: ClassVar[str] = "piston"
@@ -226,7 +235,7 @@ class LeesEdwards(Surface):
     The faces do work, by which an elastic gas heats.
     """
 
-    shear_rate: float = field(metadata=declared(NUMBER, "gradient of the flow, du_x / dy"))
+    shear_rate: float = field(metadata=declared(signed("gradient of the flow, du_x / dy")))
 
     kind: ClassVar[str] = "lees_edwards"
     moves: ClassVar[bool] = True
@@ -251,7 +260,7 @@ def surface_from_dict(mapping: object, where: str) -> Surface:
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping with a kind")
     settings = dict(mapping)
-    kind = choice(f"{where}.kind", settings.pop("kind", None), KINDS)
+    kind = one_of(f"{where}.kind", settings.pop("kind", None), KINDS)
     return from_mapping(KINDS[kind], settings, where)
 
 

@@ -15,7 +15,6 @@ from gaspart.files import open_regular
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
-from gaspart.scene.validation import count_of, number
 from gaspart.state.given import given_state, taken_state
 from gaspart.state.insertion import per_particle
 from gaspart.state.optional_tallies import OptionalTally, tallies_of, tally_from_dict, tally_to_dict
@@ -26,6 +25,7 @@ from gaspart.trajectory.correlator import Correlations, sum_names
 from gaspart.trajectory.opening import opened
 from gaspart.trajectory.pairs import pair_names, pairs_of
 from gaspart.trajectory.until import Until
+from gaspart.values import count_of, number
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:

@@ -16,7 +16,6 @@ from typing import BinaryIO, TypeAlias
 
 from gaspart.errors import SceneError
 from gaspart.files import OVERWRITE, may_replace, open_regular, output_path, place
-from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import (
@@ -33,6 +32,7 @@ from gaspart.trajectory.partial import TRAJECTORY, UNFINISHED, is_blank, locked,
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
 from gaspart.trajectory.recording import Examine, Progress, Recording
 from gaspart.trajectory.until import Until, is_examined
+from gaspart.values import number
 
 Examiner: TypeAlias = Callable[[Path, Until, int], float]
 """What examines the first frames of a file: the largest error over the required one, inf if unknown, 0 to

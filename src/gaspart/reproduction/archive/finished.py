@@ -11,7 +11,7 @@ from typing import Any
 from gaspart.errors import SceneError
 from gaspart.files import resolved
 from gaspart.reproduction.config import check
-from gaspart.reproduction.points.overlay import laid_over
+from gaspart.reproduction.config_files import merged_with_default
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points
 from gaspart.trajectory.recipe import read_recipe
@@ -102,7 +102,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
         raise SceneError("results", str(results), rule)
     name = folder.name if named else None
     file = _config_of(root, name) if config is None else Path(config)
-    merged, files = laid_over(file, root / _BASE)
+    merged, files = merged_with_default(file, root / _BASE)
     if merged.get("run") != name:
         raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
     with chdir(root):

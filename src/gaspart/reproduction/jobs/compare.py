@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
-from gaspart.kinds import Kind, count
+from gaspart.keys import Kind, count
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY, SCAN_TIME_STEPS, SLACK, intervals
 

@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaspart.kinds import Kind
+from gaspart.keys import Kind
 from gaspart.reproduction.jobs.data import PointData
 
 if TYPE_CHECKING:

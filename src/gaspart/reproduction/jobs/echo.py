@@ -15,7 +15,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from gaspart.engines import EventDriven
-from gaspart.kinds import Kind, count
+from gaspart.keys import Kind, count
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY, SLACK, intervals
 

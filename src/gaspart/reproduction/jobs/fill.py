@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gaspart.kinds import Kind, count
+from gaspart.keys import Kind, count
 from gaspart.reproduction.jobs.data import PointData
 
 if TYPE_CHECKING:

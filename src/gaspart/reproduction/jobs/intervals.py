@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gaspart.kinds import NOT_NEGATIVE, POSITIVE, described, listed
+from gaspart.keys import NOT_NEGATIVE, POSITIVE, described, listed
 
 if TYPE_CHECKING:
     from gaspart.reproduction.points.point import Point

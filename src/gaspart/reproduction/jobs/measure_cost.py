@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SimulationError
-from gaspart.kinds import COUNT, POSITIVE, TEXT, Kind, count, described, flag, listed
+from gaspart.keys import COUNT, POSITIVE, TEXT, Kind, count, described, flag, listed
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY, SCAN_TIME_STEPS, SLACK, intervals
 from gaspart.state.optional_tallies import StressTally

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gaspart.kinds import Kind
+from gaspart.keys import Kind
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.reproduction.jobs.fill import ATTEMPTS, insert
 

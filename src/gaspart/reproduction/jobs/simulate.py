@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaspart.kinds import Kind, count, described, flag, positive
+from gaspart.keys import Kind, count, described, flag, positive
 from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY
 from gaspart.reproduction.jobs.replicas import write_replicas
 

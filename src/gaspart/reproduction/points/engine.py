@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from gaspart import engines
 from gaspart.engines.engine import required
 from gaspart.errors import SceneError
-from gaspart.reproduction.points.keys import ENGINES, SCANS
+from gaspart.reproduction.points.point_keys import ENGINES, SCANS
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine

@@ -20,7 +20,7 @@ from gaspart.reproduction.jobs import (
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
-    from gaspart.kinds import Kind
+    from gaspart.keys import Kind
     from gaspart.reproduction.points.point import Point
 
 
