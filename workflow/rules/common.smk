@@ -29,7 +29,7 @@ from gaspart.reproduction.points.modules import digest, kernel_digest
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.reproduction.points.points import all_points
 from gaspart.reproduction.points.points import figure_points as points_of_figure
-from gaspart.reproduction.points.variants import task, variant
+from gaspart.reproduction.points.variants import compile_task, variant
 from gaspart.errors import SceneError
 
 # A job on a cluster reads this file again, but need not validate ten thousand points again.
@@ -212,7 +212,9 @@ def task_of(wildcards):
     """The task that compiles a variant: a tiny run of the first point that needs it."""
     of_all = (point for experiment in POINTS.values() for point in experiment.values())
     return next(
-        task(point) for point in of_all if variant_of(point.experiment, point.name) == wildcards.variant
+        compile_task(point)
+        for point in of_all
+        if variant_of(point.experiment, point.name) == wildcards.variant
     )
 
 

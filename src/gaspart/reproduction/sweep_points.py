@@ -24,7 +24,7 @@ from gaspart.kernels.compile.loading import load_numba
 from gaspart.reproduction.jobs.replicas import replica_paths, write_replicas
 from gaspart.reproduction.jobs.simulate import recipes, record
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.points.variants import task, variant, warm
+from gaspart.reproduction.points.variants import compile_kernels, compile_task, variant
 
 _LOOK = 0.1  # seconds between two looks at signals while processes run
 _PATIENCE = 60.0  # seconds for a process to write a checkpoint before it is killed
@@ -44,7 +44,7 @@ def make_all(
         return
     for one in {variant(point): point for point in ordered}.values():  # or each process would compile them
         with suppress(SceneError, SimulationError):  # of its own point alone
-            warm(task(one))
+            compile_kernels(compile_task(one))
     _in_processes(ordered, workers, overwrite, finished)
 
 
