@@ -110,8 +110,10 @@ def run(
     start = _start(initial, scene, _required(path))
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
     recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
-    manner = trajectory.Manner(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    return trajectory.record(recipe, _required(path), manner)
+    options = trajectory.WriteOptions(
+        checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint
+    )
+    return trajectory.record(recipe, _required(path), options)
 
 
 def _start(initial: State | str | Path | None, scene: Scene, path: str | Path) -> State | None:
@@ -177,10 +179,10 @@ def resume(
     complete trajectory of gaspart.
     """
     examiner = Examiner(examined)
-    manner = trajectory.Manner(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
+    options = trajectory.WriteOptions(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
     if duration is None:
-        return trajectory.resume(path, manner)
-    return trajectory.extend(path, duration, manner)
+        return trajectory.resume(path, options)
+    return trajectory.extend(path, duration, options)
 
 
 def require_measurable(

@@ -124,7 +124,7 @@ def record(recipe: Recipe, path: Path, overwrite: bool) -> None:
     from gaspart.trajectory import run as trajectory
 
     examiner = import_module(EXAMINER).Examiner() if recipe.until else None
-    trajectory.record(recipe, path, trajectory.Manner(overwrite=overwrite, examiner=examiner))
+    trajectory.record(recipe, path, trajectory.WriteOptions(overwrite=overwrite, examiner=examiner))
 
 
 def recipes(
