@@ -14,6 +14,7 @@ from gaspart.engines import Engine
 from gaspart.engines.belonging import belonging, check_belonging
 from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
+from gaspart.keys.values import count_of, number
 from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene
 from gaspart.scene.species import Particle, Species
 from gaspart.scene.walls import Plate, Wall, box_of_walls
@@ -22,7 +23,6 @@ from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import OptionalTally, StressTally
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
-from gaspart.values import count_of, number
 
 if TYPE_CHECKING:
     from gaspart.rendering.view import View

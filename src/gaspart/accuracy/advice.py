@@ -22,10 +22,10 @@ from gaspart.analysis import finite
 from gaspart.analysis.observables import OBSERVABLES, having, require_modelled
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.errors import SceneError
+from gaspart.keys.values import number
 from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.recipe import Recipe
-from gaspart.values import number
 
 ACCURACIES = 1e-8, 1.0
 """The best relative accuracy that float64 sums and the table support, and the worst."""

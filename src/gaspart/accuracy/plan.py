@@ -23,10 +23,10 @@ from gaspart.accuracy.trials import Announce, Trials
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
+from gaspart.keys.values import number
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.until import Requirement, Until
-from gaspart.values import number
 
 _FRAMES = 384
 """Of a run: 288 independent intervals give an error 17 degrees of freedom, and 15 are required."""

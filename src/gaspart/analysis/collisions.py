@@ -21,12 +21,12 @@ from gaspart.analysis.statistics import mean_of
 from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
 from gaspart.files import Kind, begins_with, descriptor_path, open_regular, writing
+from gaspart.keys.values import count_of, number
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.trajectory.provenance import git_revision, versions
-from gaspart.values import count_of, number
 
 _CHUNK = 20_000  # events that are kept at once
 _PATIENCE = 1_000_000  # events without a collision of two particles

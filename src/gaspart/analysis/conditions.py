@@ -10,13 +10,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.driving import has_dragged_faces
 from gaspart.scene.faces import thermal_numbers
 from gaspart.scene.gas import plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.stress import require_tallied
-from gaspart.values import count_of, number, one_of
 
 Selection = Mapping[str, Any]
 GROUPS = 16

@@ -11,7 +11,7 @@ from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.profiles import Cells, with_freedom
 from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.errors import SceneError
-from gaspart.values import count_of, one_of
+from gaspart.keys.values import count_of, one_of
 
 QUANTITIES = ("density", "velocity", "temperature")
 

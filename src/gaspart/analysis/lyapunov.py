@@ -14,9 +14,9 @@ import numpy as np
 
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, scalar
 from gaspart.errors import SceneError
+from gaspart.keys.values import number
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
-from gaspart.values import number
 
 ALIGNMENT = 0.25
 """The part of the events in which the deviation turns to the direction of fastest growth, not measured."""

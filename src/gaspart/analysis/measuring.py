@@ -39,9 +39,9 @@ def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterat
         yield source
         return
     from gaspart.analysis.run import repeated
+    from gaspart.keys.values import number
     from gaspart.simulation import Simulation
     from gaspart.trajectory.reading import open_trajectory
-    from gaspart.values import number
 
     if isinstance(source, Simulation):
         source = repeated(source, pairs)

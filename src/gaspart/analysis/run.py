@@ -18,6 +18,7 @@ from gaspart.analysis.conditions import SLIDING
 from gaspart.analysis.flow import Peculiar, about_the_flow, flow_axes
 from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
+from gaspart.keys.values import count_of, number
 from gaspart.scene.gas import Gas, Mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
@@ -26,7 +27,6 @@ from gaspart.state.insertion import per_particle
 from gaspart.state.tally import Tally
 from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.reading import open_trajectory
-from gaspart.values import count_of, number
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 Source: TypeAlias = str | Path | xr.Dataset | Simulation

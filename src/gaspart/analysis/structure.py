@@ -17,7 +17,7 @@ from gaspart.analysis.room import left_by_obstacles
 from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
-from gaspart.values import count_of, one_of
+from gaspart.keys.values import count_of, one_of
 
 _CONSTANT = 1e-5  # relative change of an energy that is attributed to rounding
 FASTEST = 4.0

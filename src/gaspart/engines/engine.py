@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, ClassVar, Protocol, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.keys import from_mapping, validate
+from gaspart.keys.values import one_of
 from gaspart.scene.features import FEATURES, features
-from gaspart.values import one_of
 
 if TYPE_CHECKING:
     import numpy as np

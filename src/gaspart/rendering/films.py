@@ -14,6 +14,7 @@ import numpy as np
 
 from gaspart.errors import SceneError, optional
 from gaspart.files import Kind, begins_with, output_path, whole_file, writing
+from gaspart.keys.values import count_of, number
 from gaspart.rendering.frames import opened, particles_of
 from gaspart.rendering.labels import Labels, time_format
 from gaspart.rendering.particles import FASTEST, colours_of, legend_of
@@ -22,7 +23,6 @@ from gaspart.rendering.shown import Film
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
-from gaspart.values import count_of, number
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import count_of
 from gaspart.rendering.labels import Labels
 from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
@@ -26,7 +27,6 @@ from gaspart.state.initial import initial_state
 from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
 from gaspart.trajectory.reading import open_trajectory
-from gaspart.values import count_of
 from gaspart.yaml_text import parse_yaml
 
 if TYPE_CHECKING:

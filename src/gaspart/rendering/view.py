@@ -15,6 +15,7 @@ from gaspart.analysis.order import NEIGHBOURS, hexatic, local_steinhardt
 from gaspart.analysis.run import repeated
 from gaspart.errors import SceneError
 from gaspart.files import Kind, output_path, writing
+from gaspart.keys.values import count_of
 from gaspart.rendering.camera import edges_of
 from gaspart.rendering.frames import opened, particles_of
 from gaspart.rendering.particles import FASTEST, DrawnParticles
@@ -22,7 +23,6 @@ from gaspart.rendering.style import COLOURS
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
-from gaspart.values import count_of
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,6 +10,7 @@ from typing import Any
 
 from gaspart.errors import SceneError, unknown_word
 from gaspart.keys import require
+from gaspart.keys.values import finite, size
 from gaspart.reproduction.claims.captions import filled, place_fault
 from gaspart.reproduction.config_files import merged_with_default, origin
 from gaspart.reproduction.families import registry
@@ -19,7 +20,6 @@ from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points, points
 from gaspart.reproduction.report.caption import divided
 from gaspart.reproduction.schema import schema
-from gaspart.values import finite, size
 from gaspart.yaml_text import DEEPEST, MOST_VALUES, read_yaml
 
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import Engine, EventDriven, engine_to_dict
 from gaspart.errors import SceneError, unknown_word
+from gaspart.keys.values import count_of, number
 from gaspart.reproduction.config import check_point, gridded_points
 from gaspart.reproduction.jobs.simulate import recipes
 from gaspart.reproduction.points.measurable import distinct, require_observable
@@ -30,7 +31,6 @@ from gaspart.scene.scene import Scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
 from gaspart.trajectory.until import Until
-from gaspart.values import count_of, number
 
 if TYPE_CHECKING:
     import xarray as xr

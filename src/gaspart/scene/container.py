@@ -8,7 +8,7 @@ from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.keys import POSITIVE, declared, described, set_fields, validate
-from gaspart.values import finite_vector, one_of, positive_number
+from gaspart.keys.values import finite_vector, one_of, positive_number
 
 BOUNDARIES = ("wall", "periodic")
 _PER_AXIS = {"type": "array", "minItems": 2, "maxItems": 3}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import finite_vector, size
 from gaspart.scene.faces import (
     FACES,
     GRADIENT,
@@ -18,7 +19,6 @@ from gaspart.scene.faces import (
     pistons,
 )
 from gaspart.scene.limits import closest_packing
-from gaspart.values import finite_vector, size
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene

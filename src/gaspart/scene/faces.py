@@ -22,7 +22,7 @@ from gaspart.keys import (
     validate,
     vector,
 )
-from gaspart.values import one_of, size
+from gaspart.keys.values import one_of, size
 
 if TYPE_CHECKING:
     import numpy as np

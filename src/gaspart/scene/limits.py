@@ -8,8 +8,8 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import finite_vector
 from gaspart.scene.geometry import CLOSE_PACKING
-from gaspart.values import finite_vector
 
 if TYPE_CHECKING:
     from gaspart.scene.container import Container

@@ -27,6 +27,7 @@ from gaspart.keys import (
     validate,
     vector,
 )
+from gaspart.keys.values import MOST_PARTICLES, finite_vector
 from gaspart.scene.container import Container
 from gaspart.scene.driving import check_driven
 from gaspart.scene.face_checks import check_faces
@@ -40,7 +41,6 @@ from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Particle, Species
 from gaspart.scene.thermostat import Thermostat
 from gaspart.scene.walls import WALL_RULE, Plate, Wall, check_walls, wall_kind
-from gaspart.values import MOST_PARTICLES, finite_vector
 from gaspart.yaml_text import read_yaml, write_yaml
 
 _CONTACT = 0.01  # of sqrt(d/g): the default duration of a contact

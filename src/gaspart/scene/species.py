@@ -22,8 +22,8 @@ from gaspart.keys import (
     validate,
     vector,
 )
+from gaspart.keys.values import LARGEST, MOST_PARTICLES, SMALLEST, finite_vector, number, size
 from gaspart.scene.sizes import DISTRIBUTIONS, MOST_UNIFORM, relative_radii
-from gaspart.values import LARGEST, MOST_PARTICLES, SMALLEST, finite_vector, number, size
 
 if TYPE_CHECKING:
     import numpy as np

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
 from gaspart.keys import declared, two_vectors, validate, vector
-from gaspart.values import finite_vector, positive_number
+from gaspart.keys.values import finite_vector, positive_number
 
 if TYPE_CHECKING:
     from gaspart.scene.container import Container

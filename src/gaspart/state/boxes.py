@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import partition
 from gaspart.scene.scene import Scene
-from gaspart.values import partition
 
 NOWHERE = -1
 

@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import count_of, number
 from gaspart.scene.faces import mean_velocity
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.optional_tallies import OptionalTally, StressTally
 from gaspart.state.tally import ACTION, HEAT
-from gaspart.values import count_of, number
 
 SUMS = {
     "velocity_product_sum": "v(0).v(t)",

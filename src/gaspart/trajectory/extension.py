@@ -12,11 +12,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import number
 from gaspart.trajectory.checkpoint import Checkpoint, checkpoint_path, read_checkpoint, write_checkpoint
 from gaspart.trajectory.frames import Frames, frames_of
 from gaspart.trajectory.opening import check_frames, checked
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
-from gaspart.values import number
 
 
 def longer(path: Path, duration: float) -> Recipe:

@@ -12,6 +12,7 @@ import numpy as np
 from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
+from gaspart.keys.values import count_of, number
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
@@ -25,7 +26,6 @@ from gaspart.trajectory.correlator import Correlations, sum_names
 from gaspart.trajectory.opening import opened
 from gaspart.trajectory.pairs import pair_names, pairs_of
 from gaspart.trajectory.until import Until
-from gaspart.values import count_of, number
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:

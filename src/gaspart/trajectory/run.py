@@ -14,6 +14,7 @@ from typing import BinaryIO
 
 from gaspart.errors import SceneError
 from gaspart.files import OVERWRITE, may_replace, open_regular, output_path, place
+from gaspart.keys.values import number
 from gaspart.simulation import Simulation
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import (
@@ -30,7 +31,6 @@ from gaspart.trajectory.partial import TRAJECTORY, locked, partial_path, writing
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
 from gaspart.trajectory.recording import Progress, Recording
 from gaspart.trajectory.stage import Examiner, examination, is_complete, is_finished
-from gaspart.values import number
 
 
 @dataclass(frozen=True)

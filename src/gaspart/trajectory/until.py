@@ -9,7 +9,7 @@ from dataclasses import asdict, astuple, dataclass
 from itertools import takewhile
 
 from gaspart.errors import SceneError
-from gaspart.values import number
+from gaspart.keys.values import number
 
 _ACCURACIES = 1e-8, 1.0
 _FIRST = 64, 96

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gaspart.errors import SceneError, shown
+from gaspart.keys.values import MOST_PARTICLES
 from gaspart.reproduction.points.point_keys import EXTENTS, GAS, PREFIX
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.sizes import DISTRIBUTIONS
-from gaspart.values import MOST_PARTICLES
 from gaspart.yaml_text import read_yaml
 
 if TYPE_CHECKING:

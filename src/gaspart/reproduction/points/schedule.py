@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import LARGEST, SMALLEST
 from gaspart.reproduction.points.point_keys import LENGTHS
-from gaspart.values import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
     from gaspart.reproduction.points.point import Point
