@@ -22,7 +22,7 @@ from gaspart.interruption import scratch_file
 _HERE, _NO_REPLACE = -100, 1
 """AT_FDCWD and RENAME_NOREPLACE of Linux's renameat2."""
 
-_KINDS = {stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket", stat.S_IFLNK: "a link"}
+_SPECIAL_FILES = {stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket", stat.S_IFLNK: "a link"}
 _SCRATCH = re.compile(r"\.gaspart-[0-9a-f]{12}-(\d+)-[0-9a-f]{8}\.partial")
 """The name of a scratch file, with the number of the process that writes it."""
 
@@ -79,7 +79,7 @@ def _require_regular(found: os.stat_result, path: str | Path) -> None:
     if stat.S_ISDIR(found.st_mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if not stat.S_ISREG(found.st_mode):
-        kind = _KINDS.get(stat.S_IFMT(found.st_mode), "a device")
+        kind = _SPECIAL_FILES.get(stat.S_IFMT(found.st_mode), "a device")
         raise OSError(errno.EINVAL, f"it is {kind}, not a regular file", str(path))
 
 

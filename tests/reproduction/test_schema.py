@@ -107,8 +107,8 @@ def test_the_schema_of_configs_is_the_one_that_is_checked():
 
 
 def test_the_tables_of_the_engines_follow_from_the_keys():
-    assert set(point_keys.ENGINES["event"]) == {"search", "boxes_per_side", "boxes_per_particle"}
-    assert {"time_step", "skin", "boxes_per_side"} <= set(point_keys.ENGINES["step"])
+    assert set(point_keys.ENGINE_KEYS["event"]) == {"search", "boxes_per_side", "boxes_per_particle"}
+    assert {"time_step", "skin", "boxes_per_side"} <= set(point_keys.ENGINE_KEYS["step"])
     whole = {"dimension", "count", "samples", "steps", "attempts", "follow", "lags", "frames"}
     assert whole | {"replicas", "passes", "threads"} == config_keys.WHOLE
 

@@ -31,14 +31,14 @@ What the keys are for is explained in [the config page](config.md).
 For editors, `workflow/schemas` has the same rules as JSON schemas.
 A key without a default is required. A default of *none* means that the key is absent.
 """
-_OBSERVABLES = """## Observables
+_OBSERVABLES_INTRODUCTION = """## Observables
 
 What `gaspart measure`, `gp.sweep`, `gaspart advise` and figures of one's own know by name, in units of
 length, mass, time and energy with k_B = 1, d the dimension. A scene that breaks a condition is refused before
 a run. Theory is that of the equation that the engine of a run solves: of particles that touch, or of the
 Boltzmann or the Enskog equation.
 """
-_FEATURES = """## Features and engines
+_FEATURES_INTRODUCTION = """## Features and engines
 
 Which engine models what, and which features exclude each other.
 All engines model any number of species, whose radii and masses may differ.
@@ -96,7 +96,7 @@ def reference() -> str:
         ),
         ("Point: a scene file", point_keys.SCENE_FILE),
         ("Point: engine", point_keys.ENGINE),
-        *((f"Point: engine `{name}`", table) for name, table in point_keys.ENGINES.items()),
+        *((f"Point: engine `{name}`", table) for name, table in point_keys.ENGINE_KEYS.items()),
         ("Point: length (exactly one of them)", point_keys.LENGTHS),
         ("Point: run", config_keys.RUN),
         ("Animation", config_keys.ANIMATION),
@@ -113,7 +113,7 @@ def reference() -> str:
     parts += ["## Scene file\n", _table(scene["properties"])]
     for name, part in _parts(scene):
         parts += [f"### {name}\n\n{part['description']}\n", _table(part["properties"])]
-    parts += [_FEATURES, _models(), _excluded(), _OBSERVABLES, _observables()]
+    parts += [_FEATURES_INTRODUCTION, _models(), _excluded(), _OBSERVABLES_INTRODUCTION, _observables()]
     return "\n".join(parts)
 
 

@@ -22,7 +22,7 @@ from gaspart.reproduction.config import check_point, gridded_points
 from gaspart.reproduction.jobs.simulate import recipes
 from gaspart.reproduction.points.measurable import distinct, require_observable
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.points.point_keys import ENGINES, EXTENTS, GAS, PREFIX
+from gaspart.reproduction.points.point_keys import ENGINE_KEYS, EXTENTS, GAS, PREFIX
 from gaspart.reproduction.sweep_axes import axes_of, names_of
 from gaspart.reproduction.sweep_points import make_all
 from gaspart.reproduction.sweep_table import Measured, measured, table
@@ -215,7 +215,7 @@ def _kept(names: list[str], correlations: Correlations | None, length: dict[str,
 
 def point_keys(engine: Engine) -> set[str]:
     """The keys of a config that a sweep may vary: those of a gas and of the engine."""
-    return {*EXTENTS, *GAS, *ENGINES[engine.name]}
+    return {*EXTENTS, *GAS, *ENGINE_KEYS[engine.name]}
 
 
 def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from gaspart.errors import SceneError
 from gaspart.keys.values import finite_vector, size
 from gaspart.scene.faces import (
+    FACE_KINDS,
     FACES,
     GRADIENT,
-    KINDS,
     LeesEdwards,
     Piston,
     Sticky,
@@ -33,8 +33,8 @@ def check_faces(scene: Scene) -> None:
     for name, surface in scene.faces.items():
         if name not in known:
             raise SceneError(f"faces.{name}", surface, f"unknown face; known are {', '.join(known)}")
-        if type(surface) not in KINDS.values():
-            *others, last = (kind.__name__ for kind in KINDS.values())
+        if type(surface) not in FACE_KINDS.values():
+            *others, last = (kind.__name__ for kind in FACE_KINDS.values())
             raise SceneError(f"faces.{name}", surface, f"must be {', '.join(others)} or {last}")
         axis = known.index(name) // 2
         if isinstance(surface, LeesEdwards):

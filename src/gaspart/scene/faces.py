@@ -36,7 +36,7 @@ FLOW, GRADIENT = 0, 1
 """The axes of the flow of a sheared gas and of its gradient."""
 
 
-KINDS: dict[str, type[Surface]] = {}
+FACE_KINDS: dict[str, type[Surface]] = {}
 """All kinds of faces, by name; `Surface` adds each."""
 
 
@@ -51,7 +51,7 @@ class Surface:
     moves: ClassVar[bool] = False
 
     def __init_subclass__(cls) -> None:
-        KINDS[cls.kind] = cls
+        FACE_KINDS[cls.kind] = cls
 
     def __post_init__(self) -> None:
         validate(self)
@@ -248,7 +248,7 @@ SCHEMA = {
     "additionalProperties": {
         "anyOf": [
             schema_of(face, kind=described({"const": name}, "the kind of face"))
-            for name, face in KINDS.items()
+            for name, face in FACE_KINDS.items()
         ]
     },
 }
@@ -256,12 +256,12 @@ SCHEMA = {
 
 
 def surface_from_dict(mapping: object, where: str) -> Surface:
-    """The face that {"kind": one of `KINDS`, setting: value, ...} describes."""
+    """The face that {"kind": one of `FACE_KINDS`, setting: value, ...} describes."""
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping with a kind")
     settings = dict(mapping)
-    kind = one_of(f"{where}.kind", settings.pop("kind", None), KINDS)
-    return from_mapping(KINDS[kind], settings, where)
+    kind = one_of(f"{where}.kind", settings.pop("kind", None), FACE_KINDS)
+    return from_mapping(FACE_KINDS[kind], settings, where)
 
 
 def surface_to_dict(surface: Surface) -> dict:

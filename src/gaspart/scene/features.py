@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, KINDS, sliding_faces
+from gaspart.scene.faces import FACE_KINDS, FACES, sliding_faces
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -81,7 +81,7 @@ FEATURES: dict[str, Feature] = {
         "centres_to_walls",
         lambda scene: scene.centres_to_walls or None,
     ),
-    **{kind: _face(kind) for kind in KINDS},
+    **{kind: _face(kind) for kind in FACE_KINDS},
     "sliding": Feature(
         "thermal faces that move along themselves",
         "faces",

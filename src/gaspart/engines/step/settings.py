@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
 from gaspart.keys import choice, count, declared, flag, per_side, positive
-from gaspart.scene.faces import KINDS
+from gaspart.scene.faces import FACE_KINDS
 
 if TYPE_CHECKING:
     from gaspart.engines.step.dynamics import StepDynamics
@@ -68,7 +68,7 @@ class TimeStepped(Engine):
     title: ClassVar[str] = "time-stepped"
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "fixed", "vibrations", "centres_to_walls", "polydispersity")
-    ) | {kind for kind, face in KINDS.items() if not face.moves}
+    ) | {kind for kind, face in FACE_KINDS.items() if not face.moves}
     excludes: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "gravity"), ("fixed", "gravity"))
     same_bits: ClassVar[tuple[str, ...]] = ("boxes_per_side", "near_boxes", "skin", "threads")
     counters: ClassVar[tuple[str, ...]] = (

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import visible
 from gaspart.files import whole_file
-from gaspart.reproduction.claims.claim import KINDS, Claim
+from gaspart.reproduction.claims.claim import CLAIM_KINDS, Claim
 from gaspart.reproduction.claims.judging import (
     VERDICTS,
     family_test,
@@ -120,12 +120,12 @@ def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
 
 
 def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
-    """How many claims of each kind have each verdict: {kind: {verdict: number}}, in the order of KINDS and
-    VERDICTS, without those that do not occur."""
+    """How many claims of each kind have each verdict: {kind: {verdict: number}}, in the order of CLAIM_KINDS
+    and VERDICTS, without those that do not occur."""
     pairs = [(row["kind"], row["verdict"]) for row in rows]
     return {
         kind: {verdict: pairs.count((kind, verdict)) for verdict in VERDICTS if (kind, verdict) in pairs}
-        for kind in KINDS
+        for kind in CLAIM_KINDS
         if any(kind == other for other, _ in pairs)
     }
 

@@ -32,7 +32,7 @@ FEATURES = {
     "walls",
 }  # fmt: skip
 """Arguments of the kernels that are None for a plain gas."""
-ENGINES = ("event", "step")
+COUNTED_ENGINES = ("event", "step")
 _PACKAGE = Path(__file__).parents[2]
 
 
@@ -109,7 +109,7 @@ def count_instructions(scene: Scene) -> PointData:
     complete, bare = counts
     return PointData(
         {"instructions": ("engine", complete), "stripped": ("engine", bare)},
-        {"engine": ("engine", list(ENGINES))},
+        {"engine": ("engine", list(COUNTED_ENGINES))},
     )
 
 

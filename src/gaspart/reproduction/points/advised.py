@@ -31,7 +31,7 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     except SceneError as error:
         raise error.inside(where) from None
     engine = advice.setting.engine
-    made = {key: value for key, value in settings.items() if key not in point_keys.ENGINES["auto"]} | {
+    made = {key: value for key, value in settings.items() if key not in point_keys.ENGINE_KEYS["auto"]} | {
         "engine": engine.name
     }
     if isinstance(engine, TimeStepped):

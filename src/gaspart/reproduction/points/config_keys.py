@@ -12,7 +12,7 @@ from gaspart.keys import TEXT, Kind, choice, count, described, flag, listed, nul
 from gaspart.reproduction.points.jobs import JOBS
 from gaspart.reproduction.points.point_keys import (
     ENGINE,
-    ENGINES,
+    ENGINE_KEYS,
     EXTENTS,
     GAS,
     LENGTHS,
@@ -32,7 +32,7 @@ _TAKEN = (
 def _of_any_engine() -> dict[str, Kind]:
     """The keys of all engines; what one means is stated for each engine that has another meaning of it."""
     merged: dict[str, Kind] = {}
-    for engine, keys in ENGINES.items():
+    for engine, keys in ENGINE_KEYS.items():
         for name, kind in keys.items():
             meaning = kind["description"]
             known = merged.setdefault(name, kind.stating(default=None))["description"]

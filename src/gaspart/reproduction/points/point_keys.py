@@ -108,7 +108,7 @@ def _settings(engine: Any) -> dict[str, Kind]:
     return {**made, **({"boxes_per_particle": _BOXES_PER_PARTICLE} if "boxes_per_side" in made else {})}
 
 
-ENGINES: dict[str, dict[str, Kind]] = {
+ENGINE_KEYS: dict[str, dict[str, Kind]] = {
     **{name: _settings(engine) for name, engine in engines.ENGINES.items()},
     "auto": {
         "accuracy": positive(

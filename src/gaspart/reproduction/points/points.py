@@ -58,7 +58,7 @@ def _chosen(point: Point) -> Point:
         from gaspart.reproduction.points.advised import chosen
 
         return replace(point, settings=chosen(point.settings, point.scene, where))
-    for key in point_keys.ENGINES["auto"]:
+    for key in point_keys.ENGINE_KEYS["auto"]:
         if key in point.settings:
             raise SceneError(f"{where}.{key}", point.settings[key], "needs engine: auto")
     return point
