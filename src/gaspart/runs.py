@@ -24,6 +24,7 @@ from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.recording import Progress
+from gaspart.trajectory.run import WriteOptions
 from gaspart.trajectory.until import Requirement, Until
 
 
@@ -110,9 +111,7 @@ def run(
     start = _start(initial, scene, _required(path))
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
     recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
-    options = trajectory.WriteOptions(
-        checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint
-    )
+    options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return trajectory.record(recipe, _required(path), options)
 
 
@@ -179,7 +178,7 @@ def resume(
     complete trajectory of gaspart.
     """
     examiner = Examiner(examined)
-    options = trajectory.WriteOptions(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
+    options = WriteOptions(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
     if duration is None:
         return trajectory.resume(path, options)
     return trajectory.extend(path, duration, options)

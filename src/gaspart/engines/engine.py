@@ -83,7 +83,7 @@ class Engine:
     such an engine fills; same_bits: settings that change no bit of its results; keeps_apart: whether
     particles never overlap; tallies: names of the `state.optional_tallies` that it can make; models: names of
     the `scene.features` that it models, and excludes: pairs of them that it does not model together;
-    first_stretch: the work, in events or steps, that a run begins with between two looks at the clock.
+    first_segment: the work, in events or steps, that a run begins with between two looks at the clock.
     """
 
     name: ClassVar[str]
@@ -95,7 +95,7 @@ class Engine:
     same_bits: ClassVar[tuple[str, ...]] = ()
     keeps_apart: ClassVar[bool] = True
     tallies: ClassVar[frozenset[str]] = frozenset()
-    first_stretch: ClassVar[int] = 1
+    first_segment: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
         validate(self)

@@ -51,7 +51,7 @@ class EventDriven(Engine):
     tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear"))
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     same_bits: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
-    first_stretch: ClassVar[int] = 256  # events with crossings and predictions
+    first_segment: ClassVar[int] = 256  # events with crossings and predictions
 
     def __post_init__(self) -> None:
         super().__post_init__()
