@@ -27,7 +27,7 @@ _SCRATCH = re.compile(r"\.gaspart-[0-9a-f]{12}-(\d+)-[0-9a-f]{8}\.partial")
 """The name of a scratch file, with the number of the process that writes it."""
 
 OVERWRITE = "overwrite it (overwrite=True)"
-"""What the rule of a file that exists proposes; the command line has its own option for it."""
+"""The proposal in the rule of a file that exists; the command line has its own option for it."""
 
 
 @dataclass(frozen=True)

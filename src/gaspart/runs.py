@@ -116,8 +116,8 @@ def run(
 
 
 def _start(initial: State | str | Path | None, scene: Scene, path: str | Path) -> State | None:
-    """What a run at `path` starts from: of a file its last state. Raises SceneError if that is the same file,
-    by whatever name: it would be lost."""
+    """The initial state of a run at `path`: of a file its last state. Raises SceneError if that is the same
+    file, by whatever name: it would be lost."""
     if not isinstance(initial, str | Path):
         return initial
     from gaspart.inspection.start import STARTS, read_state  # which few runs need
@@ -142,7 +142,7 @@ def _request(
     until: Accuracy | list[Accuracy] | tuple[Accuracy, ...] | None,
     at_most: float | None,
 ) -> Until | None:
-    """What ends a run in place of a duration. Raises SceneError for what excludes or needs each other."""
+    """The end of a run without a duration. Raises SceneError for what excludes or needs each other."""
     if until is not None:
         if duration is not None:
             rule = "excludes until, which ends the run; the longest duration is at_most"

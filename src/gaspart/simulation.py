@@ -249,7 +249,7 @@ class Simulation:
         return self._log.events
 
     def again(self) -> Simulation:
-        """The same simulation at its start."""
+        """This simulation at its start."""
         return Simulation(self.scene, self.engine, self.seed, initial=self._given, tallies=self._tallies)
 
     def replay(self, by: str = "time", interval: float | None = None) -> Iterator[State]:

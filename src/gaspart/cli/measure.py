@@ -238,7 +238,7 @@ def _parts(observable: Observable) -> list[tuple[str, Observable]]:
 
 
 def _writer(given: argparse.Namespace, names: list[str]) -> Callable[[Observable], None]:
-    """What writes the result, after the arguments were checked."""
+    """The function that writes the result, after a check of the arguments."""
     if given.output is None:
         return lambda observable: None
     path = output_path(given.output)

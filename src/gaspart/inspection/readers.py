@@ -50,7 +50,7 @@ def read_frames(
 
 
 def read_contents(path: Path, given: Given) -> Contents:
-    """What a trajectory states, as `read_frames` reads it. Raises SceneError."""
+    """The contents of a file, as `read_frames` reads it. Raises SceneError."""
     with _reading(path):
         return _contents(path, given)
 

@@ -27,7 +27,7 @@ class Kind(dict[str, Any]):
         self.check = check
 
     def stating(self, **more: Any) -> Kind:
-        """The same kind, with more in its schema."""
+        """This kind with more in its schema."""
         return Kind({**self, **more}, self.check)
 
 

@@ -41,7 +41,7 @@ _SAMPLES = 128
 _KEPT = ("radius", "packing_fraction", "count", "side")
 """The extents of a gas in the order in which they keep their values where others vary."""
 _KEPT_OF_SIZES = ("radius", "count", "packing_fraction", "side")
-"""The same of a polydisperse species, whose radii follow from their number."""
+"""Keys of a polydisperse species, whose radii follow from their number."""
 Progress: TypeAlias = Callable[[int, int, str], None]
 
 
@@ -170,7 +170,7 @@ def _length(
     samples: int | None,
     equilibration: float | None,
 ) -> dict[str, Any]:
-    """What a point states of its length. Raises SceneError."""
+    """The keys of the length of a point. Raises SceneError."""
     if (duration is None) == (until is None):
         raise SceneError("duration", duration, "must be given, or until, but not both")
     key, value = ("duration", duration) if until is None else ("at_most", at_most)
@@ -192,7 +192,7 @@ def _length(
 
 
 def _kept(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
-    """What a point states of the contents of its files. Raises SceneError."""
+    """The keys of the contents of a point's files. Raises SceneError."""
     needs = {OBSERVABLES[name].needs for name in names}
     if "until" in length:
         if correlations is not None:
@@ -219,7 +219,7 @@ def point_keys(engine: Engine) -> set[str]:
 
 
 def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
-    """What a point states of its scene and its engine beside what varies. Raises SceneError."""
+    """The keys of a point's scene and engine, without those that vary. Raises SceneError."""
     settings = {key: value for key, value in engine_to_dict(engine).items() if value is not None}
     settings = {("engine" if key == "name" else key): value for key, value in settings.items()}
     settings = {key: value for key, value in settings.items() if key not in axes}

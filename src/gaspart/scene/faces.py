@@ -129,7 +129,7 @@ class Well(Surface):
 
     @property
     def rule(self) -> tuple[str, float]:
-        """That of the wall behind the well."""
+        """The kind and the level of the wall behind the well."""
         return ("hard", 0.0) if self.temperature is None else ("thermal", self.temperature)
 
     @property

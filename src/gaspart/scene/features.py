@@ -1,4 +1,4 @@
-"""What a scene has besides smooth, elastic particles in a hard or periodic container, each by a name.
+"""Features of a scene: all but smooth, elastic particles in a hard or periodic container, each by a name.
 
 `FEATURES` is the table of all features, `EXCLUDED` that of pairs which no scene may have. An engine states
 those that it models (`Engine.models`): what it refuses, and the table in the documentation, follow from it.

@@ -38,7 +38,7 @@ CORRELATED = {
     "ends": "(J(0) + J(t)) / 2, J = dG/dt over an interval",
     "change": "G(t) - G(0)",
 }
-"""What is summed of each over pairs of samples; the last two of `bulk` only, whose mean is not zero."""
+"""Summands of each over pairs of samples; the last two of `bulk` only, whose mean is not zero."""
 _PREFIX = "correlator "  # of its arrays in a checkpoint
 
 
@@ -107,7 +107,7 @@ def stress_units() -> dict[str, str]:
 
 
 def meaning_of(name: str) -> str:
-    """What a sum adds up."""
+    """The summand of a sum, in words."""
     if name in SUMS:
         return f"mean over moving particles of {SUMS[name]}"
     group, kind = name.split("_")[:2]

@@ -19,12 +19,12 @@ from gaspart.trajectory.recording import Examine
 from gaspart.trajectory.until import Until, is_examined
 
 Examiner: TypeAlias = Callable[[Path, Until, int], float]
-"""What examines the first frames of a file: the largest error over the required one, inf if unknown, 0 to
+"""Examines the first frames of a file: the largest error over the required one, inf if unknown, 0 to
 give up."""
 
 
 class Content(Enum):
-    """What a file has, for a run that is wanted."""
+    """The content of a file, compared with a run that is wanted."""
 
     NOTHING = "there is no file, or an empty one"
     BEGUN = "this run, unfinished"
@@ -34,7 +34,7 @@ class Content(Enum):
 
 
 class Action(Enum):
-    """What is done next."""
+    """The next step of a run."""
 
     NONE = "the run is finished"
     WRITE = "begin or continue in the partial file"
@@ -71,7 +71,7 @@ def is_finished(wanted: Recipe, path: Path, examiner: Examiner | None, overwrite
 
 
 def _content(path: Path, wanted: Recipe, examiner: Examiner | None) -> Content:
-    """What is at the path of a run. Raises SceneError for a file of another kind."""
+    """The content at the path of a run. Raises SceneError for a file of another kind."""
     if not may_replace(path, TRAJECTORY, overwrite=True):
         return Content.NOTHING
     if begun_as(path, wanted):
@@ -83,7 +83,7 @@ def _content(path: Path, wanted: Recipe, examiner: Examiner | None) -> Content:
 
 
 def _partial_content(partial: Path, wanted: Recipe) -> Content:
-    """What is in the partial file of a run. Raises SceneError for a file of another kind."""
+    """The content of the partial file of a run. Raises SceneError for a file of another kind."""
     with suppress(FileNotFoundError):  # another process has finished it just now
         if may_replace(partial, UNFINISHED, overwrite=True) and not is_blank(partial):
             if begun_as(partial, wanted):
@@ -99,7 +99,7 @@ def is_complete(wanted: Recipe, path: Path, frames: int, examiner: Examiner | No
 
 
 def examination(wanted: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
-    """What examines the first frames of a file of a run that ends when it is accurate, None for others."""
+    """The examination of the first frames of a run that ends when it is accurate; None for other runs."""
     until = wanted.until
     if until is None:
         return None

@@ -34,7 +34,7 @@ class Finished:
     config: dict[str, Any]
     """The merged config."""
     points: list[Point]
-    """Those of which figures and films are made."""
+    """The points of which figures and films are made."""
     configs: list[str]
     """The files of the config that are in `root`."""
 

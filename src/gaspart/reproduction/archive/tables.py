@@ -183,7 +183,7 @@ def _processor() -> str:
 
 
 def summary_of(run: Finished, files: Iterable[PointFile], trajectories: bool) -> Mapping[str, Any]:
-    """What `run.json` states: which run this is, at which revisions it was made, and on which machine the
+    """The content of `run.json`: which run this is, at which revisions it was made, and on which machine the
     archive was."""
     revisions = {file.revision for file in files if file.revision}
     return {

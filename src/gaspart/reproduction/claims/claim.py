@@ -136,7 +136,7 @@ class Claim:
 
     @property
     def form(self) -> str:
-        """What is stated: "value", "bound" (or two), or "distribution", of many numbers at once."""
+        """The kind of statement: "value", "bound" (or two), or "distribution", of many numbers at once."""
         if self.exact_deviation is not None:
             return "distribution"
         return "value" if self.bounds is None else "bound"

@@ -131,8 +131,8 @@ def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
 
 
 def summary(path: str | Path) -> str:
-    """What a claims table states: the number of claims, a line for each kind, "tests: 205 agree, 3 disagree",
-    and a line for each claim that disagrees. Raises ValueError as `read` does."""
+    """A summary of a claims table: the number of claims, a line for each kind, "tests: 205 agree, 3
+    disagree", and a line for each claim that disagrees. Raises ValueError as `read` does."""
     rows = read(path)
     lines = [f"{len(rows)} claims"]
     for kind, verdicts in counts(rows).items():

@@ -46,7 +46,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Those of `compare`. Raises SceneError."""
+    """The arguments of `compare`. Raises SceneError."""
     if point.engine.name != "step":
         raise point.refused("engine", "must be step with job: compare")
     return {"scene": point.scene, "engines": point.engines, "seed": point.seed(), **intervals(point)}
@@ -163,9 +163,9 @@ def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int
     log, exact = EventLog(scene.dimension), EventDriven().start(scene, state)
     exact.advance(state.time + steps * engine.time_step, None, log)
     listed = np.zeros((steps, state.count), dtype=bool)
-    at = ((log.events["time"] - state.time) / engine.time_step).astype(int)
+    step = ((log.events["time"] - state.time) / engine.time_step).astype(int)
     for side in range(2):
-        listed[np.minimum(at, steps - 1), log.events["particles"][:, side]] = True
+        listed[np.minimum(step, steps - 1), log.events["particles"][:, side]] = True
     dynamics, before = engine.start(scene, state), state.velocities.astype(engine.precision)
     differs = np.zeros((steps, state.count), dtype=bool)
     for n in range(steps):

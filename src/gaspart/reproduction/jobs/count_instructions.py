@@ -1,4 +1,4 @@
-"""What an absent feature leaves in the machine code of a kernel.
+"""Instructions that an absent feature leaves in the machine code of a kernel.
 
 Optional physics is passed to kernels as None, and numba removes the branches on it. Here they are removed
 from the source of the kernels instead, in a copy of the package, and the instructions of both are counted.
@@ -79,7 +79,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """That of `count_instructions`. Raises SceneError."""
+    """The argument of `count_instructions`. Raises SceneError."""
     return {"scene": point.scene}
 
 

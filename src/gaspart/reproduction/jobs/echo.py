@@ -45,7 +45,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Those of `echo`. Raises SceneError."""
+    """The arguments of `echo`. Raises SceneError."""
     return {"scene": point.scene, "engine": point.engine, "seeds": point.seeds, **intervals(point)}
 
 

@@ -29,7 +29,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Those of `fill`. Raises SceneError."""
+    """The arguments of `fill`. Raises SceneError."""
     if "attempts" not in point.settings:
         raise point.refused("attempts", "is required with job: fill")
     return {"scene": point.scene, "attempts": point.settings["attempts"], "seeds": point.seeds}

@@ -1,4 +1,4 @@
-"""What jobs that run a scene have in common: keys, and the division of a run into intervals."""
+"""Common to jobs that run a scene: keys, and the division of a run into intervals."""
 
 from __future__ import annotations
 

@@ -65,7 +65,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Those of `measure_cost`. Raises SceneError."""
+    """The arguments of `measure_cost`. Raises SceneError."""
     extras = [key for key in EXTRAS if point.settings.get(key)]
     if "record_events" in extras and not point.engine.records_events:
         raise point.refused("record_events", "has a meaning with job: measure_cost and engine: event only")
@@ -148,7 +148,7 @@ def measure_cost(
 
 
 def _attributes(scene: Scene, engine: Engine) -> dict:
-    """Those of a dataset: the gas, and the first engine."""
+    """The attributes of a dataset: the gas, and the first engine."""
     return {
         "count": scene.count,
         "dimension": scene.dimension,

@@ -63,12 +63,12 @@ def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
     from gaspart.trajectory.partial import TRAJECTORY, UNFINISHED
 
     kinds = {".nc.partial": UNFINISHED, ".checkpoint.npz": CHECKPOINT, ".failed.npz": CHECKPOINT}
-    found = []
+    left = []
     for path in sorted({*folder.iterdir()} - {*paths}):
         kind = kinds.get("".join(path.suffixes[-2:]), TRAJECTORY)
         if is_remainder(path) or (may_replace(path, kind, overwrite=True) and kind.recognises(path)):
-            found.append(path)
-    return found
+            left.append(path)
+    return left
 
 
 def replica_paths(folder: Path, replicas: int) -> list[Path]:

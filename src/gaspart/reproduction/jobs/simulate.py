@@ -62,7 +62,7 @@ KEYS: dict[str, Kind] = {
 }
 _NOT_WITH_UNTIL = ("lags", "frames", "stress", "pairs", "follow")
 EXAMINER = "gaspart.accuracy.reached"
-"""What examines a run with `until`."""
+"""The module that examines a run with `until`."""
 
 
 def engines(point: Point) -> list[Engine]:
@@ -76,7 +76,7 @@ def modules(point: Point) -> list[str]:
 
 
 def arguments(point: Point) -> dict:
-    """Those of `simulate`. Raises SceneError."""
+    """The arguments of `simulate`. Raises SceneError."""
     times, settings = point.schedule, point.settings
     given = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
     if "until" in settings:

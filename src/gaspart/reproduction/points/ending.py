@@ -1,6 +1,6 @@
-"""What ends the runs of a point with `until`.
+"""The end of the runs of a point with `until`.
 
-It is part of the arguments of a job, which so need not import the analysis.
+It is made here, and not by the job, whose module must not depend on the analysis.
 """
 
 from __future__ import annotations

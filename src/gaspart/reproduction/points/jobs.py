@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 
 
 class Job(Protocol):
-    """What the module of a job declares for planning, beside the function that does its work."""
+    """Declarations of a job for planning, beside the function that does its work."""
 
     RESULT: str
-    """What it makes, in words."""
+    """Its result, in words."""
     KEYS: dict[str, Kind]
     """The keys that have a meaning for it, beside those of the scene, the engine and the length."""
 

@@ -109,7 +109,7 @@ class Point:
 
     @cached_property
     def ending(self) -> dict:
-        """What its runs with `until` end by, as arguments of their recipes."""
+        """The end of its runs with `until`, as fields of their recipes."""
         return import_module("gaspart.reproduction.points.ending").ending(self)
 
     @cached_property
