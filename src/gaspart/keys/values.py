@@ -140,7 +140,7 @@ def true_or_false(key: str, value: Any) -> bool:
 
 def one_of(key: str, value: Any, known: Iterable[Any]) -> Any:
     """`value`, which must be one of the words, or numbers, `known`."""
-    if not any(type(value) is type(one) and value == one for one in known):
+    if not any(isinstance(value, type(one)) and value == one for one in known):
         raise SceneError(key, value, f"must be one of {tuple(known)}")
     return value
 
