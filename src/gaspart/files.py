@@ -31,7 +31,7 @@ OVERWRITE = "overwrite it (overwrite=True)"
 
 
 @dataclass(frozen=True)
-class Kind:
+class FileKind:
     """A kind of result: how messages name it, and whether a file is one, by its content."""
 
     name: str
@@ -104,7 +104,7 @@ def descriptor_path(file: IO[bytes]) -> str:
     return f"/proc/self/fd/{file.fileno()}"
 
 
-def may_replace(path: Path, kind: Kind | None, overwrite: bool) -> bool:
+def may_replace(path: Path, kind: FileKind | None, overwrite: bool) -> bool:
     """Whether there is a file at `path` that a result may replace; False if there is none.
 
     Raises SceneError for a folder, link or device, a file of another kind (None: any kind), and, without
@@ -124,7 +124,7 @@ def may_replace(path: Path, kind: Kind | None, overwrite: bool) -> bool:
     return True
 
 
-def place(scratch: Path, path: Path, kind: Kind | None, overwrite: bool) -> None:
+def place(scratch: Path, path: Path, kind: FileKind | None, overwrite: bool) -> None:
     """Rename `scratch` to `path`, atomically, if `may_replace` still allows it. May raise OSError."""
     while True:
         if may_replace(path, kind, overwrite):
@@ -133,7 +133,7 @@ def place(scratch: Path, path: Path, kind: Kind | None, overwrite: bool) -> None
             return _rename_to_new(scratch, path)
 
 
-def remove_own(path: Path, kind: Kind) -> None:
+def remove_own(path: Path, kind: FileKind) -> None:
     """Remove a file of this kind, by its content, and what a killed process left of one. Nothing else is
     removed: no link, no folder, no other file. May raise OSError."""
     _remove_remainders(path)
@@ -164,7 +164,7 @@ def _rename_to_new(old: Path, new: Path) -> None:
 
 
 @contextmanager
-def writing(path: str | Path, kind: Kind | None = None, overwrite: bool = False) -> Iterator[Path]:
+def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = False) -> Iterator[Path]:
     """Give a scratch file to write to; on success it is renamed to `path`, atomically.
 
     `may_replace` is applied before the work and again at its end. The scratch file is in the folder of

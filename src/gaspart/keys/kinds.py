@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 from gaspart.errors import SceneError
@@ -34,7 +35,7 @@ class Kind(dict[str, Any]):
 POSITIVE = Kind({"type": "number", "exclusiveMinimum": 0}, values.positive_number)
 NOT_NEGATIVE = Kind({"type": "number", "minimum": 0}, values.not_negative_number)
 NUMBER = Kind({"type": "number"}, values.sized_number)
-COUNT = Kind({"type": "integer", "minimum": 1}, values.count_of)
+COUNT = Kind({"type": "integer", "minimum": 1}, partial(values.count_of, least=1))
 FLAG = Kind({"type": "boolean"}, values.true_or_false)
 TEXT = Kind({"type": "string"})
 _PER_AXIS = {"minItems": 2, "maxItems": 3}

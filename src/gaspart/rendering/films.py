@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError, optional
-from gaspart.files import Kind, begins_with, output_path, whole_file, writing
+from gaspart.files import FileKind, begins_with, output_path, whole_file, writing
 from gaspart.keys.values import count_of, number
 from gaspart.rendering.frames import opened, particles_of
 from gaspart.rendering.labels import Labels, time_format
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FILM_FORMATS = {
-    ".mp4": Kind("an MP4 film", begins_with(b"ftyp", at=4)),
-    ".gif": Kind("a GIF picture", begins_with(b"GIF8")),
+    ".mp4": FileKind("an MP4 film", begins_with(b"ftyp", at=4)),
+    ".gif": FileKind("a GIF picture", begins_with(b"GIF8")),
 }
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from gaspart.analysis.order import NEIGHBOURS, hexatic, local_steinhardt
 from gaspart.analysis.run import repeated
 from gaspart.errors import SceneError
-from gaspart.files import Kind, output_path, writing
+from gaspart.files import FileKind, output_path, writing
 from gaspart.keys.values import count_of
 from gaspart.rendering.camera import edges_of
 from gaspart.rendering.frames import opened, particles_of
@@ -37,7 +37,7 @@ def _is_view(path: Path) -> bool:
         return _MARK.encode() in file.read(1000)
 
 
-PAGE = Kind("a page written by gaspart view", _is_view)
+PAGE = FileKind("a page written by gaspart view", _is_view)
 
 
 @dataclass(frozen=True)

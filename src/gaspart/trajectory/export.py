@@ -13,14 +13,14 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError, optional
-from gaspart.files import Kind, begins_with, descriptor_path, output_path, writing
+from gaspart.files import FileKind, begins_with, descriptor_path, output_path, writing
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.opening import check_frames, opened
 from gaspart.trajectory.recipe import read_recipe
 
 EXPORT_FORMATS = {
-    ".gsd": Kind("a GSD file", begins_with(b"\xdf\x65" * 4)),
-    ".data": Kind("LAMMPS data written by gaspart", begins_with(b"gaspart: ")),
+    ".gsd": FileKind("a GSD file", begins_with(b"\xdf\x65" * 4)),
+    ".data": FileKind("LAMMPS data written by gaspart", begins_with(b"gaspart: ")),
 }
 
 
