@@ -202,9 +202,9 @@ def _result(describe: Any, family: str, part: str, function: str, arguments: lis
 
 def _config(path: str) -> dict:
     from gaspart.reproduction.config import read_numbers
-    from gaspart.reproduction.points.overlay import laid_over
+    from gaspart.reproduction.config_files import merged_with_default
 
-    config, files = laid_over(Path(path))
+    config, files = merged_with_default(Path(path))
     read_numbers(config, files)
     return config
 

@@ -37,7 +37,7 @@ OF_SMOKE_RUN = ("test_smoke.py", "test_accessibility.py", "test_planning.py", "t
 # both compile it.
 WITHOUT_KERNELS = ("theory", "reproduction", "scene")
 COMPILING = tuple(
-    f"test_{name}.py" for name in ("measure", "digests", "rows", "sweep", "relaxation", "simulate_until")
+    f"test_{name}.py" for name in ("measure", "digests", "rows", "sweep", "relaxation", "simulate")
 )
 
 

@@ -163,9 +163,9 @@ def mutated_texts(draw):
 @cache
 def configs():
     """The smoke config's experiments, one of each kind, each as a config of its own with a figure."""
-    from gaspart.reproduction.config import laid_over
+    from gaspart.reproduction.config_files import merged_with_default
 
-    whole, _ = laid_over(ROOT / "config/smoke.yaml")
+    whole, _ = merged_with_default(ROOT / "config/smoke.yaml")
     found = {}
     for name, block in whole["experiments"].items():
         point = block["point"]

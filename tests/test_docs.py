@@ -11,7 +11,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.scene.faces import KINDS
+from gaspart.scene.faces import FACE_KINDS
 from gaspart.yaml_text import parse_yaml
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -140,4 +140,4 @@ def test_the_scenes_of_the_page_on_scene_files_are_valid():
     scenes = [gp.Scene.from_dict(parse_yaml(block)) for block in blocks]
     kinds = {face.kind for scene in scenes for face in scene.faces.values()}
     walls = {type(wall) for scene in scenes for wall in scene.walls}
-    assert kinds == set(KINDS) and walls == {gp.Wall, gp.Plate}
+    assert kinds == set(FACE_KINDS) and walls == {gp.Wall, gp.Plate}

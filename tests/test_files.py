@@ -15,7 +15,7 @@ import gaspart as gp
 from gaspart import files
 from gaspart.analysis.collisions import record_collisions
 from gaspart.cli import main
-from gaspart.files import Kind, begins_with, writing
+from gaspart.files import FileKind, begins_with, writing
 from gaspart.trajectory import run as trajectory
 
 GAS = """\
@@ -23,7 +23,7 @@ container: {lengths: [12.0, 12.0], boundary: wall}
 species:
 - {count: 20, radius: 0.5, temperature: 1.0}
 """
-TEXT = Kind("a text of ours", begins_with(b"ours"))
+TEXT = FileKind("a text of ours", begins_with(b"ours"))
 OUTPUTS = {
     "met.nc": ["collisions", "scene.yaml", "--count", "20"],
     "state.gsd": ["export", "run.nc"],

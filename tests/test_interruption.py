@@ -146,8 +146,8 @@ def test_an_ignored_signal_stays_ignored(folder):
 @pytest.fixture
 def interrupted_at(monkeypatch):
     """Let a signal arrive in the middle of a run, between two bytecodes of a stretch."""
-    monkeypatch.setattr(gp.EventDriven, "first_stretch", 20)
-    monkeypatch.setattr(recording, "_STRETCH", 1e-9)
+    monkeypatch.setattr(gp.EventDriven, "first_segment", 20)
+    monkeypatch.setattr(recording, "_SEGMENT", 1e-9)
     advance = gp.Simulation.advance
 
     def interrupted_at(when, number):

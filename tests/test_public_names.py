@@ -12,7 +12,7 @@ import gaspart as gp
 from gaspart.public import stated
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ["gaspart", "gaspart.analysis", "gaspart.theory", "gaspart.reproduction.claims"]
+PACKAGES = ["gaspart", "gaspart.analysis", "gaspart.keys", "gaspart.theory", "gaspart.reproduction.claims"]
 
 HEAVY = {"numpy", "numba", "xarray", "scipy", "matplotlib", "pandas", "netCDF4"}
 

@@ -22,16 +22,16 @@ from gaspart.interruption import scratch_file
 _HERE, _NO_REPLACE = -100, 1
 """AT_FDCWD and RENAME_NOREPLACE of Linux's renameat2."""
 
-_KINDS = {stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket", stat.S_IFLNK: "a link"}
+_SPECIAL_FILES = {stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket", stat.S_IFLNK: "a link"}
 _SCRATCH = re.compile(r"\.gaspart-[0-9a-f]{12}-(\d+)-[0-9a-f]{8}\.partial")
 """The name of a scratch file, with the number of the process that writes it."""
 
 OVERWRITE = "overwrite it (overwrite=True)"
-"""What the rule of a file that exists proposes; the command line has its own option for it."""
+"""The proposal in the rule of a file that exists; the command line has its own option for it."""
 
 
 @dataclass(frozen=True)
-class Kind:
+class FileKind:
     """A kind of result: how messages name it, and whether a file is one, by its content."""
 
     name: str
@@ -79,7 +79,7 @@ def _require_regular(found: os.stat_result, path: str | Path) -> None:
     if stat.S_ISDIR(found.st_mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if not stat.S_ISREG(found.st_mode):
-        kind = _KINDS.get(stat.S_IFMT(found.st_mode), "a device")
+        kind = _SPECIAL_FILES.get(stat.S_IFMT(found.st_mode), "a device")
         raise OSError(errno.EINVAL, f"it is {kind}, not a regular file", str(path))
 
 
@@ -104,7 +104,7 @@ def descriptor_path(file: IO[bytes]) -> str:
     return f"/proc/self/fd/{file.fileno()}"
 
 
-def may_replace(path: Path, kind: Kind | None, overwrite: bool) -> bool:
+def may_replace(path: Path, kind: FileKind | None, overwrite: bool) -> bool:
     """Whether there is a file at `path` that a result may replace; False if there is none.
 
     Raises SceneError for a folder, link or device, a file of another kind (None: any kind), and, without
@@ -124,7 +124,7 @@ def may_replace(path: Path, kind: Kind | None, overwrite: bool) -> bool:
     return True
 
 
-def place(scratch: Path, path: Path, kind: Kind | None, overwrite: bool) -> None:
+def place(scratch: Path, path: Path, kind: FileKind | None, overwrite: bool) -> None:
     """Rename `scratch` to `path`, atomically, if `may_replace` still allows it. May raise OSError."""
     while True:
         if may_replace(path, kind, overwrite):
@@ -133,7 +133,7 @@ def place(scratch: Path, path: Path, kind: Kind | None, overwrite: bool) -> None
             return _rename_to_new(scratch, path)
 
 
-def remove_own(path: Path, kind: Kind) -> None:
+def remove_own(path: Path, kind: FileKind) -> None:
     """Remove a file of this kind, by its content, and what a killed process left of one. Nothing else is
     removed: no link, no folder, no other file. May raise OSError."""
     _remove_remainders(path)
@@ -164,7 +164,7 @@ def _rename_to_new(old: Path, new: Path) -> None:
 
 
 @contextmanager
-def writing(path: str | Path, kind: Kind | None = None, overwrite: bool = False) -> Iterator[Path]:
+def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = False) -> Iterator[Path]:
     """Give a scratch file to write to; on success it is renamed to `path`, atomically.
 
     `may_replace` is applied before the work and again at its end. The scratch file is in the folder of

@@ -24,6 +24,7 @@ from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.recording import Progress
+from gaspart.trajectory.run import WriteOptions
 from gaspart.trajectory.until import Requirement, Until
 
 
@@ -103,20 +104,20 @@ def run(
     wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, engine, follow, correlations)
-        _require_end(asked, scene, at_most, initial is not None)
+        require_end(asked, scene, at_most, initial is not None)
         displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     start = _start(initial, scene, _required(path))
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
     recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
-    manner = trajectory.Manner(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    return trajectory.record(recipe, _required(path), manner)
+    options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
+    return trajectory.record(recipe, _required(path), options)
 
 
 def _start(initial: State | str | Path | None, scene: Scene, path: str | Path) -> State | None:
-    """What a run at `path` starts from: of a file its last state. Raises SceneError if that is the same file,
-    by whatever name: it would be lost."""
+    """The initial state of a run at `path`: of a file its last state. Raises SceneError if that is the same
+    file, by whatever name: it would be lost."""
     if not isinstance(initial, str | Path):
         return initial
     from gaspart.inspection.start import STARTS, read_state  # which few runs need
@@ -141,7 +142,7 @@ def _request(
     until: Accuracy | list[Accuracy] | tuple[Accuracy, ...] | None,
     at_most: float | None,
 ) -> Until | None:
-    """What ends a run in place of a duration. Raises SceneError for what excludes or needs each other."""
+    """The end of a run without a duration. Raises SceneError for what excludes or needs each other."""
     if until is not None:
         if duration is not None:
             rule = "excludes until, which ends the run; the longest duration is at_most"
@@ -177,10 +178,10 @@ def resume(
     complete trajectory of gaspart.
     """
     examiner = Examiner(examined)
-    manner = trajectory.Manner(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
+    options = WriteOptions(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
     if duration is None:
-        return trajectory.resume(path, manner)
-    return trajectory.extend(path, duration, manner)
+        return trajectory.resume(path, options)
+    return trajectory.extend(path, duration, options)
 
 
 def require_measurable(
@@ -211,7 +212,7 @@ def require_measurable(
         raise SceneError("until", asked.name, "needs all particles in the file, without follow")
 
 
-def _require_end(asked: Requirement, scene: Scene, at_most: float | None, given: bool) -> None:
+def require_end(asked: Requirement, scene: Scene, at_most: float | None, given: bool) -> None:
     """Raise SceneError for a run in which nothing ever happens, and, without a longest duration, for one that
     comes to no steady state. given: whether it starts from a given state."""
     kinds = [kind for kind in scene.kinds if kind.count]

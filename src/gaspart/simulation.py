@@ -14,11 +14,11 @@ from gaspart.engines import Engine
 from gaspart.engines.belonging import belonging, check_belonging
 from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
+from gaspart.keys.values import count_of, number
 from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene
 from gaspart.scene.species import Particle, Species
-from gaspart.scene.validation import count_of, number
 from gaspart.scene.walls import Plate, Wall, box_of_walls
-from gaspart.state.given import check_apart, taken_state
+from gaspart.state.given import check_apart, state_at_time_zero
 from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import OptionalTally, StressTally
 from gaspart.state.state import State
@@ -101,7 +101,7 @@ class Simulation:
         if self._given is None:
             self._initial = initial_state(self.scene, self.seed)
         else:
-            self._initial = taken_state(self.scene, self._given)
+            self._initial = state_at_time_zero(self.scene, self._given)
             if self.engine.keeps_apart:
                 check_apart(self.scene, self._initial)
         self._energy = self._initial.energy
@@ -249,7 +249,7 @@ class Simulation:
         return self._log.events
 
     def again(self) -> Simulation:
-        """The same simulation at its start."""
+        """This simulation at its start."""
         return Simulation(self.scene, self.engine, self.seed, initial=self._given, tallies=self._tallies)
 
     def replay(self, by: str = "time", interval: float | None = None) -> Iterator[State]:

@@ -9,7 +9,14 @@ from scenes import gas
 import gaspart as gp
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.readers import read_frames
-from gaspart.inspection.samples import apart, collided, independent, moved, path, unevenness
+from gaspart.inspection.samples import (
+    collided,
+    decorrelated_frames,
+    density_modulation,
+    first_relaxed_frame,
+    independent,
+    path,
+)
 
 
 @pytest.mark.parametrize("boundary", ["periodic", "wall"])
@@ -47,8 +54,10 @@ def test_ways_are_followed_across_faces():
     frames = Frames(np.cumsum(steps, axis=0) % 4.0, np.full(2, 4.0), np.ones(5), (True, True))
     way = path(frames)
     assert way[-1, 0] == pytest.approx(29 * np.array([-1.2, -1.2]))
-    assert moved(way, 1e3) is None and moved(way, 2.0) == 3  # 0.6 sqrt(2) sqrt(1 + ...) each
-    assert apart(way, 2.0) == list(range(0, 30, 3))
+    assert (
+        first_relaxed_frame(way, 1e3) is None and first_relaxed_frame(way, 2.0) == 3
+    )  # 0.6 sqrt(2) sqrt(1 + ...) each
+    assert decorrelated_frames(way, 2.0) == list(range(0, 30, 3))
 
 
 def test_a_wave_is_uneven_and_random_places_are_not():
@@ -56,6 +65,6 @@ def test_a_wave_is_uneven_and_random_places_are_not():
     for periodic in ((True, True), (False, True)):
         x = rng.random((1, 500, 2))
         frames = Frames(x, np.ones(2), np.full(500, 0.01), periodic)
-        assert unevenness(frames, 0, rng.random(500)) < 12.0
-        assert unevenness(frames, 0, np.where(x[0, :, 0] < 0.5, 1.0, 2.0)) > 100.0
-        assert unevenness(frames, 0, np.ones(500)) == 0.0
+        assert density_modulation(frames, 0, rng.random(500)) < 12.0
+        assert density_modulation(frames, 0, np.where(x[0, :, 0] < 0.5, 1.0, 2.0)) > 100.0
+        assert density_modulation(frames, 0, np.ones(500)) == 0.0

@@ -15,7 +15,8 @@ import yaml
 from malformed import one_line
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.config import check, laid_over, read_numbers
+from gaspart.reproduction.config import check
+from gaspart.reproduction.config_files import merged_with_default, read_numbers
 from gaspart.reproduction.cost import predict
 from gaspart.reproduction.validation import judge_config
 from gaspart.yaml_text import dump_yaml, read_yaml
@@ -246,11 +247,11 @@ def test_a_key_that_stands_twice_in_a_file_is_refused(tmp_path):
 def test_an_overlay_changes_no_other_experiment_that_an_alias_shares(tmp_path):
     (tmp_path / "config.yaml").write_text("a: &a {point: {mass: 1}}\nb: *a\n")
     (tmp_path / "own.yaml").write_text("a: {point: {mass: 2}}\n")
-    merged, _ = laid_over(tmp_path / "own.yaml")
+    merged, _ = merged_with_default(tmp_path / "own.yaml")
     assert merged == {"a": {"point": {"mass": 2}}, "b": {"point": {"mass": 1}}}
     (tmp_path / "own.yaml").write_text("[1]\n")
     with pytest.raises(SceneError, match="own.yaml: config = .1.: must be a mapping"):
-        laid_over(tmp_path / "own.yaml")
+        merged_with_default(tmp_path / "own.yaml")
 
 
 def test_all_that_gaspart_imports_and_reads_comes_with_it():
@@ -308,7 +309,7 @@ def test_a_film_is_of_trajectories():
 def test_values_of_the_command_line_are_not_blamed_on_a_file(tmp_path):
     """Snakemake's --config overrides what the files hold."""
     file = ROOT / "config/smoke.yaml"
-    merged, files = laid_over(file)
+    merged, files = merged_with_default(file)
     for changed, key in (
         ({"sead": 99}, "sead"),
         ({"seed": "x"}, "seed"),

@@ -9,9 +9,9 @@ import pytest
 from malformed import SCENES
 
 from gaspart.reproduction.config import check
+from gaspart.reproduction.config_files import merged_with_default
 from gaspart.reproduction.families.registry import families, settings
-from gaspart.reproduction.points import config_keys, keys
-from gaspart.reproduction.points.overlay import laid_over
+from gaspart.reproduction.points import config_keys, point_keys
 from gaspart.reproduction.schema import (
     documents,
     in_words,
@@ -101,14 +101,14 @@ def test_the_schema_of_scenes_refuses_what_the_program_refuses(place, value):
 
 
 def test_the_schema_of_configs_is_the_one_that_is_checked():
-    config, _ = laid_over(ROOT / "config/smoke.yaml")
+    config, _ = merged_with_default(ROOT / "config/smoke.yaml")
     jsonschema.validate(config, schema())
     check(config)
 
 
 def test_the_tables_of_the_engines_follow_from_the_keys():
-    assert set(keys.ENGINES["event"]) == {"search", "boxes_per_side", "boxes_per_particle"}
-    assert {"time_step", "skin", "boxes_per_side"} <= set(keys.ENGINES["step"])
+    assert set(point_keys.ENGINE_KEYS["event"]) == {"search", "boxes_per_side", "boxes_per_particle"}
+    assert {"time_step", "skin", "boxes_per_side"} <= set(point_keys.ENGINE_KEYS["step"])
     whole = {"dimension", "count", "samples", "steps", "attempts", "follow", "lags", "frames"}
     assert whole | {"replicas", "passes", "threads"} == config_keys.WHOLE
 

@@ -103,8 +103,8 @@ def test_spins_and_counters_of_some_particles_cut_short_and_resumed(tmp_path, mo
 
 def cut_and_resume(tmp_path, monkeypatch, cut_after, scene, engine, **settings):
     """Checkpoints lie between frames here, and at frames; the work after the last one is lost on purpose."""
-    monkeypatch.setattr(gp.EventDriven, "first_stretch", 20)
-    monkeypatch.setattr(recording, "_STRETCH", 1e-9)  # stretches stay short
+    monkeypatch.setattr(gp.EventDriven, "first_segment", 20)
+    monkeypatch.setattr(recording, "_SEGMENT", 1e-9)  # segments stay short
     complete = gp.run(scene, engine, 7, 4.0, 0.5, tmp_path / "complete.nc", **settings).read_bytes()
     path, write, saved = tmp_path / "cut.nc", recording.write_checkpoint, []
 

@@ -7,7 +7,7 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.state.given import check_apart, taken_state
+from gaspart.state.given import check_apart, state_at_time_zero
 from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import read_recipe
 
@@ -166,8 +166,8 @@ def test_positions_at_the_edges_are_put_inside():
     scene = gp.Scene(gp.Container((8.0, 8.0), ("periodic", "wall")), [gp.Species(2, 0.5)])
     state = gp.Simulation(scene, ENGINES[0]).state
     state.positions[:] = [[8.0, 0.5 - 2e-7], [-1e-20, 7.5 + 2e-7]]
-    taken = taken_state(scene, state)
+    taken = state_at_time_zero(scene, state)
     assert np.array_equal(taken.positions, [[0.0, 0.5], [0.0, 7.5]])
     state.positions[0, 1] = 0.499
     with pytest.raises(gp.SceneError, match="particle 0 is not inside the container"):
-        taken_state(scene, state)
+        state_at_time_zero(scene, state)

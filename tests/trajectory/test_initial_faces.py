@@ -8,7 +8,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.scene.shear import flow
-from gaspart.state.given import check_apart, taken_state
+from gaspart.state.given import check_apart, state_at_time_zero
 from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import read_recipe
 
@@ -103,7 +103,7 @@ def test_images_that_are_displaced_have_no_place_in_a_plain_container():
     assert rule in refusal(PLAIN, replace(state, displaced=6.6))
     for name in ("displaced", "shear_rate"):
         assert f"initial = inf: must have a finite {name}" in refusal(PLAIN, replace(state, **{name: np.inf}))
-    at_rest = taken_state(PLAIN, replace(state, displaced=24.0))
+    at_rest = state_at_time_zero(PLAIN, replace(state, displaced=24.0))
     assert at_rest.velocities == pytest.approx(peculiar(sheared(0.2), state), abs=1e-12)
     assert at_rest.displaced is at_rest.shear_rate is None
 
@@ -152,7 +152,7 @@ def test_what_a_piston_excludes_is_refused_in_one_line():
     beyond = replace(state, piston=np.array([highest + 0.4, 0.0]))
     assert "is not inside the container, or beyond the piston at" in refusal(pushed(), beyond)
     touching = replace(state, piston=np.array([highest + 0.5 - 4e-7, 0.0]))  # as in single precision
-    assert taken_state(pushed(), touching).positions[:, 1].max() == touching.piston[0] - 0.5
+    assert state_at_time_zero(pushed(), touching).positions[:, 1].max() == touching.piston[0] - 0.5
     for wrong in ([11.0, 0.0], [-1.0, 0.0], [9.0, np.nan], [9.0]):
         assert "must be a place from 0 to 10 and a velocity" in refusal(
             pushed(), replace(state, piston=np.array(wrong))
@@ -171,7 +171,7 @@ def test_a_file_alone_repeats_a_run_that_began_at_a_moving_face(tmp_path, scene)
     path.unlink()
     gp.run(scene, EVENT, 5, 1.0, 0.5, path, initial=state, keep_checkpoint=True)
     assert gp.resume(path, duration=2.0).read_bytes() == whole
-    stored, taken = read_recipe(path).initial, taken_state(scene, state)
+    stored, taken = read_recipe(path).initial, state_at_time_zero(scene, state)
     assert stored.displaced == taken.displaced and np.array_equal(stored.velocities, taken.velocities)
     if taken.piston is not None:
         assert np.array_equal(stored.piston, taken.piston)
@@ -237,4 +237,4 @@ def test_walls_have_no_images_that_could_be_displaced():
     low, high = state.positions[:, 1].min(), state.positions[:, 1].max()
     squeezed = state.copy()
     squeezed.positions[:, 1] = 0.5 + (state.positions[:, 1] - low) * 9.0 / (high - low)
-    assert taken_state(WALLS, squeezed).displaced is None
+    assert state_at_time_zero(WALLS, squeezed).displaced is None

@@ -11,7 +11,7 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.trajectory import recording, run
+from gaspart.trajectory import recording, run, stage
 from gaspart.trajectory.amber import stored_header
 from gaspart.trajectory.checkpoint import checkpoint_path
 from gaspart.trajectory.partial import partial_path
@@ -134,14 +134,16 @@ def test_a_run_that_another_process_finishes_meanwhile(tmp_path, monkeypatch, co
     recipe, path = (gas(2, 10, 0.1), gp.EventDriven(), 1, 1.0, 0.5), tmp_path / "run.nc"
     complete = gp.run(*recipe, path).read_bytes()
     path.rename(partial_path(path))
-    original = getattr(run, moment)
+    original = getattr(run, moment, None) or getattr(stage, moment)
 
     def after_it_was_finished(*arguments, **options):
         if not path.exists():
             partial_path(path).rename(path)
         return original(*arguments, **options)
 
-    monkeypatch.setattr(run, moment, after_it_was_finished)
+    for module in (run, stage):
+        if hasattr(module, moment):
+            monkeypatch.setattr(module, moment, after_it_was_finished)
     if command == "resume" and moment in ("read_recipe", "begun_as"):
         with pytest.raises(gp.SceneError, match=r"run\.nc': is already complete"):
             gp.resume(path)

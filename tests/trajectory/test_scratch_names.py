@@ -184,7 +184,7 @@ def test_what_only_looks_like_a_scratch_file_is_not_removed(tmp_path):
 
 
 def test_the_folder_of_replicas_keeps_what_is_not_of_gaspart(tmp_path, complete):
-    def record(parameters, seed, path, overwrite):
+    def record(recipe, path, overwrite):
         path.write_bytes(complete[0])
 
     partial, folder = tmp_path / "point.partial", tmp_path / "point"
@@ -193,21 +193,21 @@ def test_the_folder_of_replicas_keeps_what_is_not_of_gaspart(tmp_path, complete)
         strange(kind, partial / "notes.txt", complete)
         before = state(partial)
         with pytest.raises(SceneError):
-            write_replicas(record, {"seeds": [[1]]}, folder)
+            write_replicas(record, [None], folder)
         assert state(partial) == before and not folder.exists()
         shutil.rmtree(partial)
     (tmp_path / "elsewhere").mkdir()
     for target in ("elsewhere", "nowhere"):
         partial.symlink_to(tmp_path / target)
         with pytest.raises(SceneError):
-            write_replicas(record, {"seeds": [[1]]}, folder)
+            write_replicas(record, [None], folder)
         partial.unlink()
     assert state(tmp_path) == {"elsewhere": None}
     partial.mkdir()
     (partial / "replica-1.nc").write_bytes(complete[0])
     (partial / "replica-2.nc.partial").write_bytes(complete[0])
     (partial / "replica-2.nc.checkpoint.npz").write_bytes(complete[1])
-    write_replicas(record, {"seeds": [[1]]}, folder)
+    write_replicas(record, [None], folder)
     assert state(folder) == {"replica-0.nc": complete[0]} and not partial.exists()
 
 

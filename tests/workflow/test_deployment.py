@@ -11,7 +11,7 @@ from workspace import ROOT, Workspace
 
 from gaspart.cli import main
 from gaspart.reproduction.archive.metadata import METADATA
-from gaspart.reproduction.points.overlay import laid_over
+from gaspart.reproduction.config_files import merged_with_default
 from gaspart.yaml_text import parse_yaml, write_yaml
 
 pytestmark = pytest.mark.workflow
@@ -34,7 +34,7 @@ OWN = re.search(
 
 
 def test_another_workflow_uses_it_as_a_module(tmp_path):
-    config, _ = laid_over(ROOT / "config/smoke.yaml")
+    config, _ = merged_with_default(ROOT / "config/smoke.yaml")
     experiments = config["figures"][FIGURE]["experiments"]
     config |= {
         "run": None,

@@ -21,7 +21,7 @@ LAYERS = [  # a module imports only from the packages above its own
     {"interruption"},
     {"files"},
     {"yaml_text"},
-    {"kinds"},
+    {"keys"},
     {"scene"},
     {"kernels"},
     {"state"},

@@ -8,7 +8,7 @@ from collections import Counter
 import pytest
 from workspace import ROOT, SMOKE
 
-from gaspart.reproduction.points.overlay import laid_over
+from gaspart.reproduction.config_files import merged_with_default
 from gaspart.reproduction.points.points import points
 from gaspart.yaml_text import dump_yaml, read_yaml
 
@@ -56,7 +56,7 @@ def test_ten_thousand_points_are_planned_in_less_than_thirty_seconds(fresh, tmp_
 def test_the_points_are_shared_among_few_cluster_jobs(fresh, monkeypatch):
     monkeypatch.setenv("GASPART_SHARE", "2/3")
     plan = fresh.plan(*SMOKE, "--", "points")
-    config, _ = laid_over(ROOT / "config/smoke.yaml")
+    config, _ = merged_with_default(ROOT / "config/smoke.yaml")
     number = sum(len(points(config, experiment)) for experiment in config["experiments"])
     assert sum(plan[job] for job in SIMULATIONS & set(plan)) == len(range(1, number, 3))
 
@@ -147,7 +147,7 @@ def test_editing_the_physics_of_a_contact_simulates_everything_again(smoke):
     finally:
         undo()
     assert set(plan) >= {"warm", "simulate", "compute", "measure", "judge", "draw"}
-    config, _ = laid_over(ROOT / "config/smoke.yaml")
+    config, _ = merged_with_default(ROOT / "config/smoke.yaml")
     shown = {name for block in config["figures"].values() for name in block["experiments"]}
     jobs = Counter(point.job for name in shown for point in points(config, name))
     assert jobs["fill"] > 0  # without contacts

@@ -10,7 +10,7 @@ from browser import CHROMIUM, found_by
 from digests import digests
 
 from gaspart.reproduction.budget import budgets
-from gaspart.reproduction.claims import KINDS, VERDICTS
+from gaspart.reproduction.claims import CLAIM_KINDS, VERDICTS
 from gaspart.reproduction.families.registry import families, of_claims
 from gaspart.yaml_text import read_yaml
 
@@ -36,7 +36,7 @@ def test_every_figure_is_drawn_twice_and_has_a_claim_with_a_verdict(smoke, figur
     assert claims
     for claim in claims:
         assert claim["verdict"] in VERDICTS
-        assert claim["kind"] in KINDS
+        assert claim["kind"] in CLAIM_KINDS
         assert claim["why"] or claim["verdict"] in ("agrees", "reproduced", "disagrees")
         assert claim["fails_if"]
 

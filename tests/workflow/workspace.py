@@ -8,7 +8,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from gaspart.reproduction.points.overlay import laid_over
+from gaspart.reproduction.config_files import merged_with_default
 from gaspart.yaml_text import write_yaml
 
 ROOT = Path(__file__).parents[2]
@@ -71,7 +71,7 @@ def copy_of_project(path):
 def leave_one_figure(path, figure, **point):
     """Replace the config of a copy by that of one figure of the smoke config and the experiment of its name,
     with these settings of its points beside its own."""
-    config, _ = laid_over(ROOT / "config/smoke.yaml")
+    config, _ = merged_with_default(ROOT / "config/smoke.yaml")
     for kind in ("experiments", "figures"):
         config[kind] = {figure: config[kind][figure]}
     config["experiments"][figure]["point"].update(point)

@@ -21,14 +21,15 @@ if " " in sys.executable:
 
 from gaspart.reproduction.claims.captions import filled
 from gaspart.reproduction.claims.table import summary
-from gaspart.reproduction.config import check, explained, read_numbers
+from gaspart.reproduction.config import check, explained
+from gaspart.reproduction.config_files import read_numbers
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.families.registry import caption, functions, of_claims, titles
 from gaspart.reproduction.points.modules import digest, kernel_digest
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.reproduction.points.points import all_points
 from gaspart.reproduction.points.points import figure_points as points_of_figure
-from gaspart.reproduction.points.variants import task, variant
+from gaspart.reproduction.points.variants import compile_task, variant
 from gaspart.errors import SceneError
 
 # A job on a cluster reads this file again, but need not validate ten thousand points again.
@@ -74,7 +75,7 @@ def share(paths):
 def pattern(trajectories):
     """A pattern that matches the experiments that make trajectories, or the others; nothing if there are none."""
     jobs = {name: block.get("job", "simulate") for name, block in config["experiments"].items()}
-    return "|".join(name for name, job in jobs.items() if (job in TRAJECTORIES) == trajectories) or "(?!)"
+    return "|".join(name for name, job in jobs.items() if (job == TRAJECTORIES) == trajectories) or "(?!)"
 
 
 def point_of(wildcards):
@@ -162,17 +163,15 @@ FAMILIES = [f"gaspart.reproduction.families.{name}" for name in titles()]
 
 
 def sources(stage, family=None):
-    """The script of a stage and what it imports by name: a family's part, or a job's module."""
-    job = f"gaspart.reproduction.jobs.{stage}"
-    script = stage if (SCRIPTS / f"{stage}.py").exists() else "compute"
-    if stage in TRAJECTORIES:
-        script = "simulate"
-    named = (
-        [registry.module(family, PARTS[stage])]
-        if family
-        else [job] if script in ("simulate", "compute") else []
-    )
-    return [SCRIPTS / "_job.py", SCRIPTS / f"{script}.py", *named]
+    """The script of a stage, and the part of a family that it imports by name."""
+    named = [registry.module(family, PARTS[stage])] if family else []
+    return [SCRIPTS / "_job.py", SCRIPTS / f"{stage}.py", *named]
+
+
+def sources_of(point):
+    """The script that does the job of a point, and the modules that it imports by name."""
+    stage = "simulate" if point.job == TRAJECTORIES else "compute"
+    return [*sources(stage), *point.modules]
 
 
 def module_of(stage):
@@ -203,14 +202,16 @@ def variant_of(experiment, point):
 
 def stamp_of(wildcards):
     point = point_of(wildcards)
-    return f"results/kernels/{kernel_digest(*sources(point.job))}/{variant_of(point.experiment, point.name)}.stamp"
+    return f"results/kernels/{kernel_digest(*sources_of(point))}/{variant_of(point.experiment, point.name)}.stamp"
 
 
 def task_of(wildcards):
     """The task that compiles a variant: a tiny run of the first point that needs it."""
     of_all = (point for experiment in POINTS.values() for point in experiment.values())
     return next(
-        task(point) for point in of_all if variant_of(point.experiment, point.name) == wildcards.variant
+        compile_task(point)
+        for point in of_all
+        if variant_of(point.experiment, point.name) == wildcards.variant
     )
 
 

@@ -22,7 +22,7 @@ rule simulate:
         mem_mb=memory_of,
         runtime=120,
     params:
-        modules=lambda wildcards: digest(*sources(point_of(wildcards).job)),
+        modules=lambda wildcards: digest(*sources_of(point_of(wildcards))),
         job=lambda wildcards: point_of(wildcards).job,
         parameters=parameters_of,
     script:
@@ -49,7 +49,7 @@ rule compute:
         mem_mb=memory_of,
         runtime=120,
     params:
-        modules=lambda wildcards: digest(*sources(point_of(wildcards).job)),
+        modules=lambda wildcards: digest(*sources_of(point_of(wildcards))),
         job=lambda wildcards: point_of(wildcards).job,
         parameters=parameters_of,
     script:

@@ -8,5 +8,7 @@ with job(snakemake):
     from gaspart.kernels.compile.loading import load_numba
 
     load_numba(ours=True)
-    run = function(f"gaspart.reproduction.jobs.{snakemake.params.job}", "run")
-    run(snakemake.params.parameters, Path(snakemake.output[0]))
+    # By its name: a simulation depends on what its arguments are, not on how they are written down.
+    from_plain = function("gaspart.reproduction.jobs.arguments", "from_plain")
+    simulate = function(f"gaspart.reproduction.jobs.{snakemake.params.job}", snakemake.params.job)
+    simulate(Path(snakemake.output[0]), **from_plain(snakemake.params.parameters))

@@ -4,4 +4,4 @@ import sys
 
 from _job import function
 
-function("gaspart.reproduction.points.variants", "warm")(sys.argv[1])
+function("gaspart.reproduction.points.variants", "compile_kernels")(sys.argv[1])

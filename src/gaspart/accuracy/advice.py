@@ -22,9 +22,9 @@ from gaspart.analysis import finite
 from gaspart.analysis.observables import OBSERVABLES, having, require_modelled
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.errors import SceneError
+from gaspart.keys.values import number
 from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import number
 from gaspart.trajectory.recipe import Recipe
 
 ACCURACIES = 1e-8, 1.0

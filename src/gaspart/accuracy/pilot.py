@@ -27,7 +27,7 @@ from gaspart.kernels.compile.policy import source_digest
 from gaspart.simulation import Simulation
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
-from gaspart.trajectory.run import Manner, extend, record
+from gaspart.trajectory.run import WriteOptions, extend, record
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -154,7 +154,7 @@ def _make(
         displacements=displacements, correlations=correlations,
         pairs=target.declared.needs == "pairs", initial=target.start,
     )  # fmt: skip
-    return record(recipe, path, Manner(overwrite=True, keep_checkpoint=True))
+    return record(recipe, path, WriteOptions(overwrite=True, keep_checkpoint=True))
 
 
 def require_defined(target: Target) -> None:
@@ -219,7 +219,7 @@ def _steadied(path: Path) -> float:
             settled, end = settling_time(trajectory), float(trajectory["time"][-1])
         if last or settled <= EQUILIBRATION * end:
             break
-        extend(path, 2.0 * end, Manner(keep_checkpoint=True))
+        extend(path, 2.0 * end, WriteOptions(keep_checkpoint=True))
     return settled
 
 

@@ -23,8 +23,8 @@ from gaspart.accuracy.trials import Announce, Trials
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
+from gaspart.keys.values import number
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import number
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.until import Requirement, Until
 

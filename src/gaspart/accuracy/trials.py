@@ -15,7 +15,7 @@ from gaspart.accuracy.table import QUANTILE
 from gaspart.accuracy.target import Target
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.state.given import taken_state
+from gaspart.state.given import state_at_time_zero
 from gaspart.trajectory.last_state import last_state
 
 DIFFERS = 2.5
@@ -149,7 +149,7 @@ class Trials:
     def _settle(self, pilot: Pilot) -> None:
         """Start what follows from the end of a pilot, if its file holds the state."""
         try:
-            state = taken_state(self.target.scene, last_state(pilot.path or ""))
+            state = state_at_time_zero(self.target.scene, last_state(pilot.path or ""))
         except SceneError:  # as of a piston
             return
         self.target = replace(self.target, settled=state)

@@ -20,10 +20,10 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
-from gaspart.files import Kind, begins_with, descriptor_path, open_regular, writing
+from gaspart.files import FileKind, begins_with, descriptor_path, open_regular, writing
+from gaspart.keys.values import count_of, number
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
-from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.trajectory.provenance import git_revision, versions
@@ -123,7 +123,7 @@ def _is_collision_data(path: Path) -> bool:
         return False
 
 
-COLLISIONS = Kind("a data set of collisions written by gaspart", _is_collision_data)
+COLLISIONS = FileKind("a data set of collisions written by gaspart", _is_collision_data)
 
 
 def _check_memory(collisions: int, scene: Scene) -> None:

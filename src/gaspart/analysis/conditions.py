@@ -10,13 +10,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.driving import has_dragged_faces
 from gaspart.scene.faces import thermal_numbers
 from gaspart.scene.gas import plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.stress import require_tallied
-from gaspart.scene.validation import choice, count_of, number
 
 Selection = Mapping[str, Any]
 GROUPS = 16
@@ -234,7 +234,7 @@ def alike(scene: Scene, selection: Selection) -> None:
 def has_axis(scene: Scene, selection: Selection) -> None:
     """The axis that is selected."""
     if selection.get("axis") is not None:
-        choice("axis", selection["axis"], tuple("xyz"[: scene.dimension]))
+        one_of("axis", selection["axis"], tuple("xyz"[: scene.dimension]))
 
 
 def tallied(scene: Scene, selection: Selection) -> None:

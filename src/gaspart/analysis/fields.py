@@ -11,7 +11,7 @@ from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.profiles import Cells, with_freedom
 from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.errors import SceneError
-from gaspart.scene.validation import choice, count_of
+from gaspart.keys.values import count_of, one_of
 
 QUANTITIES = ("density", "velocity", "temperature")
 
@@ -37,7 +37,7 @@ def field(
 
     Raises SceneError for an unknown property or axis, a file without all particles, and too few frames.
     """
-    choice("of", of, QUANTITIES)
+    one_of("of", of, QUANTITIES)
     with measured(source, start, sheared=True) as run:
         along = _axes(run, axes)
         numbers = _numbers(cells, len(along))

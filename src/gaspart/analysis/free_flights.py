@@ -13,8 +13,8 @@ from gaspart.analysis.collisions import pair_rows
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
+from gaspart.keys.values import count_of
 from gaspart.scene.shear import refuse_sheared
-from gaspart.scene.validation import count_of
 from gaspart.simulation import Simulation
 from gaspart.theory.speeds import mean_speed, mean_speed_factor
 

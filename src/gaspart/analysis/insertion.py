@@ -24,8 +24,8 @@ from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES
 from gaspart.analysis.run import Source, measured
 from gaspart.errors import SceneError
+from gaspart.keys.values import count_of
 from gaspart.scene.gas import plain_gas
-from gaspart.scene.validation import count_of
 
 PLACES = 512
 """Places that are tried in each frame, by default."""

@@ -14,8 +14,8 @@ import numpy as np
 
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, scalar
 from gaspart.errors import SceneError
+from gaspart.keys.values import number
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import number
 from gaspart.simulation import Simulation
 
 ALIGNMENT = 0.25

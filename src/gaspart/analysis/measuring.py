@@ -39,7 +39,7 @@ def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterat
         yield source
         return
     from gaspart.analysis.run import repeated
-    from gaspart.scene.validation import number
+    from gaspart.keys.values import number
     from gaspart.simulation import Simulation
     from gaspart.trajectory.reading import open_trajectory
 

@@ -21,8 +21,8 @@ from gaspart.analysis.observables import require_defined
 from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
+from gaspart.keys.values import count_of
 from gaspart.scene.faces import mean_velocity
-from gaspart.scene.validation import count_of
 
 MOST_FRAMES = 1000
 """That are correlated; of a longer run, every second or third ..."""

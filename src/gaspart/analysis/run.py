@@ -18,10 +18,10 @@ from gaspart.analysis.conditions import SLIDING
 from gaspart.analysis.flow import Peculiar, about_the_flow, flow_axes
 from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
+from gaspart.keys.values import count_of, number
 from gaspart.scene.gas import Gas, Mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
-from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_particle
 from gaspart.state.tally import Tally

@@ -17,7 +17,7 @@ from gaspart.analysis.room import left_by_obstacles
 from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
-from gaspart.scene.validation import choice, count_of
+from gaspart.keys.values import count_of, one_of
 
 _CONSTANT = 1e-5  # relative change of an energy that is attributed to rounding
 FASTEST = 4.0
@@ -85,7 +85,7 @@ def profile(
     equation of state; a uniform temperature in equilibrium.
     Raises SceneError for an unknown property or axis, a species that does not move, and for too few frames.
     """
-    choice("of", of, having(function="profile"))
+    one_of("of", of, having(function="profile"))
     bins = count_of("bins", bins, least=2)
     with measured(source, start) as run:
         require_defined(of, run.scene, axis=axis, species=species)

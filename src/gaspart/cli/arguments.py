@@ -9,7 +9,7 @@ from textwrap import fill
 from typing import Any, NoReturn, TypeVar
 
 from gaspart.errors import entry_points_of, unknown_word, visible
-from gaspart.scene.validation import number
+from gaspart.keys.values import number
 
 T = TypeVar("T")
 
@@ -52,7 +52,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def real(**limits: float) -> Callable[[str], float]:
-    """A reader of a finite number within the limits of `gaspart.scene.validation.number`: above, least,
+    """A reader of a finite number within the limits of `gaspart.keys.values.number`: above, least,
     most."""
     return _reader(float, "a finite number", limits)
 

@@ -9,8 +9,7 @@ from typing import Any
 from gaspart.cli.arguments import Parser, alone, several
 from gaspart.engines import ENGINES
 from gaspart.errors import SceneError, shown
-from gaspart.kinds import Kind
-from gaspart.scene.keys import schema_of
+from gaspart.keys import Kind, described, schema_of
 
 
 @cache
@@ -21,10 +20,7 @@ def engine_settings() -> dict[str, Kind]:
         for key, kind in schema_of(engine)["properties"].items():
             meaning = f"{name} engine: {kind['description']}"
             known = settings.get(key)
-            settings[key] = {
-                **kind,
-                "description": f"{known['description']}; {meaning}" if known else meaning,
-            }
+            settings[key] = described(kind, f"{known['description']}; {meaning}" if known else meaning)
     return settings
 
 

@@ -99,7 +99,7 @@ def _measurable(recipe: Recipe) -> list[str]:
 
 
 def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:
-    """What ends a run that has no fixed duration, and what it has reached."""
+    """The accuracies that end a run of no fixed duration, and those that it has reached."""
     from gaspart.cli.run import accuracy_lines
 
     if recipe.until is None:

@@ -24,7 +24,7 @@ from gaspart.cli.arguments import (
 )
 from gaspart.cli.progress import waiting
 from gaspart.errors import SceneError
-from gaspart.files import Kind, begins_with, output_path, writing
+from gaspart.files import FileKind, begins_with, output_path, writing
 
 if TYPE_CHECKING:
     from gaspart.analysis.observable import Observable
@@ -33,7 +33,7 @@ _FIELD = "field"
 """The name by which a property in cells is asked for, which is not one observable."""
 _ROWS = 12  # of a curve that are printed
 _TITLE = "# gaspart measure"
-_TABLE = Kind("a table written by gaspart measure", begins_with(_TITLE.encode()))
+_TABLE = FileKind("a table written by gaspart measure", begins_with(_TITLE.encode()))
 _EXAMPLES = """examples:
   gaspart measure run.nc Z msd
   gaspart measure run.nc vacf -o vacf.png
@@ -238,7 +238,7 @@ def _parts(observable: Observable) -> list[tuple[str, Observable]]:
 
 
 def _writer(given: argparse.Namespace, names: list[str]) -> Callable[[Observable], None]:
-    """What writes the result, after the arguments were checked."""
+    """The function that writes the result, after a check of the arguments."""
     if given.output is None:
         return lambda observable: None
     path = output_path(given.output)

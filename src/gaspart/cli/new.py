@@ -14,7 +14,7 @@ from pathlib import Path
 
 from gaspart.cli.arguments import Parser, print_line, set_command
 from gaspart.errors import SceneError
-from gaspart.files import Kind, output_path, writing
+from gaspart.files import FileKind, output_path, writing
 from gaspart.scene.scene import Scene
 
 _FOLDER = Path(__file__).parent / "templates"
@@ -32,7 +32,7 @@ def _is_scene(path: Path) -> bool:
     return True
 
 
-_SCENE = Kind("a scene file", _is_scene)
+_SCENE = FileKind("a scene file", _is_scene)
 
 
 @dataclass(frozen=True)

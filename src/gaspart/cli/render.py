@@ -84,10 +84,10 @@ def _render(given: argparse.Namespace) -> None:
                 raise SceneError(key, options[key], "has no meaning for a picture")
         _picture(given.trajectory, output, options, given.force)
     else:
-        from gaspart.rendering.films import KINDS, film
+        from gaspart.rendering.films import FILM_FORMATS, film
 
-        if output.suffix not in KINDS:
-            raise SceneError("output", given.output, f"must end in {', '.join((*PICTURES, *KINDS))}")
+        if output.suffix not in FILM_FORMATS:
+            raise SceneError("output", given.output, f"must end in {', '.join((*PICTURES, *FILM_FORMATS))}")
         if "frame" in options:
             raise SceneError("frame", given.frame, "has no meaning for a film, which shows all frames")
         film(given.trajectory, output, **options, overwrite=given.force, progress=counted())

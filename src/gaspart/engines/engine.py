@@ -1,7 +1,8 @@
 """What an engine is: settings that a scene can be started with, and the dynamics that this gives.
 
-An engine is a frozen dataclass derived from `Engine`, each field of which declares its rule and its meaning
-(`scene.keys`): the options of the command line, the keys of a config and the reference page follow from them.
+An engine is a frozen dataclass derived from `Engine`, each field of which declares its kind and its meaning
+(`gaspart.keys`): the options of the command line, the keys of a config and the reference page follow from
+them.
 `register` makes it known by its name.
 """
 
@@ -12,9 +13,9 @@ from dataclasses import MISSING, asdict, dataclass, fields
 from typing import TYPE_CHECKING, ClassVar, Protocol, TypeVar
 
 from gaspart.errors import SceneError
+from gaspart.keys import from_mapping, validate
+from gaspart.keys.values import one_of
 from gaspart.scene.features import FEATURES, features
-from gaspart.scene.keys import validate
-from gaspart.scene.validation import choice, from_mapping
 
 if TYPE_CHECKING:
     import numpy as np
@@ -82,7 +83,7 @@ class Engine:
     such an engine fills; same_bits: settings that change no bit of its results; keeps_apart: whether
     particles never overlap; tallies: names of the `state.optional_tallies` that it can make; models: names of
     the `scene.features` that it models, and excludes: pairs of them that it does not model together;
-    first_stretch: the work, in events or steps, that a run begins with between two looks at the clock.
+    first_segment: the work, in events or steps, that a run begins with between two looks at the clock.
     """
 
     name: ClassVar[str]
@@ -94,7 +95,7 @@ class Engine:
     same_bits: ClassVar[tuple[str, ...]] = ()
     keeps_apart: ClassVar[bool] = True
     tallies: ClassVar[frozenset[str]] = frozenset()
-    first_stretch: ClassVar[int] = 1
+    first_segment: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
         validate(self)
@@ -196,7 +197,7 @@ def engine_from_dict(mapping: dict) -> Engine:
     if not isinstance(mapping, dict):
         raise SceneError("engine", mapping, "must be a mapping with a name")
     settings = dict(mapping)
-    name = choice("engine.name", settings.pop("name", None), ENGINES)
+    name = one_of("engine.name", settings.pop("name", None), ENGINES)
     return from_mapping(ENGINES[name], settings, "engine")
 
 

@@ -14,7 +14,13 @@ from gaspart.inspection.conserved import judge_conserved
 from gaspart.inspection.contact_value import FIT_ERROR, WIDTH, contact_values
 from gaspart.inspection.diffusion import diffusion, expected_diffusion, groups_of, why_not
 from gaspart.inspection.frames import Frames
-from gaspart.inspection.samples import UNEVEN, apart, moved, path, unevenness
+from gaspart.inspection.samples import (
+    UNEVEN,
+    decorrelated_frames,
+    density_modulation,
+    first_relaxed_frame,
+    path,
+)
 from gaspart.inspection.speeds import judge_speeds, why_not_speeds
 from gaspart.inspection.verdict import Check, compared
 from gaspart.state.overlaps import deepest_overlap
@@ -91,14 +97,14 @@ def _pressure(frames: Frames) -> Check:
     assert gas is not None, "see `_no_pressure`"
     eta, d = gas.packing_fraction, gas.dimension
     way, spacing = path(frames), _spacing(frames)
-    first = moved(way, spacing)
+    first = first_relaxed_frame(way, spacing)
     if first is None:
         return Check(name, None, _unmoved(way, spacing))
-    chosen = np.array(apart(way, WIDTH * gas.diameter, first))
+    chosen = np.array(decorrelated_frames(way, WIDTH * gas.diameter, first))
     if len(chosen) < _LEAST_FRAMES:
         text = f"{len(chosen)} independent samples are too few for an error: it needs {_LEAST_FRAMES}"
         return Check(name, None, text)
-    if any(unevenness(frames, n) > UNEVEN for n in (chosen[0], chosen[-1])):
+    if any(density_modulation(frames, n) > UNEVEN for n in (chosen[0], chosen[-1])):
         return Check(name, None, "the density is not uniform: not relaxed")
     chosen = chosen[np.unique(np.linspace(0, len(chosen) - 1, MOST_FRAMES).astype(int))]
     found = correlated_mean(contact_values(replace(frames, positions=frames.positions[chosen]))).estimate
@@ -149,7 +155,7 @@ def _diffusion(frames: Frames) -> Check:
     if reason := why_not_speeds(frames) or why_not(frames):
         return Check(name, None, reason)
     way, spacing = path(frames), _spacing(frames)
-    first = moved(way, spacing)
+    first = first_relaxed_frame(way, spacing)
     if first is None:
         return Check(name, None, _unmoved(way, spacing))
     assert frames.velocities is not None and frames.time is not None, "see `why_not`"
@@ -160,7 +166,7 @@ def _diffusion(frames: Frames) -> Check:
         time=frames.time[first:],
     )
     energy = (frames.velocities[first] ** 2).sum(axis=1)
-    if max(unevenness(used, 0), unevenness(used, 0, energy)) > UNEVEN:
+    if max(density_modulation(used, 0), density_modulation(used, 0, energy)) > UNEVEN:
         return Check(name, None, "density or temperature is not uniform: not relaxed")
     if reason := why_not(used):
         return Check(name, None, reason)

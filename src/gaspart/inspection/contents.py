@@ -1,4 +1,4 @@
-"""What the file of any program states about its particles, and the frames that follow from it."""
+"""Data of particles in the file of any program, and the frames that follow from them."""
 
 from __future__ import annotations
 

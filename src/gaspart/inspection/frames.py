@@ -17,7 +17,7 @@ from gaspart.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Frames:
-    """What can be judged of a trajectory of T frames of N particles.
+    """Data of a trajectory of T frames of N particles that can be judged.
 
     positions (T, N, d), on periodic axes inside the container [0, L]; velocities (T, N, d) and time (T,), or
     None if the file does not state it; lengths (d,), radii and masses (N,), of the first frame where they
@@ -58,7 +58,7 @@ class Frames:
 
     @property
     def diameter(self) -> float | None:
-        """That of all particles, or None if they differ."""
+        """The diameter of all particles, or None if they differ."""
         return float(2.0 * self.radii[0]) if np.ptp(self.radii) == 0.0 else None
 
     @property

@@ -22,7 +22,7 @@ from gaspart.inspection.xyz_contents import read_xyz
 
 _MEMORY = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 """Bytes of this machine's memory, which the frames of a file are read into."""
-KINDS = (".nc", ".gsd", ".xyz")
+SUFFIXES = (".nc", ".gsd", ".xyz")
 _READERS = {
     **dict.fromkeys((".nc", ".ncdf", ".partial"), read_netcdf),
     ".gsd": read_gsd,
@@ -50,7 +50,7 @@ def read_frames(
 
 
 def read_contents(path: Path, given: Given) -> Contents:
-    """What a trajectory states, as `read_frames` reads it. Raises SceneError."""
+    """The contents of a file, as `read_frames` reads it. Raises SceneError."""
     with _reading(path):
         return _contents(path, given)
 
@@ -58,7 +58,7 @@ def read_contents(path: Path, given: Given) -> Contents:
 def _contents(path: Path, given: Given) -> Contents:
     reader = _READERS.get(path.suffix)
     if reader is None:
-        raise SceneError("file", str(path), f"must end in {', '.join(KINDS)}")
+        raise SceneError("file", str(path), f"must end in {', '.join(SUFFIXES)}")
     _require_memory(path)
     return reader(path, given)
 

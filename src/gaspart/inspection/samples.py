@@ -62,7 +62,7 @@ def path(frames: Frames) -> np.ndarray:
     return way - np.where(frames.periodic, way.mean(axis=1, keepdims=True), 0.0)
 
 
-def apart(way: np.ndarray, distance: float, first: int = 0) -> list[int]:
+def decorrelated_frames(way: np.ndarray, distance: float, first: int = 0) -> list[int]:
     """Frames, from `first` on, between which the particles have moved by a root mean square of `distance` or
     more, one after the other."""
     chosen = [first]
@@ -72,13 +72,13 @@ def apart(way: np.ndarray, distance: float, first: int = 0) -> list[int]:
     return chosen
 
 
-def moved(way: np.ndarray, distance: float) -> int | None:
+def first_relaxed_frame(way: np.ndarray, distance: float) -> int | None:
     """The first frame until which particles have moved by a root mean square of `distance`, or None."""
     far = np.flatnonzero((way**2).sum(axis=2).mean(axis=1) >= distance**2)
     return int(far[0]) if far.size else None
 
 
-def unevenness(frames: Frames, n: int, of: np.ndarray | None = None) -> float:
+def density_modulation(frames: Frames, n: int, of: np.ndarray | None = None) -> float:
     """The largest power of the two longest waves along each axis, of the particles' density in frame n or,
     with `of` (N,), of that property about its mean: about 1 if it does not depend on the place."""
     weights = np.ones(frames.count) if of is None else of - of.mean()

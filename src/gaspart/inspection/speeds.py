@@ -10,7 +10,7 @@ from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import histogram_chi_square
 from gaspart.inspection.frames import Frames
-from gaspart.inspection.samples import UNEVEN, collided, independent, unevenness
+from gaspart.inspection.samples import UNEVEN, collided, density_modulation, independent
 from gaspart.inspection.verdict import Check, compared
 
 RESIDUE = 0.25
@@ -56,7 +56,7 @@ def judge_speeds(frames: Frames) -> list[Check]:
         )
         return [Check(name, None, reason) for name in names]
     first = int(np.argmax(clock >= needed))
-    if any(unevenness(frames, n, _squares(frames, n)) > UNEVEN for n in (first, len(series) - 1)):
+    if any(density_modulation(frames, n, _squares(frames, n)) > UNEVEN for n in (first, len(series) - 1)):
         return [Check(name, None, "the temperature is not uniform: not relaxed") for name in names]
     samples = independent(clock[first:], rate)
     found = Estimate(series[first:].mean(), scatter / math.sqrt(samples))

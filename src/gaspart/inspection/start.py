@@ -11,7 +11,7 @@ from gaspart.errors import SceneError
 from gaspart.inspection.contents import Contents, Given, sort_by_id
 from gaspart.inspection.readers import read_contents
 from gaspart.scene.scene import Scene
-from gaspart.state.given import taken_state
+from gaspart.state.given import state_at_time_zero
 from gaspart.state.initial import assembled
 from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
@@ -53,7 +53,7 @@ def read_state(path: str | Path, scene: Scene) -> State:
     state = assembled(scene, places - _origin(contents, scene), velocities, np.zeros(turning))
     plain = replace(state, piston=None, piston_face=None, displaced=None, shear_rate=None)
     try:
-        return taken_state(scene, plain)
+        return state_at_time_zero(scene, plain)
     except SceneError as error:
         raise SceneError(error.key, error.value, error.rule, str(path)) from None
 

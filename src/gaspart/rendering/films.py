@@ -13,23 +13,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError, optional
-from gaspart.files import Kind, begins_with, output_path, whole_file, writing
+from gaspart.files import FileKind, begins_with, output_path, whole_file, writing
+from gaspart.keys.values import count_of, number
 from gaspart.rendering.frames import opened, particles_of
 from gaspart.rendering.labels import Labels, time_format
 from gaspart.rendering.particles import FASTEST, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.rendering.shown import Film
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
     import xarray as xr
 
-KINDS = {
-    ".mp4": Kind("an MP4 film", begins_with(b"ftyp", at=4)),
-    ".gif": Kind("a GIF picture", begins_with(b"GIF8")),
+FILM_FORMATS = {
+    ".mp4": FileKind("an MP4 film", begins_with(b"ftyp", at=4)),
+    ".gif": FileKind("a GIF picture", begins_with(b"GIF8")),
 }
 
 
@@ -66,8 +66,8 @@ def film(
     `render` refuses.
     """
     path = output_path(path)
-    if path.suffix not in KINDS:
-        raise SceneError("path", str(path), f"a film must end in {' or '.join(KINDS)}")
+    if path.suffix not in FILM_FORMATS:
+        raise SceneError("path", str(path), f"a film must end in {' or '.join(FILM_FORMATS)}")
     low, high = RATES
     rule = f"must be from {low:g} to {high:g}"
     rate = number("frames_per_second", frames_per_second, rule, least=low, most=high)
@@ -86,7 +86,7 @@ def film(
         shown = _pictures(source, size, colour, trail, clock, direction)
         if progress is not None:
             shown = _reported(shown, source.sizes["frame"], progress)
-        with writing(path, KINDS[path.suffix], overwrite) as scratch:
+        with writing(path, FILM_FORMATS[path.suffix], overwrite) as scratch:
             to(scratch, shown, size, rate)
     return Film(path)
 

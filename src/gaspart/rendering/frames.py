@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import count_of
 from gaspart.rendering.labels import Labels
 from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
@@ -20,7 +21,6 @@ from gaspart.rendering.shown import Picture
 from gaspart.scene.faces import Piston, Vibrating, pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import fixed_images
-from gaspart.scene.validation import count_of
 from gaspart.scene.walls import Wall
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state

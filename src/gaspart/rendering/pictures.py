@@ -8,12 +8,12 @@ from itertools import product
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.files import Kind, begins_with
+from gaspart.files import FileKind, begins_with
+from gaspart.keys.values import count_of, number
 from gaspart.rendering.camera import CAMERA, camera_for
 from gaspart.rendering.particles import DrawnParticles
-from gaspart.scene.validation import count_of, number
 
-PICTURE = Kind("a PNG picture", begins_with(b"\x89PNG\r\n\x1a\n"))
+PICTURE = FileKind("a PNG picture", begins_with(b"\x89PNG\r\n\x1a\n"))
 SIZE = (1000, 750)
 LARGEST_SIDE = 20_000
 

@@ -14,13 +14,13 @@ import numpy as np
 from gaspart.analysis.order import NEIGHBOURS, hexatic, local_steinhardt
 from gaspart.analysis.run import repeated
 from gaspart.errors import SceneError
-from gaspart.files import Kind, output_path, writing
+from gaspart.files import FileKind, output_path, writing
+from gaspart.keys.values import count_of
 from gaspart.rendering.camera import edges_of
 from gaspart.rendering.frames import opened, particles_of
 from gaspart.rendering.particles import FASTEST, DrawnParticles
 from gaspart.rendering.style import COLOURS
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import count_of
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
 
@@ -37,7 +37,7 @@ def _is_view(path: Path) -> bool:
         return _MARK.encode() in file.read(1000)
 
 
-PAGE = Kind("a page written by gaspart view", _is_view)
+PAGE = FileKind("a page written by gaspart view", _is_view)
 
 
 @dataclass(frozen=True)

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import chdir, contextmanager, suppress
-from functools import cache
+from collections.abc import Iterator, Sequence
+from contextlib import chdir, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from gaspart.errors import SceneError, unknown_word
-from gaspart.kinds import Kind
+from gaspart.keys import require
+from gaspart.keys.values import finite, size
 from gaspart.reproduction.claims.captions import filled, place_fault
+from gaspart.reproduction.config_files import merged_with_default, origin
 from gaspart.reproduction.families import registry
-from gaspart.reproduction.points import jobs, keys
+from gaspart.reproduction.points import jobs, point_keys
 from gaspart.reproduction.points.config_keys import POINT
-from gaspart.reproduction.points.overlay import laid_over
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points, points
 from gaspart.reproduction.report.caption import divided
 from gaspart.reproduction.schema import schema
-from gaspart.scene.validation import finite, size
-from gaspart.yaml_text import DEEPEST, MOST_VALUES, is_exponential, read_yaml
+from gaspart.yaml_text import DEEPEST, MOST_VALUES, read_yaml
 
 
 @contextmanager
@@ -32,7 +30,7 @@ def checked(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, dict[s
     The scene folder is the folder above a file in a folder named `config`; else the folder of the file.
     Raises SceneError.
     """
-    merged, files = laid_over(Path(path))
+    merged, files = merged_with_default(Path(path))
     folder = files[-1].parent
     with chdir(folder.parent if folder.name == "config" else folder):
         yield merged, check(merged, files)
@@ -48,7 +46,7 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
     try:
         check_values(config)
         _check_names(config)
-        _against(schema(_installed_kinds(config)), config, "")
+        require(schema(_installed_kinds(config)), config, "")
         planned = {experiment: checked_points(config, experiment) for experiment in config["experiments"]}
         for figure, block in config["figures"].items():
             shown = figure_points(config, figure, planned)
@@ -59,29 +57,7 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
             _animation(config, animation, block)
         return planned
     except SceneError as error:
-        raise error.inside("", error.file or _origin(error.key, config, contents)) from None
-
-
-def read_numbers(config: dict, files: Sequence[str | Path]) -> None:
-    """Change numbers such as 1e3, which Snakemake's reader takes for text, into numbers, in a merged config.
-
-    files: those that were merged, in that order; what is in quotes there stays text. Raises SceneError for a
-    file that cannot be read.
-    """
-    _read_numbers(config, [read_yaml(file) for file in files])
-
-
-def _read_numbers(block: Any, held: list[Any]) -> None:
-    """held: what the files have in this place."""
-    for key, value in block.items() if isinstance(block, dict) else enumerate(block):
-        below = []
-        for part in held:
-            with suppress(LookupError, TypeError):  # where this file has something else, or nothing
-                below.append(part[key])
-        if isinstance(value, dict | list):
-            _read_numbers(value, below)
-        elif isinstance(value, str) and is_exponential(value) and value not in below:
-            block[key] = float(value)
+        raise error.inside("", error.file or origin(error.key, config, contents)) from None
 
 
 def check_values(config: object) -> None:
@@ -164,7 +140,7 @@ def _animation(config: dict, animation: str, block: dict | None) -> None:
     """Refuse a film of an experiment that the config does not have, or that makes no trajectories."""
     experiment = block["experiment"] if block else None
     kinds = {name: made.get("job", "simulate") for name, made in config["experiments"].items()}
-    if block and kinds.get(experiment) not in TRAJECTORIES:
+    if block and kinds.get(experiment) != TRAJECTORIES:
         rule = "must be the name of an experiment that makes trajectories"
         raise SceneError(f"animations.{animation}.experiment", experiment, rule)
     figure = block.get("figure") if block else None
@@ -186,11 +162,11 @@ def gridded_points(config: dict, experiment: str) -> dict[str, Point]:
     SceneError."""
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):
-        if key.startswith(keys.PREFIX):  # a value of a scene file, which the scene validates
+        if key.startswith(point_keys.PREFIX):  # a value of a scene file, which the scene validates
             continue
         if key not in POINT:
             raise SceneError(f"{where}.grid.{key}", value, unknown_word(key, POINT))
-        _against(POINT[key], value, f"{where}.grid.{key}")
+        require(POINT[key], value, f"{where}.grid.{key}")
     return {point.name: point for point in points(config, experiment)}
 
 
@@ -204,65 +180,6 @@ def check_point(point: Point) -> None:
         raise error if located else error.inside(f"{where}[{point.name}]") from None
 
 
-@cache
-def _validator() -> Any:
-    """The validator of JSON schemas, with a test for uniqueness in a time linear in the length of a list."""
-    from jsonschema import Draft202012Validator, ValidationError
-    from jsonschema.validators import extend
-
-    def unique(validator: object, wanted: bool, items: object, schema: dict) -> Iterable[ValidationError]:
-        words = [item for item in items if isinstance(item, str)] if isinstance(items, list) else []
-        if wanted and len(set(words)) < len(words):
-            yield ValidationError("not unique")
-
-    return extend(Draft202012Validator, {"uniqueItems": unique})
-
-
-def _against(kind: Kind, value: object, where: str) -> None:
-    """Raise SceneError with the most relevant rule of a part of the schema that ``value`` breaks."""
-    from jsonschema.exceptions import best_match
-
-    error = best_match(_validator()(kind).iter_errors(value))
-    if error is None:
-        return
-    key = ".".join(part for part in (where, *(str(part) for part in error.absolute_path)) if part)
-    if error.validator == "additionalProperties":
-        known, patterns = error.schema.get("properties", {}), error.schema.get("patternProperties", {})
-        unknown = next(
-            name
-            for name in error.instance
-            if name not in known and not any(re.search(pattern, name) for pattern in patterns)
-        )
-        rule_text = unknown_word(unknown, known)
-        raise SceneError(f"{key}.{unknown}".lstrip("."), error.instance[unknown], rule_text)
-    if error.validator == "required":
-        missing = next(name for name in error.validator_value if name not in error.instance)
-        raise SceneError(f"{key}.{missing}".lstrip("."), None, "is required")
-    raise SceneError(key or "config", error.instance, _rule(error.validator, error.validator_value))
-
-
-def _rule(validator: str, wanted: Any) -> str:
-    """A JSON schema's keyword in words."""
-    if validator == "type":
-        names = [wanted] if isinstance(wanted, str) else wanted
-        return f"must be of type {' or '.join(names)}"
-    words = {
-        "exclusiveMinimum": "must be greater than",
-        "minimum": "must be at least",
-        "exclusiveMaximum": "must be less than",
-        "maximum": "must be at most",
-        "enum": "must be one of",
-        "minItems": "must have this many items at least:",
-        "maxItems": "must have this many items at most:",
-        "minProperties": "must have this many entries at least:",
-        "uniqueItems": "must not name anything twice",
-        "maxLength": "must have this many characters at most:",
-        "pattern": "must match",
-    }
-    bound = "" if validator == "uniqueItems" else f" {wanted}"
-    return words.get(validator, f"breaks the schema's {validator}:") + bound
-
-
 def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
     """Every (key, value) that a grid holds; an empty list is refused by gaspart.reproduction.points."""
     if isinstance(block, list):
@@ -272,29 +189,6 @@ def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
     for key, values in (block or {}).items():
         for value in values if isinstance(values, list) else [values]:
             yield key, value
-
-
-def _origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | None:
-    """The last of the files, given with their contents, that holds the longest part of ``key``; or the option
-    of Snakemake, for a value that is in none of them."""
-    parts = key.replace("[", ".").split(".")
-    dotted = parts.index("scene") if "scene" in parts else len(parts)  # `scene.` and what follows is one key
-    parts[dotted:] = [".".join(parts[dotted:])]
-
-    def held(block: Any) -> tuple[int, Any]:
-        reached = 0
-        for part in parts:
-            if not isinstance(block, dict) or part not in block:
-                break
-            block, reached = block[part], reached + 1
-        return reached, block
-
-    depth, value = held(config)
-    if contents and depth and not isinstance(value, dict):
-        # in their written form, in which nan is equal to itself
-        if repr((depth, value)) not in [repr(held(content)) for _, content in contents]:
-            return "--config"
-    return max(reversed(contents), key=lambda content: held(content[1])[0])[0] if contents else None
 
 
 def explained(error: SceneError) -> SceneError:

@@ -1,4 +1,4 @@
-"""What a config costs, in core-hours, predicted from the measured speeds."""
+"""The cost of a config in core-hours, predicted from the measured speeds."""
 
 from __future__ import annotations
 

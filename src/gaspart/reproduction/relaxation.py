@@ -21,14 +21,14 @@ from gaspart.scene.species import Species
 from gaspart.simulation import Simulation
 
 COLUMNS = ("collisions_per_particle", "kurtosis", "never_hit", "mean_speed")
-_DILUTE = 1e-3  # packing fraction
+_PACKING_FRACTION = 1e-3  # packing fraction
 
 
 def relaxation(dimension: int, count: int, collisions: float, seed: int) -> np.ndarray:
     """(rows, 4) of `COLUMNS`, until so many collisions of a particle: 2 N_coll / N, <v^4> / <v^2>^2, the part
     of the particles without a collision so far, and <v> over the root-mean-square speed."""
     unit = np.pi / (4.0 if dimension == 2 else 6.0)
-    side = (count * unit / _DILUTE) ** (1.0 / dimension)
+    side = (count * unit / _PACKING_FRACTION) ** (1.0 / dimension)
     kind = Species(count, 0.5, speed=1.0)
     scene = Scene(Container((side,) * dimension, "periodic"), [kind])
     simulation = Simulation(scene, DSMC(), seed)

@@ -14,9 +14,9 @@ from typing import Any
 from gaspart.analysis.declaration import DIMENSIONS
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import ENGINES
-from gaspart.kinds import Kind, choice, names, record
+from gaspart.keys import Kind, choice, names, record
 from gaspart.reproduction.families import registry
-from gaspart.reproduction.points import config_keys, keys
+from gaspart.reproduction.points import config_keys, point_keys
 from gaspart.scene.features import EXCLUDED, FEATURES
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
@@ -31,14 +31,14 @@ What the keys are for is explained in [the config page](config.md).
 For editors, `workflow/schemas` has the same rules as JSON schemas.
 A key without a default is required. A default of *none* means that the key is absent.
 """
-_OBSERVABLES = """## Observables
+_OBSERVABLES_INTRODUCTION = """## Observables
 
 What `gaspart measure`, `gp.sweep`, `gaspart advise` and figures of one's own know by name, in units of
 length, mass, time and energy with k_B = 1, d the dimension. A scene that breaks a condition is refused before
 a run. Theory is that of the equation that the engine of a run solves: of particles that touch, or of the
 Boltzmann or the Enskog equation.
 """
-_FEATURES = """## Features and engines
+_FEATURES_INTRODUCTION = """## Features and engines
 
 Which engine models what, and which features exclude each other.
 All engines model any number of species, whose radii and masses may differ.
@@ -57,7 +57,7 @@ def schema(installed: tuple[tuple[str, str], ...] = ()) -> Kind:
     }
     figures |= {figure: _of_kind(kind) for figure, kind in installed}
     (own,) = map(_of_kind, registry.kinds())
-    return {"$schema": _DRAFT, **record(config_keys.config(figures, own))}
+    return Kind({"$schema": _DRAFT, **record(config_keys.config(figures, own))})
 
 
 def _of_kind(kind: str) -> Kind:
@@ -68,10 +68,10 @@ def _of_kind(kind: str) -> Kind:
 
 def scene_schema() -> Kind:
     """The JSON schema of a scene file; rules that concern several keys are not part of it."""
-    from gaspart.scene.keys import schema_of
+    from gaspart.keys import schema_of
     from gaspart.scene.scene import Scene
 
-    return {"$schema": _DRAFT, **schema_of(Scene)}
+    return Kind({"$schema": _DRAFT, **schema_of(Scene)})
 
 
 def documents() -> dict[str, str]:
@@ -90,11 +90,14 @@ def reference() -> str:
     parts = [_INTRODUCTION, "## Config\n", _table(_outline(top))]
     parts += ["### Experiment\n", _table(_outline(config_keys.EXPERIMENT))]
     for title, tables in (
-        ("Point: one species in a container (exactly three of the first four)", keys.EXTENTS | keys.GAS),
-        ("Point: a scene file", keys.SCENE_FILE),
-        ("Point: engine", keys.ENGINE),
-        *((f"Point: engine `{name}`", table) for name, table in keys.ENGINES.items()),
-        ("Point: length (exactly one of them)", keys.LENGTHS),
+        (
+            "Point: one species in a container (exactly three of the first four)",
+            point_keys.EXTENTS | point_keys.GAS,
+        ),
+        ("Point: a scene file", point_keys.SCENE_FILE),
+        ("Point: engine", point_keys.ENGINE),
+        *((f"Point: engine `{name}`", table) for name, table in point_keys.ENGINE_KEYS.items()),
+        ("Point: length (exactly one of them)", point_keys.LENGTHS),
         ("Point: run", config_keys.RUN),
         ("Animation", config_keys.ANIMATION),
     ):
@@ -110,7 +113,7 @@ def reference() -> str:
     parts += ["## Scene file\n", _table(scene["properties"])]
     for name, part in _parts(scene):
         parts += [f"### {name}\n\n{part['description']}\n", _table(part["properties"])]
-    parts += [_FEATURES, _models(), _excluded(), _OBSERVABLES, _observables()]
+    parts += [_FEATURES_INTRODUCTION, _models(), _excluded(), _OBSERVABLES_INTRODUCTION, _observables()]
     return "\n".join(parts)
 
 
@@ -174,7 +177,7 @@ def _parts(scene: Kind) -> list[tuple[str, Kind]]:
 
 def _outline(table: dict[str, Kind]) -> dict[str, Kind]:
     """A table of keys without those inside their mappings, which have tables of their own."""
-    return {name: {**kind, "properties": {}} for name, kind in table.items()}
+    return {name: kind.stating(properties={}) for name, kind in table.items()}
 
 
 def _table(kinds: dict[str, Kind]) -> str:

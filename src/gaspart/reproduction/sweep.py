@@ -17,17 +17,17 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import Engine, EventDriven, engine_to_dict
 from gaspart.errors import SceneError, unknown_word
+from gaspart.keys.values import count_of, number
 from gaspart.reproduction.config import check_point, gridded_points
-from gaspart.reproduction.jobs import simulate
-from gaspart.reproduction.points.keys import ENGINES, EXTENTS, GAS, PREFIX
+from gaspart.reproduction.jobs.simulate import recipes
 from gaspart.reproduction.points.measurable import distinct, require_observable
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.points.point_keys import ENGINE_KEYS, EXTENTS, GAS, PREFIX
 from gaspart.reproduction.sweep_axes import axes_of, names_of
 from gaspart.reproduction.sweep_points import make_all
 from gaspart.reproduction.sweep_table import Measured, measured, table
 from gaspart.runs import Accuracy
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import count_of, number
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
 from gaspart.trajectory.until import Until
@@ -41,7 +41,7 @@ _SAMPLES = 128
 _KEPT = ("radius", "packing_fraction", "count", "side")
 """The extents of a gas in the order in which they keep their values where others vary."""
 _KEPT_OF_SIZES = ("radius", "count", "packing_fraction", "side")
-"""The same of a polydisperse species, whose radii follow from their number."""
+"""Keys of a polydisperse species, whose radii follow from their number."""
 Progress: TypeAlias = Callable[[int, int, str], None]
 
 
@@ -128,7 +128,7 @@ def _checked(scene: Any, engine: Any) -> Engine:
 def _experiment(point: dict[str, Any], axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
     """The experiment of a config, with what its points share."""
     grid = {key if key in point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
-    return {"job": "simulate_until" if "until" in point else "simulate", "point": point, "grid": grid}
+    return {"job": "simulate", "point": point, "grid": grid}
 
 
 def _make(plan: _Plan, workers: int, overwrite: bool, progress: Progress) -> None:
@@ -170,7 +170,7 @@ def _length(
     samples: int | None,
     equilibration: float | None,
 ) -> dict[str, Any]:
-    """What a point states of its length. Raises SceneError."""
+    """The keys of the length of a point. Raises SceneError."""
     if (duration is None) == (until is None):
         raise SceneError("duration", duration, "must be given, or until, but not both")
     key, value = ("duration", duration) if until is None else ("at_most", at_most)
@@ -192,7 +192,7 @@ def _length(
 
 
 def _kept(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
-    """What a point states of the contents of its files. Raises SceneError."""
+    """The keys of the contents of a point's files. Raises SceneError."""
     needs = {OBSERVABLES[name].needs for name in names}
     if "until" in length:
         if correlations is not None:
@@ -215,11 +215,11 @@ def _kept(names: list[str], correlations: Correlations | None, length: dict[str,
 
 def point_keys(engine: Engine) -> set[str]:
     """The keys of a config that a sweep may vary: those of a gas and of the engine."""
-    return {*EXTENTS, *GAS, *ENGINES[engine.name]}
+    return {*EXTENTS, *GAS, *ENGINE_KEYS[engine.name]}
 
 
 def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
-    """What a point states of its scene and its engine beside what varies. Raises SceneError."""
+    """The keys of a point's scene and engine, without those that vary. Raises SceneError."""
     settings = {key: value for key, value in engine_to_dict(engine).items() if value is not None}
     settings = {("engine" if key == "name" else key): value for key, value in settings.items()}
     settings = {key: value for key, value in settings.items() if key not in axes}
@@ -283,8 +283,7 @@ def _planned(experiment: dict, root: str, seed: int) -> _Plan:
     for point in planned:
         try:
             check_point(point)
-            if point.job == "simulate":
-                simulate.recipe(point.parameters, point.seed())
+            recipes(**point.arguments)
         except SceneError as error:
             errors[point.name] = _of_sweep(error)
     if len(errors) == len(planned):

@@ -1,4 +1,4 @@
-"""What a sweep is asked for: the values of each key that varies, and the observables, as plain values."""
+"""The request of a sweep: the values of each key that varies, and the observables, as plain values."""
 
 from __future__ import annotations
 

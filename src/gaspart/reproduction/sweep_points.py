@@ -21,12 +21,11 @@ from signal import SIGTERM
 from gaspart.errors import SceneError, SimulationError
 from gaspart.interruption import deferred, exit_on_signals
 from gaspart.kernels.compile.loading import load_numba
-from gaspart.reproduction.jobs import simulate, simulate_until
-from gaspart.reproduction.jobs.replicas import Record, replica_paths, write_replicas
+from gaspart.reproduction.jobs.replicas import replica_paths, write_replicas
+from gaspart.reproduction.jobs.simulate import recipes, record
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.points.variants import task, variant, warm
+from gaspart.reproduction.points.variants import compile_kernels, compile_task, variant
 
-_RECORD: dict[str, Record] = {"simulate": simulate.record, "simulate_until": simulate_until.record}
 _LOOK = 0.1  # seconds between two looks at signals while processes run
 _PATIENCE = 60.0  # seconds for a process to write a checkpoint before it is killed
 _SIGNALLED = (130, 143)  # exit codes of a process that a signal has ended after a checkpoint
@@ -45,21 +44,22 @@ def make_all(
         return
     for one in {variant(point): point for point in ordered}.values():  # or each process would compile them
         with suppress(SceneError, SimulationError):  # of its own point alone
-            warm(task(one))
+            compile_kernels(compile_task(one))
     _in_processes(ordered, workers, overwrite, finished)
 
 
 def make(point: Point, overwrite: bool) -> str:
     """Make the trajectories of a point, or check that those in its folder are these; returns the reason why
     it could not be done, or "". Raises SceneError for files; see `make_all`."""
-    parameters, folder, record = point.parameters, Path(point.path), _RECORD[point.job]
+    folder = Path(point.path)
     try:
+        wanted = recipes(**point.arguments)
         with _alone(folder):
             if not folder.exists():
-                write_replicas(record, parameters, folder, None, overwrite)
+                write_replicas(record, wanted, folder, None, overwrite)
                 return ""
-            for path, seed in zip(replica_paths(parameters, folder), parameters["seeds"], strict=True):
-                record(parameters, tuple(seed), path, overwrite)
+            for path, recipe in zip(replica_paths(folder, len(wanted)), wanted, strict=True):
+                record(recipe, path, overwrite)
     except OSError as error:
         rule = f"cannot be written: {error.strerror}"
         raise SceneError(f"{point.experiment}[{point.name}].path", str(folder), rule) from None

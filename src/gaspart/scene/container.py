@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.scene.keys import POSITIVE, Rule, checked_by_class, declared, validate
-from gaspart.scene.validation import choice, positive, set_fields, vector
+from gaspart.keys import POSITIVE, declared, described, set_fields, validate
+from gaspart.keys.values import finite_vector, one_of, positive_number
 
 BOUNDARIES = ("wall", "periodic")
 _PER_AXIS = {"type": "array", "minItems": 2, "maxItems": 3}
@@ -18,7 +18,7 @@ _BOUNDARY: dict[str, Any] = {
 
 
 def _lengths(name: str, value: Any) -> tuple[float, ...]:
-    return tuple(positive(name, length) for length in vector(name, value))
+    return tuple(positive_number(name, length) for length in finite_vector(name, value))
 
 
 @dataclass(frozen=True)
@@ -26,11 +26,11 @@ class Container:
     """The simulated volume [0, L] on each axis, in two or three dimensions."""
 
     lengths: tuple[float, ...] = field(
-        metadata=declared(Rule(_lengths, {**_PER_AXIS, "items": POSITIVE.kind}), "(d,) side lengths")
+        metadata=declared(described({**_PER_AXIS, "items": POSITIVE}, "(d,) side lengths", _lengths))
     )
     boundary: str | tuple[str, ...] = field(
         default="wall",
-        metadata=declared(checked_by_class(_BOUNDARY), "of all axes, or one per axis"),
+        metadata=declared(described(_BOUNDARY, "of all axes, or one per axis")),
     )
 
     def __post_init__(self) -> None:
@@ -40,7 +40,7 @@ class Container:
         if not isinstance(boundary, (tuple, list)) or len(boundary) != self.dimension:
             raise SceneError("boundary", given, f"must be one of {BOUNDARIES}, or a list of one per axis")
         for kind in boundary:
-            choice("boundary", kind, BOUNDARIES)
+            one_of("boundary", kind, BOUNDARIES)
         set_fields(self, boundary=tuple(boundary))
 
     @property

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import finite_vector, size
 from gaspart.scene.faces import (
+    FACE_KINDS,
     FACES,
     GRADIENT,
-    KINDS,
     LeesEdwards,
     Piston,
     Sticky,
@@ -18,7 +19,6 @@ from gaspart.scene.faces import (
     pistons,
 )
 from gaspart.scene.limits import closest_packing
-from gaspart.scene.validation import size, vector
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -33,8 +33,8 @@ def check_faces(scene: Scene) -> None:
     for name, surface in scene.faces.items():
         if name not in known:
             raise SceneError(f"faces.{name}", surface, f"unknown face; known are {', '.join(known)}")
-        if type(surface) not in KINDS.values():
-            *others, last = (kind.__name__ for kind in KINDS.values())
+        if type(surface) not in FACE_KINDS.values():
+            *others, last = (kind.__name__ for kind in FACE_KINDS.values())
             raise SceneError(f"faces.{name}", surface, f"must be {', '.join(others)} or {last}")
         axis = known.index(name) // 2
         if isinstance(surface, LeesEdwards):
@@ -71,7 +71,7 @@ def _check_sheared(scene: Scene, name: str, surface: LeesEdwards) -> None:
 
 def _check_velocity(scene: Scene, name: str, velocity: tuple[float, ...]) -> None:
     """Raise SceneError for a velocity that is not along the face."""
-    vector(f"faces.{name}.velocity", velocity, scene.dimension)
+    finite_vector(f"faces.{name}.velocity", velocity, scene.dimension)
     if velocity[FACES.index(name) // 2] != 0.0:
         rule = "must have no component across the face, which stays in its place"
         raise SceneError(f"faces.{name}.velocity", velocity, rule)
@@ -94,7 +94,7 @@ def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
             rule = f"must not be true where {name} vibrates: give fixed particles positions, in `particles`"
             raise SceneError(f"species[{n}].fixed", True, rule)
     for n, particle in enumerate(scene.particles):
-        x = vector(f"particles[{n}].position", particle.position, scene.dimension)[axis]
+        x = finite_vector(f"particles[{n}].position", particle.position, scene.dimension)[axis]
         if particle.fixed and (length - x if upper else x) < clear + particle.radius:
             rule = f"leaves less than a largest diameter between the particle and {name}, which vibrates"
             raise SceneError(f"particles[{n}].position", particle.position, rule)

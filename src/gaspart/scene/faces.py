@@ -10,10 +10,19 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from gaspart.errors import SceneError
-from gaspart.kinds import described
-from gaspart.scene.keys import NOT_NEGATIVE, NUMBER, POSITIVE, VECTOR, declared, schema_of, validate
-from gaspart.scene.keys import choice as choice_of
-from gaspart.scene.validation import choice, from_mapping, size
+from gaspart.keys import (
+    choice,
+    declared,
+    described,
+    from_mapping,
+    not_negative,
+    positive,
+    schema_of,
+    signed,
+    validate,
+    vector,
+)
+from gaspart.keys.values import one_of, size
 
 if TYPE_CHECKING:
     import numpy as np
@@ -27,7 +36,7 @@ FLOW, GRADIENT = 0, 1
 """The axes of the flow of a sheared gas and of its gradient."""
 
 
-KINDS: dict[str, type[Surface]] = {}
+FACE_KINDS: dict[str, type[Surface]] = {}
 """All kinds of faces, by name; `Surface` adds each."""
 
 
@@ -42,7 +51,7 @@ class Surface:
     moves: ClassVar[bool] = False
 
     def __init_subclass__(cls) -> None:
-        KINDS[cls.kind] = cls
+        FACE_KINDS[cls.kind] = cls
 
     def __post_init__(self) -> None:
         validate(self)
@@ -69,14 +78,14 @@ class Thermal(Surface):
     A wall with a `velocity` moves along itself, and the distribution is that about its velocity.
     """
 
-    temperature: float = field(metadata=declared(POSITIVE, "temperature of the wall"))
+    temperature: float = field(metadata=declared(positive("temperature of the wall")))
     components: str = field(
         default="all",
-        metadata=declared(choice_of(*COMPONENTS), "velocity components that are drawn"),
+        metadata=declared(choice("velocity components that are drawn", *COMPONENTS)),
     )
     velocity: tuple[float, ...] | None = field(
         default=None,
-        metadata=declared(VECTOR, "velocity of the wall, along itself; without it the wall is at rest"),
+        metadata=declared(vector("velocity of the wall, along itself; without it the wall is at rest")),
     )
 
     kind: ClassVar[str] = "thermal"
@@ -108,19 +117,19 @@ class Well(Surface):
     energy -`depth`. It leaves if m v_n^2 / 2 > depth, and is reflected if not. The wall itself is hard, or
     with a `temperature` as in `Thermal`."""
 
-    depth: float = field(metadata=declared(POSITIVE, "depth of the well: an energy"))
+    depth: float = field(metadata=declared(positive("depth of the well: an energy")))
     width: float = field(
-        metadata=declared(POSITIVE, "distance of a particle's surface from the wall up to which it lies")
+        metadata=declared(positive("distance of a particle's surface from the wall up to which it lies"))
     )
     temperature: float | None = field(
-        default=None, metadata=declared(POSITIVE, "temperature of the wall; without it the wall is hard")
+        default=None, metadata=declared(positive("temperature of the wall; without it the wall is hard"))
     )
 
     kind: ClassVar[str] = "well"
 
     @property
     def rule(self) -> tuple[str, float]:
-        """That of the wall behind the well."""
+        """The kind and the level of the wall behind the well."""
         return ("hard", 0.0) if self.temperature is None else ("thermal", self.temperature)
 
     @property
@@ -139,7 +148,7 @@ class Sticky(Surface):
     binds it, so that particles that stick are not balanced by those that leave: detailed balance is broken.
     """
 
-    momentum: float = field(metadata=declared(POSITIVE, "normal momentum below which a particle stays"))
+    momentum: float = field(metadata=declared(positive("normal momentum below which a particle stays")))
 
     kind: ClassVar[str] = "sticky"
 
@@ -158,9 +167,9 @@ class Vibrating(Surface):
     back at once at the end of each period. Contacts follow the scene's law in the frame of the wall.
     """
 
-    amplitude: float = field(metadata=declared(POSITIVE, "half the distance that the wall moves"))
-    period: float = field(metadata=declared(POSITIVE, "duration of one vibration"))
-    waveform: str = field(default="sine", metadata=declared(choice_of(*WAVEFORMS), "how the wall moves"))
+    amplitude: float = field(metadata=declared(positive("half the distance that the wall moves")))
+    period: float = field(metadata=declared(positive("duration of one vibration")))
+    waveform: str = field(default="sine", metadata=declared(choice("how the wall moves", *WAVEFORMS)))
 
     kind: ClassVar[str] = "vibrating"
     moves: ClassVar[bool] = True
@@ -201,9 +210,9 @@ class Piston(Surface):
     smooth and elastic, and nothing else is in the container.
     """
 
-    mass: float = field(metadata=declared(POSITIVE, "mass of the piston"))
+    mass: float = field(metadata=declared(positive("mass of the piston")))
     pressure: float = field(
-        metadata=declared(NOT_NEGATIVE, "external pressure: the force on the piston over its area")
+        metadata=declared(not_negative("external pressure: the force on the piston over its area"))
     )
 
     kind: ClassVar[str] = "piston"
@@ -226,7 +235,7 @@ class LeesEdwards(Surface):
     The faces do work, by which an elastic gas heats.
     """
 
-    shear_rate: float = field(metadata=declared(NUMBER, "gradient of the flow, du_x / dy"))
+    shear_rate: float = field(metadata=declared(signed("gradient of the flow, du_x / dy")))
 
     kind: ClassVar[str] = "lees_edwards"
     moves: ClassVar[bool] = True
@@ -239,7 +248,7 @@ SCHEMA = {
     "additionalProperties": {
         "anyOf": [
             schema_of(face, kind=described({"const": name}, "the kind of face"))
-            for name, face in KINDS.items()
+            for name, face in FACE_KINDS.items()
         ]
     },
 }
@@ -247,12 +256,12 @@ SCHEMA = {
 
 
 def surface_from_dict(mapping: object, where: str) -> Surface:
-    """The face that {"kind": one of `KINDS`, setting: value, ...} describes."""
+    """The face that {"kind": one of `FACE_KINDS`, setting: value, ...} describes."""
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping with a kind")
     settings = dict(mapping)
-    kind = choice(f"{where}.kind", settings.pop("kind", None), KINDS)
-    return from_mapping(KINDS[kind], settings, where)
+    kind = one_of(f"{where}.kind", settings.pop("kind", None), FACE_KINDS)
+    return from_mapping(FACE_KINDS[kind], settings, where)
 
 
 def surface_to_dict(surface: Surface) -> dict:

@@ -1,4 +1,4 @@
-"""What a scene has besides smooth, elastic particles in a hard or periodic container, each by a name.
+"""Features of a scene: all but smooth, elastic particles in a hard or periodic container, each by a name.
 
 `FEATURES` is the table of all features, `EXCLUDED` that of pairs which no scene may have. An engine states
 those that it models (`Engine.models`): what it refuses, and the table in the documentation, follow from it.
@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, KINDS, sliding_faces
+from gaspart.scene.faces import FACE_KINDS, FACES, sliding_faces
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -81,7 +81,7 @@ FEATURES: dict[str, Feature] = {
         "centres_to_walls",
         lambda scene: scene.centres_to_walls or None,
     ),
-    **{kind: _face(kind) for kind in KINDS},
+    **{kind: _face(kind) for kind in FACE_KINDS},
     "sliding": Feature(
         "thermal faces that move along themselves",
         "faces",

@@ -39,7 +39,7 @@ class Gas:
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """Those of `particle`, with packing_fraction and dimension."""
+        """The parameters of `particle`, with packing_fraction and dimension."""
         return {"packing_fraction": self.packing_fraction, "dimension": self.dimension, **self.particle}
 
 
@@ -66,7 +66,7 @@ class Mixture:
         return self.packing_fraction, self.dimension, self.diameters, self.counts
 
     def thinned(self, most: int) -> Mixture:
-        """The same with every k-th size only, at most so many if they are of one species."""
+        """This mixture with every k-th size only, at most so many if they are of one species."""
         step = -(-len(self.counts) // most)
         kept = slice(step // 2, None, step)
         sizes = self.counts[kept], self.diameters[kept], self.masses[kept]

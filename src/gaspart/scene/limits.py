@@ -8,8 +8,8 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import finite_vector
 from gaspart.scene.geometry import CLOSE_PACKING
-from gaspart.scene.validation import vector
 
 if TYPE_CHECKING:
     from gaspart.scene.container import Container
@@ -68,7 +68,7 @@ def check_region(container: Container, key: str, kind: Species) -> None:
     if kind.region is None:
         return
     lower, upper = (
-        vector(f"{key}[{n}]", corner, container.dimension) for n, corner in enumerate(kind.region)
+        finite_vector(f"{key}[{n}]", corner, container.dimension) for n, corner in enumerate(kind.region)
     )
     for low, high, length in zip(lower, upper, container.lengths, strict=True):
         if low < 0.0 or high > length:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gaspart.errors import SceneError
-from gaspart.scene.keys import NOT_NEGATIVE, POSITIVE, between, declared, validate
+from gaspart.keys import between, declared, not_negative, positive, validate
 
 
 @dataclass(frozen=True)
@@ -15,33 +15,37 @@ class Restitution:
     normal: float = field(
         default=1.0,
         metadata=declared(
-            between(0.0, 1.0),
-            "the normal part is multiplied by minus this: from 0 (they stick) to 1 (elastic)",
+            between(
+                "the normal part is multiplied by minus this: from 0 (they stick) to 1 (elastic)", 0.0, 1.0
+            )
         ),
     )
     tangential: float = field(
         default=-1.0,
         metadata=declared(
-            between(-1.0, 1.0),
-            "likewise the tangential part: from -1 (perfectly smooth) to 1 (perfectly rough)",
+            between(
+                "likewise the tangential part: from -1 (perfectly smooth) to 1 (perfectly rough)", -1.0, 1.0
+            )
         ),
     )
 
     contact_duration: float | None = field(
         default=None,
         metadata=declared(
-            NOT_NEGATIVE,
-            "a contact of a particle less than this after its last one is elastic; 0: none is; default: "
-            "under gravity 0.01 of the time scale of a fall through the smallest diameter, else 0",
+            not_negative(
+                "a contact of a particle less than this after its last one is elastic; 0: none is; default: "
+                "under gravity 0.01 of the time scale of a fall through the smallest diameter, else 0"
+            )
         ),
     )
 
     reference_speed: float | None = field(
         default=None,
         metadata=declared(
-            POSITIVE,
-            "with it particles are viscoelastic: `normal` is the restitution of two particles of the first "
-            "species that approach at this normal speed; slower contacts take less",
+            positive(
+                "with it particles are viscoelastic: `normal` is the restitution of two particles of the "
+                "first species that approach at this normal speed; slower contacts take less"
+            )
         ),
     )
 

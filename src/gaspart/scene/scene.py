@@ -16,6 +16,18 @@ from typing import Any
 
 import gaspart
 from gaspart.errors import SceneError
+from gaspart.keys import (
+    declared,
+    described,
+    flag,
+    from_mapping,
+    instance_of,
+    instances_of,
+    set_fields,
+    validate,
+    vector,
+)
+from gaspart.keys.values import MOST_PARTICLES, finite_vector
 from gaspart.scene.container import Container
 from gaspart.scene.driving import check_driven
 from gaspart.scene.face_checks import check_faces
@@ -24,12 +36,10 @@ from gaspart.scene.faces import LeesEdwards, Sticky, Surface, surface_from_dict,
 from gaspart.scene.features import FEATURES, check_features, features
 from gaspart.scene.gas import Gas, Mixture, mixture_of
 from gaspart.scene.geometry import ball_volume
-from gaspart.scene.keys import FLAG, VECTOR, checked_by_class, declared, instance_of, list_of, validate
 from gaspart.scene.limits import Nearby, check_packing, check_region, check_room, rounding
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Particle, Species
 from gaspart.scene.thermostat import Thermostat
-from gaspart.scene.validation import MOST_PARTICLES, from_mapping, set_fields, vector
 from gaspart.scene.walls import WALL_RULE, Plate, Wall, check_walls, wall_kind
 from gaspart.yaml_text import read_yaml, write_yaml
 
@@ -52,40 +62,40 @@ class Scene:
     Raises SceneError for an impossible scene.
     """
 
-    container: Container = field(metadata=declared(instance_of(Container), "the simulated volume"))
+    container: Container = field(metadata=declared(instance_of(Container, "the simulated volume")))
     species: Sequence[Species] = field(
         default=(),
-        metadata=declared(list_of(Species, rule="must be a Species"), "particles placed by the program"),
+        metadata=declared(instances_of("particles placed by the program", Species, rule="must be a Species")),
     )
     particles: Sequence[Particle] = field(
         default=(),
-        metadata=declared(list_of(Particle, rule="must be a Particle"), "particles at given positions"),
+        metadata=declared(instances_of("particles at given positions", Particle, rule="must be a Particle")),
     )
     centres_to_walls: bool = field(
         default=False,
-        metadata=declared(FLAG, "walls stop centres, not surfaces, of particles"),
+        metadata=declared(flag("walls stop centres, not surfaces, of particles")),
     )
     gravity: tuple[float, ...] | None = field(
         default=None,
-        metadata=declared(VECTOR, "(d,) uniform acceleration; along a periodic axis it drives a flow"),
+        metadata=declared(vector("(d,) uniform acceleration; along a periodic axis it drives a flow")),
     )
     restitution: Restitution | None = field(
         default=None,
-        metadata=declared(instance_of(Restitution), "the law of all contacts; without it elastic and smooth"),
+        metadata=declared(instance_of(Restitution, "the law of all contacts; without it elastic and smooth")),
     )
     walls: Sequence[Wall | Plate] = field(
-        default=(), metadata=declared(list_of(Wall, Plate, rule=WALL_RULE), "walls inside the container")
+        default=(), metadata=declared(instances_of("walls inside the container", Wall, Plate, rule=WALL_RULE))
     )
     faces: dict[str, Surface] = field(
         default_factory=dict,
         hash=False,
-        metadata=declared(checked_by_class(FACES_SCHEMA), "kinds of the container's faces; others are hard"),
+        metadata=declared(described(FACES_SCHEMA, "kinds of the container's faces; others are hard")),
     )
 
     thermostat: Thermostat | None = field(
         default=None,
         metadata=declared(
-            instance_of(Thermostat), "random kicks that give energy; without it there are none"
+            instance_of(Thermostat, "random kicks that give energy; without it there are none")
         ),
     )
 
@@ -117,7 +127,7 @@ class Scene:
     def _check_gravity(self) -> None:
         if self.gravity is None:
             return
-        vector("gravity", self.gravity, self.dimension)
+        finite_vector("gravity", self.gravity, self.dimension)
         if not any(self.gravity):  # absent everywhere, so that no other place has to ask
             set_fields(self, gravity=None)
             return
@@ -141,8 +151,8 @@ class Scene:
 
     def _check_particle(self, n: int, particle: Particle, earlier: Nearby) -> None:
         where = f"particles[{n}]"
-        vector(f"{where}.position", particle.position, self.dimension)
-        vector(f"{where}.velocity", particle.velocity, self.dimension)
+        finite_vector(f"{where}.position", particle.position, self.dimension)
+        finite_vector(f"{where}.velocity", particle.velocity, self.dimension)
         self._fits(f"{where}.radius", particle)
         lower, upper = self.reach(particle.radius)
         for x, low, high in zip(particle.position, lower, upper, strict=True):

@@ -7,23 +7,23 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.errors import SceneError
-from gaspart.scene.keys import (
-    FLAG,
-    NOT_NEGATIVE,
-    POSITION,
+from gaspart.keys import (
     POSITIVE,
-    VECTOR,
-    Rule,
     between,
-    checked_by_class,
     choice,
     count,
     declared,
+    described,
+    flag,
+    not_negative,
+    positive,
+    set_fields,
     two_vectors,
     validate,
+    vector,
 )
+from gaspart.keys.values import LARGEST, MOST_PARTICLES, SMALLEST, finite_vector, number, size
 from gaspart.scene.sizes import DISTRIBUTIONS, MOST_UNIFORM, relative_radii
-from gaspart.scene.validation import LARGEST, MOST_PARTICLES, SMALLEST, number, set_fields, size, vector
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,13 +33,16 @@ SHARED = (*LATTICES, "compressed")
 """Arrangements that all particles of a scene share."""
 ARRANGEMENTS = ("random", *SHARED)
 
-_RADIUS = declared(POSITIVE, "radius")
-_MASS = declared(POSITIVE, "mass")
+_RADIUS = declared(positive("radius"))
+_MASS = declared(positive("mass"))
 _MOMENT = declared(
-    Rule(lambda name, value: number(name, value, "must be positive", above=0.0), POSITIVE.kind),
-    "moment of inertia; by default that of a uniform disc or sphere",
+    described(
+        POSITIVE,
+        "moment of inertia; by default that of a uniform disc or sphere",
+        lambda name, value: number(name, value, "must be positive", above=0.0),
+    )
 )
-_FIXED = declared(FLAG, "the particle never moves: it has infinite mass")
+_FIXED = declared(flag("the particle never moves: it has infinite mass"))
 _SPIN: dict = {"type": ["number", "array"], "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
 
 
@@ -72,31 +75,33 @@ class Species:
     the same for all.
     """
 
-    count: int = field(metadata=declared(count(MOST_PARTICLES), "number of particles"))
-    radius: float = field(metadata=declared(POSITIVE, "radius; the mean, if there is a polydispersity"))
+    count: int = field(metadata=declared(count("number of particles", 0, maximum=MOST_PARTICLES)))
+    radius: float = field(metadata=declared(positive("radius; the mean, if there is a polydispersity")))
     mass: float = field(default=1.0, metadata=_MASS)
-    speed: float | None = field(default=None, metadata=declared(NOT_NEGATIVE, "one initial speed for all"))
+    speed: float | None = field(default=None, metadata=declared(not_negative("one initial speed for all")))
     temperature: float | None = field(
         default=None,
         metadata=declared(
-            NOT_NEGATIVE, "instead of `speed`: of the initial Maxwellian velocities; of vibrations if fixed"
+            not_negative("instead of `speed`: of the initial Maxwellian velocities; of vibrations if fixed")
         ),
     )
     exact_temperature: bool = field(
         default=False,
         metadata=declared(
-            FLAG,
-            "the initial velocities are scaled to exactly the `temperature`, after the mean velocity along "
-            "axes on which momentum is conserved was taken off",
+            flag(
+                "the initial velocities are scaled to exactly the `temperature`, after the mean velocity "
+                "along axes on which momentum is conserved was taken off"
+            )
         ),
     )
-    arrangement: str = field(default="random", metadata=declared(choice(*ARRANGEMENTS), "initial positions"))
+    arrangement: str = field(default="random", metadata=declared(choice("initial positions", *ARRANGEMENTS)))
     region: tuple[tuple[float, ...], ...] | None = field(
         default=None,
         metadata=declared(
-            two_vectors(),
-            "two opposite corners, (2, d), of the box in which all its particles start, the lower one first; "
-            "default: the container",
+            two_vectors(
+                "two opposite corners, (2, d), of the box in which all its particles start, the lower one "
+                "first; default: the container"
+            )
         ),
     )
     moment_of_inertia: float | None = field(default=None, metadata=_MOMENT)
@@ -104,18 +109,18 @@ class Species:
     vibration: float | None = field(
         default=None,
         metadata=declared(
-            NOT_NEGATIVE, "of fixed particles, instead of `temperature`: initial energy of vibration"
+            not_negative("of fixed particles, instead of `temperature`: initial energy of vibration")
         ),
     )
     polydispersity: float | None = field(
         default=None,
         metadata=declared(
-            between(0.0, 1.0), "standard deviation of the radii over their mean; by default all are equal"
+            between("standard deviation of the radii over their mean; by default all are equal", 0.0, 1.0)
         ),
     )
     radius_distribution: str | None = field(
         default=None,
-        metadata=declared(choice(*DISTRIBUTIONS), "of the radii, with a polydispersity; default: lognormal"),
+        metadata=declared(choice("of the radii, with a polydispersity; default: lognormal", *DISTRIBUTIONS)),
     )
 
     def __post_init__(self) -> None:
@@ -196,18 +201,20 @@ class Particle:
 
     count: ClassVar[int] = 1
     alike: ClassVar[bool] = True
-    position: tuple[float, ...] = field(metadata=declared(POSITION, "initial position of its centre"))
-    velocity: tuple[float, ...] = field(metadata=declared(VECTOR, "initial velocity"))
+    position: tuple[float, ...] = field(
+        metadata=declared(vector("initial position of its centre", sized=False))
+    )
+    velocity: tuple[float, ...] = field(metadata=declared(vector("initial velocity")))
     radius: float = field(metadata=_RADIUS)
     mass: float = field(default=1.0, metadata=_MASS)
     spin: float | tuple[float, ...] | None = field(
         default=None,
-        metadata=declared(checked_by_class(_SPIN), "angular velocity: a number in 2D, a vector in 3D"),
+        metadata=declared(described(_SPIN, "angular velocity: a number in 2D, a vector in 3D")),
     )
     moment_of_inertia: float | None = field(default=None, metadata=_MOMENT)
     fixed: bool = field(default=False, metadata=_FIXED)
     vibration: float | None = field(
-        default=None, metadata=declared(NOT_NEGATIVE, "of a fixed particle: initial energy of vibration")
+        default=None, metadata=declared(not_negative("of a fixed particle: initial energy of vibration"))
     )
 
     def __post_init__(self) -> None:
@@ -215,7 +222,9 @@ class Particle:
         _check_matter(self)
         if self.spin is not None:
             flat = len(self.position) == 2
-            spin = number("spin", self.spin, "must be a number") if flat else vector("spin", self.spin, 3)
+            spin = (
+                number("spin", self.spin, "must be a number") if flat else finite_vector("spin", self.spin, 3)
+            )
             size("spin", spin)
             set_fields(self, spin=spin)
         for key, value in (("velocity", self.velocity), ("spin", self.spin_vector)):

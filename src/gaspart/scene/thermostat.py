@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from gaspart.scene.keys import POSITIVE, declared, validate
+from gaspart.keys import declared, positive, validate
 
 
 @dataclass(frozen=True)
@@ -17,9 +17,9 @@ class Thermostat:
     momentum is kept. For short intervals this is white noise of strength xi_0^2 = 2 power/(d m).
     """
 
-    power: float = field(metadata=declared(POSITIVE, "mean energy per time that a particle is given"))
+    power: float = field(metadata=declared(positive("mean energy per time that a particle is given")))
     interval: float = field(
-        metadata=declared(POSITIVE, "time between kicks: short compared with that between contacts")
+        metadata=declared(positive("time between kicks: short compared with that between contacts"))
     )
 
     def __post_init__(self) -> None:

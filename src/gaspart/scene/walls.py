@@ -7,9 +7,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.scene.keys import declared, two_vectors, validate
-from gaspart.scene.keys import vector as vector_of
-from gaspart.scene.validation import positive, vector
+from gaspart.keys import declared, two_vectors, validate, vector
+from gaspart.keys.values import finite_vector, positive_number
 
 if TYPE_CHECKING:
     from gaspart.scene.container import Container
@@ -23,14 +22,14 @@ class Wall:
     """A straight wall inside a container of two dimensions, from `start` (2,) to `end` (2,): hit from both
     sides, and at its ends, which are solid."""
 
-    start: tuple[float, ...] = field(metadata=declared(vector_of(2), "one end"))
-    end: tuple[float, ...] = field(metadata=declared(vector_of(2), "the other end"))
+    start: tuple[float, ...] = field(metadata=declared(vector("one end", 2, sized=False)))
+    end: tuple[float, ...] = field(metadata=declared(vector("the other end", 2, sized=False)))
 
     def __post_init__(self) -> None:
         validate(self)
         if self.start == self.end:
             raise SceneError("end", self.end, "a wall must have a length; for a post use a fixed particle")
-        positive("length", math.dist(self.start, self.end))
+        positive_number("length", math.dist(self.start, self.end))
 
     @property
     def corners(self) -> dict[str, tuple[float, ...]]:
@@ -50,9 +49,9 @@ class Plate:
     """A flat rectangular wall inside a container of three dimensions: a `corner` (3,), and the `edges` (2, 3)
     that lead from it, at right angles. Hit from both sides, at its edges and its corners, which are solid."""
 
-    corner: tuple[float, ...] = field(metadata=declared(vector_of(3), "one corner"))
+    corner: tuple[float, ...] = field(metadata=declared(vector("one corner", 3, sized=False)))
     edges: tuple[tuple[float, ...], ...] = field(
-        metadata=declared(two_vectors(3), "the vectors from it to the two neighbouring corners")
+        metadata=declared(two_vectors("the vectors from it to the two neighbouring corners", 3))
     )
 
     def __post_init__(self) -> None:
@@ -62,7 +61,7 @@ class Plate:
         if not min(sizes) > 0.0:
             raise SceneError("edges", self.edges, "a plate must have a length and a width")
         for length in sizes:
-            positive("edges", length)
+            positive_number("edges", length)
         if abs(sum(x * y for x, y in zip(one, other, strict=True))) > 1e-9 * sizes[0] * sizes[1]:
             raise SceneError("edges", self.edges, "must be at right angles")
 
@@ -86,8 +85,8 @@ class Plate:
 
 def box_of_walls(lower: tuple[float, ...], upper: tuple[float, ...]) -> tuple[Wall | Plate, ...]:
     """The four walls of a rectangle, or the six of a cuboid, given two opposite corners."""
-    low = vector("lower", lower)
-    high = vector("upper", upper, len(low))
+    low = finite_vector("lower", lower)
+    high = finite_vector("upper", upper, len(low))
     if len(low) == 2:
         (x, y), (u, v) = low, high
         corners = ((x, y), (u, y), (u, v), (x, v))

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene import validation
+from gaspart.keys.values import partition
 from gaspart.scene.scene import Scene
 
 NOWHERE = -1
@@ -96,7 +96,7 @@ def make_boxes(
     Raises SceneError if a box would be narrower than the largest diameter.
     """
     lengths = scene.container.lengths
-    validation.per_side("boxes_per_side", boxes_per_side)
+    partition("boxes_per_side", boxes_per_side)
     given = boxes_per_side
     if not isinstance(given, (tuple, list)):
         given = (given,) * len(lengths)

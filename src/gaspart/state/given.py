@@ -22,7 +22,7 @@ _SINGLE = 2.0**-24
 """Largest relative error of a number in single precision, as in the frames of a trajectory."""
 
 
-def given_state(
+def state_from_arrays(
     scene: Scene,
     positions: np.ndarray,
     velocities: np.ndarray,
@@ -72,15 +72,15 @@ def given_state(
     )
 
 
-def taken_state(scene: Scene, other: State) -> State:
+def state_at_time_zero(scene: Scene, other: State) -> State:
     """The state at time 0 of a scene, with the positions, velocities and spins of `other`, of the same
     particles in a container of the same size.
 
     A piston keeps its place and velocity, whatever its mass and load; without one in `other` it is at rest at
     its side. Between sheared faces the images keep their displacement, and velocities are kept at one shear
     rate; from another rate, or none, those about the flow and the mean are, and the flow of the scene is
-    added. Faces that vibrate begin anew. Raises SceneError, as `given_state`, for other particles, another
-    container, a piston that is another face, and displaced images in a container that has none.
+    added. Faces that vibrate begin anew. Raises SceneError, as `state_from_arrays`, for other particles,
+    another container, a piston that is another face, and displaced images in a container that has none.
     """
     if not isinstance(other, State):
         raise SceneError("initial", type(other).__name__, "must be a State, as of Simulation.state")
@@ -103,7 +103,7 @@ def taken_state(scene: Scene, other: State) -> State:
             raise SceneError("initial", float(its[n]), rule)
     places, velocities = _in_flow(scene, other)
     piston, displaced = _taken_piston(scene, other), _displaced(scene, other)
-    return given_state(scene, places, velocities, other.spins, piston, displaced, other.vibrations)
+    return state_from_arrays(scene, places, velocities, other.spins, piston, displaced, other.vibrations)
 
 
 def _in_flow(scene: Scene, other: State) -> tuple[np.ndarray, np.ndarray]:

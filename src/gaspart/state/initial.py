@@ -105,7 +105,7 @@ def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.
 
 
 def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
-    """What a user can do whose particles do not fit by random insertion: an arrangement only if it holds
+    """Advice to a user whose particles do not fit by random insertion: an arrangement only if it holds
     them."""
     try:
         arranged = replace(scene, species=[replace(kind, arrangement="lattice") for kind in scene.species])

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, ClassVar
 from gaspart.errors import SceneError
 from gaspart.scene.driving import has_dragged_faces
 from gaspart.scene.stress import require_tallied
-from gaspart.state.tally import Tally
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -70,6 +69,8 @@ def tallies_of(scene: Scene) -> tuple[OptionalTally, ...]:
 
 def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:
     """The fields of `Tally` that a run with these optional tallies has."""
+    from gaspart.state.tally import Tally  # loads numpy, which planning does not need
+
     present = {None, *(tally.name for tally in tallies)}
     return [field.name for field in fields(Tally) if field.metadata.get("only") in present]
 

@@ -56,7 +56,7 @@ MOST_FRAMES = 2**31 - 1
 _UNFINISHED = bytes(2 * WORD) + struct.pack(">I", 10)
 """How a file begins before its first word is written: with that, no frames, and the tag of dimensions."""
 _FIRST_NAME = struct.pack(">I", 5) + b"frame"
-"""What follows the number of dimensions: the name of the first one."""
+"""The name of the first dimension, which follows the number of dimensions."""
 
 
 def counters(engine: Engine, tallies: Iterable[OptionalTally] = ()) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.files import Kind, open_regular, place, remove_own, scratch_beside
+from gaspart.files import FileKind, open_regular, place, remove_own, scratch_beside
 
 _DIGEST, _FRAMES = "trajectory header", "trajectory frames"
 _MARKS = tuple(f"{name}.npy".encode() for name in (_DIGEST, _FRAMES))
@@ -49,7 +49,7 @@ def _is_checkpoint(path: Path) -> bool:
     return any(mark in part for mark in _MARKS for part in (start, end))
 
 
-CHECKPOINT = Kind("a checkpoint written by gaspart", _is_checkpoint)
+CHECKPOINT = FileKind("a checkpoint written by gaspart", _is_checkpoint)
 
 
 def _digest(header: bytes) -> str:

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import count_of, number
 from gaspart.scene.faces import mean_velocity
 from gaspart.scene.scene import Scene
-from gaspart.scene.validation import count_of, number
 from gaspart.simulation import Simulation
 from gaspart.state.optional_tallies import OptionalTally, StressTally
 from gaspart.state.tally import ACTION, HEAT
@@ -32,13 +32,13 @@ STRESS = {"shear": ACTION, "rotational": ACTION, "collisional": ACTION, "bulk": 
 """What is correlated of the stress tensor and the heat flux, with the units of its time integral G: means
 over the components of the symmetric part that shear, over those of the antisymmetric part, and over those
 that shear of what collisions add; a d-th of the trace; the mean over the components of the heat flux."""
-KINDS = {
+CORRELATED = {
     "product": "J(0) J(t), J = dG/dt over an interval",
     "square": "(G(t) - G(0))^2",
     "ends": "(J(0) + J(t)) / 2, J = dG/dt over an interval",
     "change": "G(t) - G(0)",
 }
-"""What is summed of each over pairs of samples; the last two of `bulk` only, whose mean is not zero."""
+"""Summands of each over pairs of samples; the last two of `bulk` only, whose mean is not zero."""
 _PREFIX = "correlator "  # of its arrays in a checkpoint
 
 
@@ -107,11 +107,11 @@ def stress_units() -> dict[str, str]:
 
 
 def meaning_of(name: str) -> str:
-    """What a sum adds up."""
+    """The summand of a sum, in words."""
     if name in SUMS:
         return f"mean over moving particles of {SUMS[name]}"
     group, kind = name.split("_")[:2]
-    return f"{KINDS[kind]}, G the time integral of the volume times the {group} flux"
+    return f"{CORRELATED[kind]}, G the time integral of the volume times the {group} flux"
 
 
 class _Correlator:
@@ -227,7 +227,7 @@ class StressCorrelator(_Correlator):
         self._groups = np.repeat(np.arange(len(STRESS)), number)
         self._terms = np.array(number, dtype=float)[:, None, None]
         self._dimension, self._latest, self._begun = dimension, np.zeros(len(self._groups)), False
-        super().__init__(settings, (2, len(self._groups)), (len(STRESS), len(KINDS)))
+        super().__init__(settings, (2, len(self._groups)), (len(STRESS), len(CORRELATED)))
 
     @property
     def next(self) -> int:
@@ -251,7 +251,7 @@ class StressCorrelator(_Correlator):
 
     def sums(self) -> dict[str, np.ndarray | float]:
         """The sums of `stress_sums` so far, (lags + 1,) each, and the number of samples."""
-        groups, kinds = list(STRESS), list(KINDS)
+        groups, kinds = list(STRESS), list(CORRELATED)
         parts = ((name, *name.split("_")[:2]) for name in stress_sums())
         named = {name: self._sums[groups.index(group), kinds.index(kind)] for name, group, kind in parts}
         return {"correlated_samples": float(self._samples), **named}

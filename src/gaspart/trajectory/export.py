@@ -13,14 +13,14 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError, optional
-from gaspart.files import Kind, begins_with, descriptor_path, output_path, writing
+from gaspart.files import FileKind, begins_with, descriptor_path, output_path, writing
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.opening import check_frames, opened
 from gaspart.trajectory.recipe import read_recipe
 
-KINDS = {
-    ".gsd": Kind("a GSD file", begins_with(b"\xdf\x65" * 4)),
-    ".data": Kind("LAMMPS data written by gaspart", begins_with(b"gaspart: ")),
+EXPORT_FORMATS = {
+    ".gsd": FileKind("a GSD file", begins_with(b"\xdf\x65" * 4)),
+    ".data": FileKind("LAMMPS data written by gaspart", begins_with(b"gaspart: ")),
 }
 
 
@@ -46,10 +46,10 @@ def export(trajectory: str | Path, path: str | Path, frame: int = -1, overwrite:
     file that cannot be read or written.
     """
     path = output_path(path)
-    if path.suffix not in KINDS:
-        raise SceneError("output", str(path), f"must end in {' or '.join(KINDS)}")
+    if path.suffix not in EXPORT_FORMATS:
+        raise SceneError("output", str(path), f"must end in {' or '.join(EXPORT_FORMATS)}")
     snapshot = _snapshot(Path(trajectory), frame)
-    with writing(path, KINDS[path.suffix], overwrite) as scratch:
+    with writing(path, EXPORT_FORMATS[path.suffix], overwrite) as scratch:
         (_write_gsd if path.suffix == ".gsd" else _write_data)(scratch, snapshot)
     return path
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from gaspart.errors import SceneError
-from gaspart.scene.validation import number
+from gaspart.keys.values import number
 from gaspart.trajectory.checkpoint import Checkpoint, checkpoint_path, read_checkpoint, write_checkpoint
 from gaspart.trajectory.frames import Frames, frames_of
 from gaspart.trajectory.opening import check_frames, checked

@@ -10,7 +10,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.scene.faces import GRADIENT, pistons
-from gaspart.state.given import given_state
+from gaspart.state.given import state_from_arrays
 from gaspart.state.state import State
 from gaspart.trajectory.checkpoint import kept_beside
 from gaspart.trajectory.opening import checked
@@ -61,4 +61,6 @@ def _of_frame(recipe: Recipe, frame: xr.Dataset) -> State:
     if scene.shear_rate is not None:
         begun = recipe.initial.displaced if recipe.initial else None
         displaced = (begun or 0.0) + scene.shear_rate * scene.container.lengths[GRADIENT] * time
-    return replace(given_state(scene, places, velocities, spins, piston, displaced, vibrations), time=time)
+    return replace(
+        state_from_arrays(scene, places, velocities, spins, piston, displaced, vibrations), time=time
+    )

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from gaspart.errors import SceneError
-from gaspart.files import Kind, may_replace, open_regular
+from gaspart.files import FileKind, may_replace, open_regular
 from gaspart.trajectory import amber
 
 PARTIAL = ".partial"
@@ -36,8 +36,8 @@ def _is_trajectory(path: Path) -> bool:
     return head.startswith(b"CDF") and b"AMBER" in head and b"gaspart" in head
 
 
-TRAJECTORY = Kind("a trajectory written by gaspart", _is_trajectory)
-UNFINISHED = Kind("an unfinished trajectory", lambda path: is_blank(path) or _is_trajectory(path))
+TRAJECTORY = FileKind("a trajectory written by gaspart", _is_trajectory)
+UNFINISHED = FileKind("an unfinished trajectory", lambda path: is_blank(path) or _is_trajectory(path))
 
 
 @contextmanager

@@ -12,11 +12,11 @@ import numpy as np
 from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
+from gaspart.keys.values import count_of, number
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
-from gaspart.scene.validation import count_of, number
-from gaspart.state.given import given_state, taken_state
+from gaspart.state.given import state_at_time_zero, state_from_arrays
 from gaspart.state.insertion import per_particle
 from gaspart.state.optional_tallies import OptionalTally, tallies_of, tally_from_dict, tally_to_dict
 from gaspart.state.random import stream
@@ -86,7 +86,7 @@ class Recipe:
             rule = "makes more frames than a file can hold"
             raise SceneError("sample_interval", self.sample_interval, rule)
         if self.initial is not None:
-            object.__setattr__(self, "initial", taken_state(self.scene, self.initial))
+            object.__setattr__(self, "initial", state_at_time_zero(self.scene, self.initial))
         for tally in self.asked:
             self.engine.check_tally(tally, self.scene)
         if self.correlations:
@@ -268,7 +268,7 @@ def _stored_initial(file: netCDF4.Dataset, scene: Scene) -> State | None:
     if amber.INITIAL[0] not in file.variables:
         return None
     parts = {_part(name): np.array(file[name][:]) for name in amber.INITIAL if name in file.variables}
-    return given_state(scene, **parts)
+    return state_from_arrays(scene, **parts)
 
 
 def _part(name: str) -> str:

@@ -29,7 +29,7 @@ duration is the present estimate."""
 Examine = Callable[[int], float]
 """Called with a number of frames; returns the error after these frames over the required one, or inf."""
 
-_STRETCH = 0.1  # seconds of work between two looks at the clock and at signals, to within a factor of 2
+_SEGMENT = 0.1  # seconds of work between two looks at the clock and at signals, to within a factor of 2
 _PROGRESS = 0.5  # seconds between two reports of progress
 
 
@@ -37,7 +37,7 @@ class Recording:
     """A simulation under way to its duration, the file of its frames, and the finished trajectory's path.
 
     every: seconds between checkpoints; examine: of a run that ends when it is accurate. Observing changes
-    nothing: neither checkpoints nor the division into stretches changes a bit of the result.
+    nothing: neither checkpoints nor the division into segments changes a bit of the result.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class Recording:
         self._pairs = PairCounter(simulation) if recipe.pairs else None
         self._examine = examine
         self._duration = recipe.longest if examine is None else self._estimate(0, math.inf)
-        self._stretch = recipe.engine.first_stretch
+        self._segment = recipe.engine.first_segment
         self._saved = self._reported = time.monotonic()
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
@@ -137,15 +137,15 @@ class Recording:
         state = self._simulation.state
         self._simulation.check_invariants(state)
         self._frames.append(self._frame(state))
-        self._between_stretches(signals)
+        self._between_segments(signals)
 
     def _reach(self, number: int, interval: float, signals: Deferral) -> None:
         """Advance to the time number x interval."""
         for _ in self._approach(number, interval):
             signals.unsaved = True
-            self._between_stretches(signals)
+            self._between_segments(signals)
 
-    def _between_stretches(self, signals: Deferral) -> None:
+    def _between_segments(self, signals: Deferral) -> None:
         """Report progress, write a checkpoint and let a signal take effect, if one of these is due."""
         now = time.monotonic()
         if self._progress and now - self._reported >= _PROGRESS:
@@ -178,34 +178,34 @@ class Recording:
         set_note(f"`{command}` continues it from time {self._simulation.time:g}{end}")
 
     def _approach(self, number: int, interval: float) -> Iterator[None]:
-        """Advance to the time number x interval by stretches."""
+        """Advance to the time number x interval by segments."""
         simulation, recipe = self._simulation, self._recipe
         if step := recipe.engine.quantum:
             goal = number * multiple("interval", interval, "time_step", step)
             while (done := round(simulation.time / step)) < goal:
                 # half a step more than required, so that rounding does not cost a step
-                self._advance(goal * step, until=(min(goal, done + self._stretch) + 0.5) * step)
+                self._advance(goal * step, until=(min(goal, done + self._segment) + 0.5) * step)
                 yield
             return
         until = number * interval
         while simulation.time < until:
-            self._advance(until, until=until, max_work=self._stretch)
+            self._advance(until, until=until, max_work=self._segment)
             yield
         simulation.advance(until=until)  # remaining events at exactly this time
         if self._pairs:
             self._pairs.take()
 
     def _advance(self, goal: float, **limits: Any) -> None:
-        """One stretch towards the time `goal`; the next one is fitted to take about `_STRETCH` seconds."""
+        """One segment towards the time `goal`; the next one is fitted to take about `_SEGMENT` seconds."""
         begun = time.monotonic()
         self._simulation.advance(**limits)
         if self._pairs:
             self._pairs.take()
         took = time.monotonic() - begun
-        if took > _STRETCH * 2:
-            self._stretch = max(1, self._stretch // 2)
-        elif took < _STRETCH / 2 and self._simulation.time < goal:
-            self._stretch *= 2
+        if took > _SEGMENT * 2:
+            self._segment = max(1, self._segment // 2)
+        elif took < _SEGMENT / 2 and self._simulation.time < goal:
+            self._segment *= 2
 
     def _frame(self, state: State) -> dict[str, np.ndarray | float]:
         """The present state and counters, as the variables of a frame."""

@@ -8,15 +8,13 @@ A checkpoint that is kept is then the state at the end, from which a longer run 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import BinaryIO, TypeAlias
+from typing import BinaryIO
 
 from gaspart.errors import SceneError
 from gaspart.files import OVERWRITE, may_replace, open_regular, output_path, place
-from gaspart.scene.validation import number
+from gaspart.keys.values import number
 from gaspart.simulation import Simulation
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.checkpoint import (
@@ -29,19 +27,15 @@ from gaspart.trajectory.checkpoint import (
 from gaspart.trajectory.extension import is_beginning, longer, take_over
 from gaspart.trajectory.frames import Frames, frame_count
 from gaspart.trajectory.opening import check_frames, checked
-from gaspart.trajectory.partial import TRAJECTORY, UNFINISHED, is_blank, locked, partial_path, writing
+from gaspart.trajectory.partial import TRAJECTORY, locked, partial_path, writing
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
-from gaspart.trajectory.recording import Examine, Progress, Recording
-from gaspart.trajectory.until import Until, is_examined
-
-Examiner: TypeAlias = Callable[[Path, Until, int], float]
-"""What examines the first frames of a file: the largest error over the required one, inf if unknown, 0 to
-give up."""
+from gaspart.trajectory.recording import Progress, Recording
+from gaspart.trajectory.stage import Examiner, examination, is_complete, is_finished
 
 
 @dataclass(frozen=True)
-class Manner:
-    """How a trajectory is made, which changes nothing in it.
+class WriteOptions:
+    """How a trajectory is written: nothing in it depends on these options.
 
     checkpoint_seconds: between checkpoints; overwrite: whether another run's file may be replaced; examiner:
     for a recipe that ends when it is accurate; keep_checkpoint: whether the last one stays beside the file.
@@ -58,7 +52,7 @@ class Manner:
         number("checkpoint_seconds", self.checkpoint_seconds, "must not be negative", least=0.0)
 
 
-def record(wanted: Recipe, path: str | Path, manner: Manner) -> Path:
+def record(wanted: Recipe, path: str | Path, options: WriteOptions) -> Path:
     """Make the trajectory of a recipe at `path`; returns `path`.
 
     What is raised is that of `gaspart.run` (`gaspart.runs`).
@@ -66,10 +60,10 @@ def record(wanted: Recipe, path: str | Path, manner: Manner) -> Path:
     path = output_path(path)
     if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` knows the format by it
         raise SceneError("path", str(path), "must end in .nc: a trajectory is a netCDF file")
-    return _carry_out(wanted, path, manner)
+    return _carry_out(wanted, path, options)
 
 
-def resume(path: str | Path, manner: Manner) -> Path:
+def resume(path: str | Path, options: WriteOptions) -> Path:
     """Finish the run that left `path.partial`, from its files only; returns `path`.
 
     Raises SceneError if there is nothing to resume, if another version of the program began it, and for a
@@ -94,12 +88,12 @@ def resume(path: str | Path, manner: Manner) -> Path:
             with open_regular(path) as file:
                 frames = frame_count(file)
             missing = f"has {frames} of {'more' if wanted.until else wanted.frames} frames, and {rule}"
-            rule = "is already complete" if _is_all(path, wanted, frames, manner.examiner) else missing
+            rule = "is already complete" if is_complete(wanted, path, frames, options.examiner) else missing
         raise SceneError("path", str(path), rule) from None
-    return _carry_out(wanted, path, manner)
+    return _carry_out(wanted, path, options)
 
 
-def extend(path: str | Path, duration: float, manner: Manner) -> Path:
+def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
     """Continue the complete run at `path` to a longer duration; returns `path`.
 
     The file has then the bytes of a run of that duration in one go. Without the checkpoint of its end, which
@@ -117,14 +111,14 @@ def extend(path: str | Path, duration: float, manner: Manner) -> Path:
         with checked(path) as (_, header, _):
             kept_beside(path, header, "to run it again from its start")  # named here, if it is damaged
     with writing(path):
-        kept = manner.keep_checkpoint or checkpoint.exists()
+        kept = options.keep_checkpoint or checkpoint.exists()
         with locked(partial) as file:
             if amber.is_blank(file):  # this file states what is under way, whenever it is cut short
                 Frames(file, wanted.layout, wanted.header(stored_revision(path)))
             elif not begun_as(partial, wanted):
                 rule = "is of another unfinished run, or to another duration; resume it or move it away"
                 raise SceneError("path", str(partial), rule)
-    return _carry_out(wanted, path, replace(manner, keep_checkpoint=kept))
+    return _carry_out(wanted, path, replace(options, keep_checkpoint=kept))
 
 
 def simulation_of(recipe: Recipe) -> Simulation:
@@ -132,84 +126,26 @@ def simulation_of(recipe: Recipe) -> Simulation:
     return Simulation(recipe.scene, recipe.engine, recipe.seed, initial=recipe.initial, tallies=recipe.asked)
 
 
-def _carry_out(wanted: Recipe, path: Path, manner: Manner) -> Path:
+def _carry_out(wanted: Recipe, path: Path, options: WriteOptions) -> Path:
     """Finish a trajectory from its present state."""
     partial, checkpoint = partial_path(path), checkpoint_path(path)
     with writing(path):
         if path.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
             raise SceneError("path", str(path), "must be a file in an existing folder that can be written to")
-        if _is_finished(wanted, path, manner):
-            if not partial.exists() and not manner.keep_checkpoint:
+        if is_finished(wanted, path, options.examiner, options.overwrite):
+            if not partial.exists() and not options.keep_checkpoint:
                 remove_checkpoint(checkpoint)
             return path
         may_replace(checkpoint, CHECKPOINT, overwrite=True)  # before the work; each checkpoint asks it again
         simulation = simulation_of(wanted)
         with locked(partial) as file:
             # again: another process may have finished or begun a run before the lock
-            if not _is_finished(wanted, path, manner):
-                _record(wanted, simulation, file, path, manner)
-                place(partial, path, TRAJECTORY, manner.overwrite or is_beginning(path, wanted))
-                if not manner.keep_checkpoint:
+            if not is_finished(wanted, path, options.examiner, options.overwrite):
+                _record(wanted, simulation, file, path, options)
+                place(partial, path, TRAJECTORY, options.overwrite or is_beginning(path, wanted))
+                if not options.keep_checkpoint:
                     remove_checkpoint(checkpoint)
     return path
-
-
-def _is_finished(wanted: Recipe, path: Path, manner: Manner) -> bool:
-    """Whether this run is complete at `path`. Raises SceneError if it may not be begun or continued."""
-    partial = partial_path(path)
-    exists = may_replace(path, TRAJECTORY, overwrite=True)
-    if exists and _holds(path, wanted, manner.examiner):
-        return True
-    if exists and _extends(partial, path, wanted):
-        return False
-    if (exists or not _can_continue(partial, wanted)) and not manner.overwrite:
-        rule = f"exists, of another run or version, or damaged; move it away, or {OVERWRITE}"
-        raise SceneError("path", str(path if exists else partial), rule)
-    return False
-
-
-def _extends(partial: Path, path: Path, wanted: Recipe) -> bool:
-    """Whether the run at `path` is being extended to this one."""
-    return (
-        partial.exists()
-        and not is_blank(partial)
-        and begun_as(partial, wanted)
-        and is_beginning(path, wanted)
-    )
-
-
-def _can_continue(partial: Path, wanted: Recipe) -> bool:
-    """Whether nothing was begun, or this run. Raises SceneError for a file of another kind."""
-    with suppress(FileNotFoundError):  # another process has finished it just now
-        begun = may_replace(partial, UNFINISHED, overwrite=True)
-        return not begun or is_blank(partial) or begun_as(partial, wanted) or not partial.exists()
-    return True
-
-
-def _holds(path: Path, wanted: Recipe, examiner: Examiner | None) -> bool:
-    """Whether a file is of this run, complete and undamaged."""
-    if not begun_as(path, wanted):
-        return False
-    with suppress(SceneError), open_regular(path) as file:
-        check_frames(path)
-        return _is_all(path, wanted, frame_count(file), examiner)
-    return False
-
-
-def _is_all(path: Path, wanted: Recipe, frames: int, examiner: Examiner | None) -> bool:
-    """Whether the complete trajectory has so many frames."""
-    examine = _examination(wanted, path, examiner)
-    return frames == wanted.frames or (examine is not None and is_examined(frames) and examine(frames) <= 1.0)
-
-
-def _examination(wanted: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
-    """What examines the first frames of a file of a run that ends when it is accurate."""
-    until = wanted.until
-    if until is None:
-        return None
-    if examiner is None:
-        raise ValueError("examiner: None (a run that ends when it is accurate needs one)")
-    return lambda frames: examiner(path, until, frames)
 
 
 def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
@@ -229,7 +165,7 @@ def _record(
     simulation: Simulation,
     file: BinaryIO,
     path: Path,
-    manner: Manner,
+    options: WriteOptions,
 ) -> None:
     """Write all missing frames to the open partial file."""
     partial = partial_path(path)
@@ -237,15 +173,15 @@ def _record(
     header = wanted.header(stored_revision(partial) if continued else provenance.git_revision())
     checkpoint = read_checkpoint(checkpoint_path(path), header) if continued else None
     if checkpoint and (
-        checkpoint.frames > frame_count(file) or not _can_keep(partial, checkpoint.frames, manner.overwrite)
+        checkpoint.frames > frame_count(file) or not _can_keep(partial, checkpoint.frames, options.overwrite)
     ):
         checkpoint = None
     frames = Frames(file, wanted.layout, header, kept=checkpoint.frames if checkpoint else 0)
     checkpoint = checkpoint or take_over(path, wanted, frames)
-    examine = _examination(wanted, partial, manner.examiner)
+    examine = examination(wanted, partial, options.examiner)
     recording = Recording(
-        wanted, simulation, frames, path, manner.checkpoint_seconds, manner.progress, examine
+        wanted, simulation, frames, path, options.checkpoint_seconds, options.progress, examine
     )
     if checkpoint:
         recording.restore(checkpoint.arrays)
-    recording.finish(manner.keep_checkpoint)
+    recording.finish(options.keep_checkpoint)

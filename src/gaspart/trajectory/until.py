@@ -9,7 +9,7 @@ from dataclasses import asdict, astuple, dataclass
 from itertools import takewhile
 
 from gaspart.errors import SceneError
-from gaspart.scene.validation import number
+from gaspart.keys.values import number
 
 _ACCURACIES = 1e-8, 1.0
 _FIRST = 64, 96
@@ -83,6 +83,11 @@ class Until:
             {key: value for key, value in asdict(one).items() if value is not None} for one in self.accuracies
         ]
         return json.dumps(asked)
+
+    @classmethod
+    def from_dict(cls, values: dict) -> Until:
+        """The inverse of `dataclasses.asdict`. Raises SceneError."""
+        return cls(tuple(Requirement(**one) for one in values["accuracies"]), values["at_most"])
 
     @classmethod
     def from_json(cls, text: str, at_most: float | None) -> Until:

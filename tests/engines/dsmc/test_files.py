@@ -7,7 +7,7 @@ import pytest
 import gaspart as gp
 from gaspart.cli import main
 from gaspart.reproduction.points.points import points
-from gaspart.reproduction.points.variants import task, variant, warm
+from gaspart.reproduction.points.variants import compile_kernels, compile_task, variant
 
 DILUTE = gp.Scene(gp.Container((20.0,) * 3, "periodic"), [gp.Species(2000, 0.1, temperature=1.0)])
 
@@ -46,7 +46,7 @@ def test_a_config_has_it(tmp_path):
     for one, model in zip(made, ("boltzmann", "enskog"), strict=True):
         assert one.parameters["engine"] == {"name": "dsmc", "model": model, "threads": 1}
         assert variant(one) == f"dsmc-{model}-3d"
-        warm(task(one))
+        compile_kernels(compile_task(one))
     block["point"]["search"] = "boxes"
     with pytest.raises(gp.SceneError, match="no meaning with engine: dsmc"):
         _ = points(config, "gas")[0].parameters

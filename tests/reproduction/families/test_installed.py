@@ -14,7 +14,7 @@ from gaspart.yaml_text import dump_yaml
 FAMILY = '''"""Paths."""
 from gaspart.cli import main
 from gaspart.errors import SceneError
-from gaspart.kinds import positive
+from gaspart.keys import positive
 
 TITLE = "Paths"
 KINDS = {"paths": {"up_to": positive("longest path"), "claims": {"type": "array", "default": []}}}

@@ -22,7 +22,7 @@ GAS = Scene(
 def run():
     engines = [TimeStepped(step) for step in (4.0, 0.2, 0.002)]
     with pytest.warns(UserWarning, match="misses"):
-        return xr.Dataset(*compare(GAS, engines, (1,), equilibration=5.0, stretch=0.7, snapshots=3))
+        return xr.Dataset(*compare(GAS, engines, (1,), equilibration=5.0, interval=0.7, samples=3))
 
 
 def test_short_steps_find_every_contact_and_long_ones_do_not(run):

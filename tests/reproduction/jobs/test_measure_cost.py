@@ -17,8 +17,8 @@ GAS = Scene(Container((20.0,) * 3), species=(Species(400, 0.1, speed=1.0),))
 DISCS = Scene(Container((30.0,) * 2), species=(Species(40, 0.5, speed=1.0),))
 
 
-def measured(engines, scene=GAS, equilibration=0.0, stretch=0.1, repeats=2):
-    return xr.Dataset(*measure_cost(scene, engines, (1, 2), equilibration, stretch, repeats))
+def measured(engines, scene=GAS, equilibration=0.0, interval=0.1, samples=2):
+    return xr.Dataset(*measure_cost(scene, engines, (1, 2), equilibration, interval, samples))
 
 
 def test_one_box_tests_each_pair_once():
@@ -30,7 +30,7 @@ def test_one_box_tests_each_pair_once():
 
 def test_boxes_follow_the_uniform_density():
     sides = [2, 4, 8, 20]
-    run = measured([TimeStepped(0.01, boxes_per_side=n, passes=1) for n in sides], repeats=1)
+    run = measured([TimeStepped(0.01, boxes_per_side=n, passes=1) for n in sides], samples=1)
     assert run.boxes.values.tolist() == [n**3 for n in sides]
     for n, part in enumerate(sides):
         mean, spread = expected_pair_tests(400, part, 3, 20.0, 0.1)
@@ -41,7 +41,7 @@ def test_boxes_follow_the_uniform_density():
 
 def test_every_partition_starts_from_the_same_state_and_is_timed_as_often():
     run = measured(
-        [TimeStepped(0.01, boxes_per_side=n, passes=1) for n in (1, 10)], repeats=3, equilibration=0.05
+        [TimeStepped(0.01, boxes_per_side=n, passes=1) for n in (1, 10)], samples=3, equilibration=0.05
     )
     assert run.seconds.shape == (2, 3)
     assert (run.seconds > 0.0).all()
@@ -53,13 +53,13 @@ def test_every_partition_starts_from_the_same_state_and_is_timed_as_often():
 def test_short_steps_do_not_start_from_what_long_ones_left():
     dense = Scene(Container((10.0,) * 3, "periodic"), species=(Species(570, 0.5, temperature=1.0),))
     steps = (0.2, 0.01)
-    run = measured([TimeStepped(step) for step in steps], dense, equilibration=1.6, stretch=0.4, repeats=1)
-    alone = measured([TimeStepped(0.01)], dense, equilibration=1.6, stretch=0.4, repeats=1)
+    run = measured([TimeStepped(step) for step in steps], dense, equilibration=1.6, interval=0.4, samples=1)
+    alone = measured([TimeStepped(0.01)], dense, equilibration=1.6, interval=0.4, samples=1)
     assert run.collisions.values[1] == alone.collisions.values[0]
 
 
 def test_all_pairs_at_every_event():
-    run = measured([EventDriven(search="pairs")], DISCS, stretch=10.0)
+    run = measured([EventDriven(search="pairs")], DISCS, interval=10.0)
     events = int((run.collisions + run.wall_hits)[0])
     assert events > 10
     assert int(run.pair_tests[0]) == (events + 1) * 40 * 39 // 2
@@ -79,7 +79,7 @@ def test_a_rival_is_timed_with_engines_of_its_own():
     """The same gas, searched in all boxes instead of those within reach: from the same state."""
     near = [TimeStepped(0.01, boxes_per_side=n, passes=1, near_boxes=True) for n in (4, 8)]
     wide = [TimeStepped(0.01, boxes_per_side=n, passes=1) for n in (4, 8)]
-    run = xr.Dataset(*measure_cost(GAS, near, (1, 2), 0.05, 0.1, 2, rival=(GAS, wide)))
+    run = xr.Dataset(*measure_cost(GAS, near, (1, 2), 0.05, 0.1, 2, rival={"scene": GAS, "engines": wide}))
     assert run.seconds.shape == (4, 2)
     assert run.boxes_per_side.values.tolist() == [4, 8, 4, 8]
     assert len(set(run.collisions.values.tolist())) == 1
@@ -112,11 +112,11 @@ def test_parts_of_the_step_that_the_scene_gives():
     scanned = Point("gas", "a", "measure_cost", gas | run | {"scan_step_parts": [1, 0.5]}, ".", 1)
     whole, half = (engine.time_step for engine in scanned.engines)
     assert whole == DSMC().resolved(scanned.scene).time_step == 2.0 * half
-    found = cost.run(scanned.parameters)
+    found = measure_cost(**scanned.arguments)
     steps = found.variables["steps"][1]
     assert steps[1] == pytest.approx(2 * steps[0], abs=2)
     assert found.attributes["engine"] == "dsmc" and found.attributes["model"] == "boltzmann"
-    alone = cost.run(Point("gas", "a", "measure_cost", gas | run, ".", 1).parameters)
+    alone = measure_cost(**Point("gas", "a", "measure_cost", gas | run, ".", 1).arguments)
     assert alone.variables["steps"][1] == steps[:1]
 
 

@@ -7,10 +7,10 @@ import pytest
 import gaspart as gp
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.points.variants import (
-    features,
-    task,
+    compile_kernels,
+    compile_task,
+    compiled_features,
     variant,
-    warm,
 )
 
 SIZE = {"dimension": 2, "count": 1000, "radius": 0.5, "side": 100.0, "temperature": 1.0, "duration": 10.0}
@@ -54,18 +54,18 @@ def test_points_that_differ_in_numbers_share_their_kernels():
     [
         (gp.Scene(BOX, [GAS], gravity=(0.0, 0.0), restitution=gp.Restitution()), set()),
         (gp.Scene(BOX, [GAS], gravity=(0.0, -1.0)), {"gravity"}),
-        (gp.Scene(BOX, [GAS], restitution=gp.Restitution(0.9)), {"restitution"}),
-        (gp.Scene(BOX, [GAS], walls=[gp.Wall((1, 1), (9, 9))]), {"walls.Wall"}),
-        (gp.Scene(BOX, [GAS, gp.Species(5, 0.5, mass=2.0)]), {"species.mass"}),
+        (gp.Scene(BOX, [GAS], restitution=gp.Restitution(0.9)), {"law"}),
+        (gp.Scene(BOX, [GAS], walls=[gp.Wall((1, 1), (9, 9))]), {"walls"}),
+        (gp.Scene(BOX, [GAS, gp.Species(5, 0.5, mass=2.0)]), {"masses"}),
         (gp.Scene(BOX, [gp.Species(5, 0.5, mass=2.0)]), set()),
-        (gp.Scene(BOX, [GAS, gp.Species(5, 0.5, fixed=True)]), {"species.fixed"}),
+        (gp.Scene(BOX, [GAS, gp.Species(5, 0.5, fixed=True)]), {"fixed"}),
         (gp.Scene(BOX, [gp.Species(5, 0.5, arrangement="lattice")]), set()),
-        (gp.Scene(BOX, [GAS], faces={"x_low": gp.Thermal(2.0, "normal")}), {"faces.Thermal"}),
-        (gp.Scene(BOX, [GAS], faces={"y_low": gp.Well(1.0, 0.1, 3.0)}), {"faces.Well"}),
+        (gp.Scene(BOX, [GAS], faces={"x_low": gp.Thermal(2.0, "normal")}), {"thermal"}),
+        (gp.Scene(BOX, [GAS], faces={"y_low": gp.Well(1.0, 0.1, 3.0)}), {"well"}),
     ],
 )
 def test_every_feature_of_a_scene_that_changes_kernels_distinguishes_variants(scene, expected):
-    assert features(scene) == expected
+    assert compiled_features(scene) == expected
 
 
 def test_a_point_is_warmed_by_a_few_of_its_own_particles_that_have_all_its_features(tmp_path):
@@ -77,16 +77,16 @@ def test_a_point_is_warmed_by_a_few_of_its_own_particles_that_have_all_its_featu
         walls=[gp.Wall((x, 1.0), (x, 2.0)) for x in range(1, 39)],
     )
     full = described(tmp_path, scene, follow=400, **{"scene.restitution.tangential": 0.2})
-    tiny = gp.Scene.from_dict(json.loads(task(full))["scene"])
+    tiny = gp.Scene.from_dict(json.loads(compile_task(full))["scene"])
     assert [kind.count for kind in tiny.species] == [8, 8] and len(tiny.walls) == 8
-    assert features(tiny) == features(scene)
+    assert compiled_features(tiny) == compiled_features(scene)
     assert variant(full) == variant(described(tmp_path, scene))
 
 
 def test_a_scene_whose_big_particle_stands_beside_the_boxes_is_warmed_with_all_its_particles(tmp_path):
     scene = gp.Scene(BOX, [gp.Species(900, 0.1)], [gp.Particle((20.0, 20.0), (0.0, 0.0), 5.0)])
-    assert features(scene) == {"oversized"}
-    assert gp.Scene.from_dict(json.loads(task(described(tmp_path, scene)))["scene"]) == scene
+    assert compiled_features(scene) == {"oversized"}
+    assert gp.Scene.from_dict(json.loads(compile_task(described(tmp_path, scene)))["scene"]) == scene
 
 
 @pytest.mark.parametrize(
@@ -98,4 +98,4 @@ def test_a_scene_whose_big_particle_stands_beside_the_boxes_is_warmed_with_all_i
     ],
 )
 def test_a_task_is_enough_to_warm_the_kernels(job, settings):
-    warm(task(point(job, **settings)))
+    compile_kernels(compile_task(point(job, **settings)))

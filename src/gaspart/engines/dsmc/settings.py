@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from gaspart.engines.engine import Engine, register
-from gaspart.scene.keys import PER_SIDE, POSITIVE, choice, count, declared
+from gaspart.keys import choice, count, declared, per_side, positive
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.dynamics import DsmcDynamics
@@ -36,30 +36,29 @@ class DSMC(Engine):
 
     time_step: float | None = field(
         default=None,
-        metadata=declared(POSITIVE, "duration of a step; by default a fifth of a mean free time, at most"),
+        metadata=declared(positive("duration of a step; by default a fifth of a mean free time, at most")),
     )
     cells_per_side: int | tuple[int, ...] | None = field(
         default=None,
         metadata=declared(
-            PER_SIDE,
-            "number of cells, or one for each axis; by default a third of a mean free path wide",
+            per_side("number of cells, or one for each axis; by default a third of a mean free path wide")
         ),
     )
     model: str = field(
         default="boltzmann",
-        metadata=declared(choice(*MODELS), "`boltzmann`, a dilute gas, or `enskog`, a dense one"),
+        metadata=declared(choice("`boltzmann`, a dilute gas, or `enskog`, a dense one", *MODELS)),
     )
     adapt: str | None = field(
         default=None,
         metadata=declared(
-            choice(*ADAPTED),
-            "what follows a gas whose speeds or densities change: `nothing`, `steps`, which are divided,"
-            " `cells`, or `both`; by default what is not given",
+            choice(
+                "what follows a gas whose speeds or densities change: `nothing`, `steps`, which are divided,"
+                " `cells`, or `both`; by default what is not given",
+                *ADAPTED,
+            )
         ),
     )
-    threads: int = field(
-        default=1, metadata=declared(count(least=1), "number of threads that share a run's work")
-    )
+    threads: int = field(default=1, metadata=declared(count("number of threads that share a run's work")))
 
     name: ClassVar[str] = "dsmc"
     title: ClassVar[str] = "DSMC"

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
+from gaspart.keys import choice, declared, per_side
 from gaspart.scene.features import FEATURES
-from gaspart.scene.keys import PER_SIDE, choice, declared
 
 if TYPE_CHECKING:
     from gaspart.engines.event.dynamics import EventDynamics
@@ -38,11 +38,11 @@ class EventDriven(Engine):
     """
 
     search: str = field(
-        default="automatic", metadata=declared(choice(*SEARCHES), "how the next event is found")
+        default="automatic", metadata=declared(choice("how the next event is found", *SEARCHES))
     )
     boxes_per_side: int | tuple[int, ...] | None = field(
         default=None,
-        metadata=declared(PER_SIDE, "number of boxes, or one for each axis; by default chosen"),
+        metadata=declared(per_side("number of boxes, or one for each axis; by default chosen")),
     )
 
     name: ClassVar[str] = "event"
@@ -51,7 +51,7 @@ class EventDriven(Engine):
     tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear"))
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     same_bits: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
-    first_stretch: ClassVar[int] = 256  # events with crossings and predictions
+    first_segment: ClassVar[int] = 256  # events with crossings and predictions
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
-from gaspart.scene.faces import KINDS
-from gaspart.scene.keys import FLAG, PER_SIDE, POSITIVE, choice, count, declared
+from gaspart.keys import choice, count, declared, flag, per_side, positive
+from gaspart.scene.faces import FACE_KINDS
 
 if TYPE_CHECKING:
     from gaspart.engines.step.dynamics import StepDynamics
@@ -38,39 +38,37 @@ class TimeStepped(Engine):
     The result is the same, bit for bit, for any boxes_per_side, near_boxes, skin and threads.
     """
 
-    time_step: float = field(metadata=declared(POSITIVE, "duration of a step"))
+    time_step: float = field(metadata=declared(positive("duration of a step")))
     boxes_per_side: int | tuple[int, ...] | None = field(
         default=None,
-        metadata=declared(PER_SIDE, "number of boxes, or one for each axis; by default a neighbour list"),
+        metadata=declared(per_side("number of boxes, or one for each axis; by default a neighbour list")),
     )
     precision: str = field(
-        default="float64", metadata=declared(choice(*PRECISIONS), "floating-point type of the state")
+        default="float64", metadata=declared(choice("floating-point type of the state", *PRECISIONS))
     )
     rewind: bool = field(
         default=True,
-        metadata=declared(FLAG, "overlapping particles are moved back to the time of their contact"),
+        metadata=declared(flag("overlapping particles are moved back to the time of their contact")),
     )
     passes: int = field(
-        default=4, metadata=declared(count(least=1), "how often a step searches for overlaps, at most")
+        default=4, metadata=declared(count("how often a step searches for overlaps, at most"))
     )
     skin: float | None = field(
         default=None,
         metadata=declared(
-            POSITIVE, "distance by which a neighbour list reaches farther than a contact; by default chosen"
+            positive("distance by which a neighbour list reaches farther than a contact; by default chosen")
         ),
     )
     near_boxes: bool = field(
-        default=False, metadata=declared(FLAG, "with boxes: search only the boxes within reach of a contact")
+        default=False, metadata=declared(flag("with boxes: search only the boxes within reach of a contact"))
     )
-    threads: int = field(
-        default=1, metadata=declared(count(least=1), "number of threads that share a run's work")
-    )
+    threads: int = field(default=1, metadata=declared(count("number of threads that share a run's work")))
 
     name: ClassVar[str] = "step"
     title: ClassVar[str] = "time-stepped"
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "fixed", "vibrations", "centres_to_walls", "polydispersity")
-    ) | {kind for kind, face in KINDS.items() if not face.moves}
+    ) | {kind for kind, face in FACE_KINDS.items() if not face.moves}
     excludes: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "gravity"), ("fixed", "gravity"))
     same_bits: ClassVar[tuple[str, ...]] = ("boxes_per_side", "near_boxes", "skin", "threads")
     counters: ClassVar[tuple[str, ...]] = (

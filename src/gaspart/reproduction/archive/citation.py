@@ -22,7 +22,7 @@ class Creator(NamedTuple):
 
 
 class Citation(NamedTuple):
-    """What CITATION.cff states. licence: its identifier at spdx.org, such as BSD-3-Clause; url: of the
+    """Data of CITATION.cff. licence: its identifier at spdx.org, such as BSD-3-Clause; url: of the
     project, "" if there is none."""
 
     title: str

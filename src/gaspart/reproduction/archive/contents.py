@@ -1,4 +1,4 @@
-"""What goes into an archive beside the tables of its provenance: sources, results and captions."""
+"""Contents of an archive beside the tables of its provenance: sources, results and captions."""
 
 from __future__ import annotations
 

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from gaspart.engines import engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.files import resolved
 from gaspart.reproduction.config import check
-from gaspart.reproduction.points.overlay import laid_over
+from gaspart.reproduction.config_files import merged_with_default
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points
 from gaspart.trajectory.recipe import read_recipe
@@ -35,7 +34,7 @@ class Finished:
     config: dict[str, Any]
     """The merged config."""
     points: list[Point]
-    """Those of which figures and films are made."""
+    """The points of which figures and films are made."""
     configs: list[str]
     """The files of the config that are in `root`."""
 
@@ -73,12 +72,12 @@ class Finished:
         for film, block in self.config.get("animations", {}).items():
             if block:
                 yield from (f"{folder}/animations/{film}.{kind}" for kind in ("mp4", "jpg"))
-        yield from (point.path for point in self.points if point.job not in TRAJECTORIES)
+        yield from (point.path for point in self.points if point.job != TRAJECTORIES)
 
     def trajectories(self) -> Iterator[tuple[Point, int, str]]:
         """Point, replica and path of each trajectory."""
         for point in self.points:
-            if point.job in TRAJECTORIES:
+            if point.job == TRAJECTORIES:
                 yield from ((point, k, path) for k, path in enumerate(point.replica_paths))
 
 
@@ -103,7 +102,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
         raise SceneError("results", str(results), rule)
     name = folder.name if named else None
     file = _config_of(root, name) if config is None else Path(config)
-    merged, files = laid_over(file, root / _BASE)
+    merged, files = merged_with_default(file, root / _BASE)
     if merged.get("run") != name:
         raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
     with chdir(root):
@@ -171,14 +170,14 @@ def _others(count: int) -> str:
 def _check_settings(run: Finished) -> None:
     """Raise SceneError for a trajectory whose scene, engine, seed or times are not those of the config."""
     for point, replica, path in run.trajectories():
-        recipe, wanted = read_recipe(run.root / path), point.parameters
+        recipe, wanted = read_recipe(run.root / path), point.arguments
         finest = recipe.correlations.interval if recipe.correlations else recipe.sample_interval
         same = (
             recipe.scene == point.scene
-            and recipe.seed == tuple(wanted["seeds"][replica])
-            and recipe.engine == engine_from_dict(wanted["engine"]).resolved(recipe.scene, finest)
+            and recipe.seed == wanted["seeds"][replica]
+            and recipe.engine == wanted["engine"].resolved(recipe.scene, finest)
             and recipe.sample_interval == wanted["sample_interval"]
-            and recipe.duration == wanted.get("duration")
+            and recipe.duration == wanted["duration"]
         )
         if not same:
             rule = "was made with other settings than those of the config; run the workflow again"

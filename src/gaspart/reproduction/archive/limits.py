@@ -1,4 +1,4 @@
-"""What an archive may be: its names, and sizes that can be read in a bounded time and memory."""
+"""Limits of an archive: its names, and sizes that can be read in a bounded time and memory."""
 
 from __future__ import annotations
 

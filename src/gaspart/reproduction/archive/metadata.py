@@ -60,7 +60,7 @@ _MEANINGS = {
 
 @dataclass(frozen=True)
 class Described:
-    """What the metadata are made of.
+    """Sources of the metadata.
 
     files: (size, digest) of each file of the archive, by path; summary: as in `run.json`; jobs: as in
     `jobs.csv`; captions: by path; claims: their number; workflow: the path of the Snakefile; folders: of

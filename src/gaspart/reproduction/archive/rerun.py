@@ -14,13 +14,10 @@ from gaspart.reproduction.archive.digests import digest_of_numbers
 from gaspart.reproduction.archive.scenes import scene_files
 from gaspart.reproduction.archive.stored import Stored
 from gaspart.reproduction.config import checked
-from gaspart.reproduction.jobs import simulate, simulate_until
-from gaspart.reproduction.jobs.replicas import Record
+from gaspart.reproduction.jobs.simulate import recipes, record
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.trajectory import provenance
 from gaspart.yaml_text import parse_yaml, write_yaml
-
-_RECORD: dict[str, Record] = {"simulate": simulate.record, "simulate_until": simulate_until.record}
 
 
 def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
@@ -34,7 +31,7 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
         points = {(one.experiment, one.name): one for each in planned.values() for one in each.values()}
     rows = stored.rows(tables.POINTS, tables.PointFile._fields)
     listed = list(
-        dict.fromkeys((row["experiment"], row["point"]) for row in rows if row["job"] in TRAJECTORIES)
+        dict.fromkeys((row["experiment"], row["point"]) for row in rows if row["job"] == TRAJECTORIES)
     )
     drawn = random.sample(listed, min(count, len(listed)))
     missing = [f"{experiment}/{name}" for experiment, name in drawn if (experiment, name) not in points]
@@ -63,11 +60,12 @@ def rerun(stored: Stored, point: Point, folder: Path) -> Check:
     rows = stored.rows(tables.POINTS, tables.PointFile._fields)
     known = {row["path"]: row["numbers_sha256"] for row in rows}
     other = []
-    for replica, path in enumerate(point.replica_paths):
+    made_by = recipes(**point.arguments)
+    for replica, (path, recipe) in enumerate(zip(point.replica_paths, made_by, strict=True)):
         made = folder / "again.nc"
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of coarse settings, which the config has on purpose
-            _RECORD[point.job](point.parameters, point.seed(replica), made, True)
+            record(recipe, made, True)
         if digest_of_numbers(made) != known.get(path):
             other.append(str(replica))
         made.unlink()

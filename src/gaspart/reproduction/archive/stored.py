@@ -38,7 +38,7 @@ DAMAGE = (
     *(zipfile.BadZipFile, zlib.error, struct.error, EOFError),
     *(OSError, RuntimeError, ValueError, OverflowError, MemoryError),
 )
-"""What reading a damaged file of an archive may raise."""
+"""Errors that reading a damaged file of an archive may raise."""
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _STATED = ("title", "results", "gaspart", "revision", "archived")
 _DIGITS = 64
@@ -103,7 +103,7 @@ class Stored:
             return ""
 
     def summary(self) -> dict[str, Any]:
-        """What `run.json` states, of which `verify` uses texts. Raises SceneError for another content."""
+        """The content of `run.json`, of which `verify` uses texts. Raises SceneError for another content."""
         try:
             found = json.loads(self.text(RUN, 1 << 20))
         except RecursionError:

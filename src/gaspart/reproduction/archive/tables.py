@@ -77,11 +77,11 @@ def point_files(run: Finished) -> list[PointFile]:
     rows = []
     for point in run.points:
         named = point.experiment, point.name, point.job
-        paths = point.replica_paths if point.job in TRAJECTORIES else [point.path]
+        paths = point.replica_paths if point.job == TRAJECTORIES else [point.path]
         for replica, path in enumerate(paths):
             file = run.root / path
             size, content = str(file.stat().st_size), digest_of_file(file)
-            if point.job in TRAJECTORIES:
+            if point.job == TRAJECTORIES:
                 own = str(replica), path, size, content, digest_of_numbers(file), stored_revision(file)
             else:
                 own = "", path, size, content, "", ""
@@ -183,7 +183,7 @@ def _processor() -> str:
 
 
 def summary_of(run: Finished, files: Iterable[PointFile], trajectories: bool) -> Mapping[str, Any]:
-    """What `run.json` states: which run this is, at which revisions it was made, and on which machine the
+    """The content of `run.json`: which run this is, at which revisions it was made, and on which machine the
     archive was."""
     revisions = {file.revision for file in files if file.revision}
     return {

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import IO
 
 from gaspart.errors import SceneError, optional
-from gaspart.files import Kind, output_path, writing
+from gaspart.files import FileKind, output_path, writing
 from gaspart.reproduction.archive import contents, tables
 from gaspart.reproduction.archive.citation import read_citation
 from gaspart.reproduction.archive.digests import digest
@@ -35,7 +35,7 @@ def _is_archive(path: Path) -> bool:
         return False
 
 
-ARCHIVE = Kind("an archive of a run", _is_archive)
+ARCHIVE = FileKind("an archive of a run", _is_archive)
 
 
 def write_archive(

@@ -1,5 +1,5 @@
 from gaspart.analysis.estimate import Estimate as Estimate
-from gaspart.reproduction.claims.claim import KINDS as KINDS
+from gaspart.reproduction.claims.claim import CLAIM_KINDS as CLAIM_KINDS
 from gaspart.reproduction.claims.claim import UNVERIFIED as UNVERIFIED
 from gaspart.reproduction.claims.claim import Claim as Claim
 from gaspart.reproduction.claims.judging import FAMILY_LEVEL as FAMILY_LEVEL

@@ -38,7 +38,7 @@ def filled(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASU
 
 
 def place_fault(caption: str) -> str:
-    """What is wrong with the places of a caption; "" if nothing is."""
+    """The fault of the places of a caption; "" if there is none."""
     if any(not place.strip() for place in _PLACE.findall(caption)):
         return "{{ }} must hold the beginning of a claim"
     if "{{" in _PLACE.sub("", caption):

@@ -11,7 +11,7 @@ from gaspart.analysis.estimate import Estimate, Number, as_estimate
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-KINDS = ("test", "identity", "reproduction", "family")
+CLAIM_KINDS = ("test", "identity", "reproduction", "family")
 """test: could be false; identity: true by construction, checks the code; reproduction: a source's report;
 family: whether the deviations of a figure's value claims scatter as their uncertainties state."""
 POWER = 2.0
@@ -29,7 +29,7 @@ class Claim:
     claim: the statement in words; expected: a plain number is exact, the uncertainty of an Estimate is the
     allowance for that of the theory or the literature, whose origin is `allowance_source`, and which must
     not be derived from the data; source: of the expected value; required: the largest uncertainty of the
-    measurement at which the claim means anything; fails_if: what would make it fail; kind: one of KINDS.
+    measurement at which the claim means anything; fails_if: what would make it fail; kind: of CLAIM_KINDS.
     bounds: the lowest and the highest allowed number, for a statement of bounds instead of a value (see
     `at_least`, `at_most`, `within`). exact_deviation: for numbers that are not Gaussian, their deviation as a
     Gaussian one (see `chi_square`). alternative: the value of a competing theory, which a claim that agrees
@@ -57,8 +57,8 @@ class Claim:
     why: str = ""
 
     def __post_init__(self) -> None:
-        if self.kind not in KINDS:
-            raise ValueError(f"kind: {self.kind!r} (must be one of {', '.join(KINDS)})")
+        if self.kind not in CLAIM_KINDS:
+            raise ValueError(f"kind: {self.kind!r} (must be one of {', '.join(CLAIM_KINDS)})")
         for name in ("claim", "source", "fails_if"):
             if not getattr(self, name).strip():
                 raise ValueError(
@@ -136,7 +136,7 @@ class Claim:
 
     @property
     def form(self) -> str:
-        """What is stated: "value", "bound" (or two), or "distribution", of many numbers at once."""
+        """The kind of statement: "value", "bound" (or two), or "distribution", of many numbers at once."""
         if self.exact_deviation is not None:
             return "distribution"
         return "value" if self.bounds is None else "bound"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import visible
 from gaspart.files import whole_file
-from gaspart.reproduction.claims.claim import KINDS, Claim
+from gaspart.reproduction.claims.claim import CLAIM_KINDS, Claim
 from gaspart.reproduction.claims.judging import (
     VERDICTS,
     family_test,
@@ -120,19 +120,19 @@ def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
 
 
 def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
-    """How many claims of each kind have each verdict: {kind: {verdict: number}}, in the order of KINDS and
-    VERDICTS, without those that do not occur."""
+    """How many claims of each kind have each verdict: {kind: {verdict: number}}, in the order of CLAIM_KINDS
+    and VERDICTS, without those that do not occur."""
     pairs = [(row["kind"], row["verdict"]) for row in rows]
     return {
         kind: {verdict: pairs.count((kind, verdict)) for verdict in VERDICTS if (kind, verdict) in pairs}
-        for kind in KINDS
+        for kind in CLAIM_KINDS
         if any(kind == other for other, _ in pairs)
     }
 
 
 def summary(path: str | Path) -> str:
-    """What a claims table states: the number of claims, a line for each kind, "tests: 205 agree, 3 disagree",
-    and a line for each claim that disagrees. Raises ValueError as `read` does."""
+    """A summary of a claims table: the number of claims, a line for each kind, "tests: 205 agree, 3
+    disagree", and a line for each claim that disagrees. Raises ValueError as `read` does."""
     rows = read(path)
     lines = [f"{len(rows)} claims"]
     for kind, verdicts in counts(rows).items():

@@ -120,7 +120,7 @@ def _check(found: ModuleType, kind: str) -> None:
     """Raise an error with the reason unless a package has the form of a family with a kind."""
     from jsonschema import Draft202012Validator, SchemaError
 
-    from gaspart.kinds import record
+    from gaspart.keys import record
 
     if Path(__file__).with_name(found.__name__).is_dir():
         raise ValueError("it has the name of a family of gaspart")

@@ -22,7 +22,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from gaspart.kinds import Kind
+from gaspart.keys import Kind
 from gaspart.reproduction.families import installed
 
 if TYPE_CHECKING:

@@ -14,16 +14,11 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from gaspart.engines import EventDriven, TimeStepped, engine_from_dict
+from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
-from gaspart.kinds import Kind, count
+from gaspart.keys import Kind, count
 from gaspart.reproduction.jobs.data import PointData
-from gaspart.reproduction.jobs.stretches import (
-    EQUILIBRATION,
-    SCAN_TIME_STEPS,
-    SLACK,
-    stretches,
-)
+from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY, SCAN_TIME_STEPS, SLACK, intervals
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -33,7 +28,7 @@ if TYPE_CHECKING:
 
 RESULT = "time-stepped runs beside exact ones from the same states"
 KEYS: dict[str, Kind] = {
-    "equilibration": EQUILIBRATION,
+    "equilibration": EQUILIBRATION_KEY,
     "samples": count(
         "number of initial states, at the ends of the intervals into which the length is divided", default=1
     ),
@@ -50,11 +45,11 @@ def engines(point: Point) -> list[Engine]:
     return point.engines
 
 
-def parameters(point: Point) -> dict:
-    """Those of `compare`, in plain values. Raises SceneError."""
+def arguments(point: Point) -> dict:
+    """The arguments of `compare`. Raises SceneError."""
     if point.engine.name != "step":
         raise point.refused("engine", "must be step with job: compare")
-    return stretches(point)
+    return {"scene": point.scene, "engines": point.engines, "seed": point.seed(), **intervals(point)}
 
 
 def compare(
@@ -62,14 +57,14 @@ def compare(
     engines: Sequence[TimeStepped],
     seed: tuple[int, ...],
     equilibration: float,
-    stretch: float,
-    snapshots: int,
+    interval: float,
+    samples: int,
 ) -> PointData:
-    """Run each of the time-stepped `engines` and the event-driven one from `snapshots` states of the same
-    gas, a `stretch` of time apart, each for that time (rounded to whole steps, at least `LEAST_STEPS`).
+    """Run each of the time-stepped `engines` and the event-driven one from `samples` states of the same gas,
+    an `interval` of time apart, each for that time (rounded to whole steps, at least `LEAST_STEPS`).
 
-    equilibration, stretch: in the scene's time. Returns over ``setting`` (the engines) and ``snapshot``, each
-    for both, the exact one with the prefix ``exact_``: ``collisions``; ``virial``, the sum of |dr.dp|;
+    equilibration, interval: in the scene's time. Returns over ``setting`` (the engines) and ``snapshot``,
+    each for both, the exact one with the prefix ``exact_``: ``collisions``; ``virial``, the sum of |dr.dp|;
     ``memory``, sum v(0).v(t) / sum v(0)^2; ``z``, of the exact run; of the time-stepped one ``energy_drift``,
     relative; ``deepest_overlap`` as a part of the contact distance; ``pair_tests``. In the first part of a
     run, against the list of exact events: particles that a step should have changed and did not, ``missed``
@@ -84,21 +79,21 @@ def compare(
     exact = Simulation(scene, EventDriven(), seed=seed)
     exact.advance(duration=equilibration)
     rows: list[list[dict]] = [[] for _ in engines]
-    for _ in range(snapshots):
+    for _ in range(samples):
         state, references = exact.state, {}
         for row, engine in zip(rows, engines, strict=True):
-            steps = max(LEAST_STEPS, round(stretch / engine.time_step))
+            steps = max(LEAST_STEPS, round(interval / engine.time_step))
             duration = steps * engine.time_step
             if duration not in references:
                 references[duration] = _run(scene, EventDriven(), state, duration)
             row.append(_pair(scene, engine, state, steps, references[duration]))
-        exact.advance(duration=stretch)
+        exact.advance(duration=interval)
     names = rows[0][0]
     table = {
         name: (("setting", "snapshot"), np.array([[pair[name] for pair in row] for row in rows], dtype=float))
         for name in names
     }
-    steps = [max(LEAST_STEPS, round(stretch / engine.time_step)) for engine in engines]
+    steps = [max(LEAST_STEPS, round(interval / engine.time_step)) for engine in engines]
     return PointData(
         {
             **table,
@@ -168,9 +163,9 @@ def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int
     log, exact = EventLog(scene.dimension), EventDriven().start(scene, state)
     exact.advance(state.time + steps * engine.time_step, None, log)
     listed = np.zeros((steps, state.count), dtype=bool)
-    at = ((log.events["time"] - state.time) / engine.time_step).astype(int)
+    step = ((log.events["time"] - state.time) / engine.time_step).astype(int)
     for side in range(2):
-        listed[np.minimum(at, steps - 1), log.events["particles"][:, side]] = True
+        listed[np.minimum(step, steps - 1), log.events["particles"][:, side]] = True
     dynamics, before = engine.start(scene, state), state.velocities.astype(engine.precision)
     differs = np.zeros((steps, state.count), dtype=bool)
     for n in range(steps):
@@ -186,18 +181,3 @@ def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int
         "made_up": int((wrong & ~missed).sum()),
         "listed": int(listed.sum()),
     }
-
-
-def run(parameters: dict) -> PointData:
-    """`compare` with a point's parameters."""
-    from gaspart.scene.scene import Scene
-
-    engines = map(engine_from_dict, parameters["engines"])
-    return compare(
-        Scene.from_dict(parameters["scene"]),
-        [engine for engine in engines if isinstance(engine, TimeStepped)],
-        seed=tuple(parameters["seeds"][0]),
-        equilibration=parameters["equilibration"],
-        stretch=parameters["stretch"],
-        snapshots=parameters["repeats"],
-    )

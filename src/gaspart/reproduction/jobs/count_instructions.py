@@ -1,4 +1,4 @@
-"""What an absent feature leaves in the machine code of a kernel.
+"""Instructions that an absent feature leaves in the machine code of a kernel.
 
 Optional physics is passed to kernels as None, and numba removes the branches on it. Here they are removed
 from the source of the kernels instead, in a copy of the package, and the instructions of both are counted.
@@ -16,12 +16,13 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaspart.kinds import Kind
+from gaspart.keys import Kind
 from gaspart.reproduction.jobs.data import PointData
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
     from gaspart.reproduction.points.point import Point
+    from gaspart.scene.scene import Scene
 
 RESULT = "the machine code of both engines for the scene, with and without the source of absent features"
 KEYS: dict[str, Kind] = {}
@@ -31,7 +32,7 @@ FEATURES = {
     "walls",
 }  # fmt: skip
 """Arguments of the kernels that are None for a plain gas."""
-ENGINES = ("event", "step")
+COUNTED_ENGINES = ("event", "step")
 _PACKAGE = Path(__file__).parents[2]
 
 
@@ -77,13 +78,13 @@ def engines(point: Point) -> list[Engine]:
     return [point.engine]
 
 
-def parameters(point: Point) -> dict:
-    """None: only the scene matters."""
-    return {}
+def arguments(point: Point) -> dict:
+    """The argument of `count_instructions`. Raises SceneError."""
+    return {"scene": point.scene}
 
 
-def run(parameters: dict) -> PointData:
-    """Instructions of each engine's main kernel for the scene of a point, which should be a plain gas.
+def count_instructions(scene: Scene) -> PointData:
+    """Instructions of each engine's main kernel for a scene, which should be a plain gas.
 
     Returns over engine: `instructions`, and `stripped`, those without the branches of absent features. Both
     are compiled in separate processes with separate caches.
@@ -98,7 +99,7 @@ def run(parameters: dict) -> PointData:
                     module.write_text(stripped(module.read_text(encoding="utf-8")), encoding="utf-8")
             environment = {"PYTHONPATH": str(package.parent), "GASPART_CACHE": str(package.parent / "cache")}
             done = subprocess.run(
-                [sys.executable, "-m", __name__, json.dumps(parameters["scene"])],
+                [sys.executable, "-m", __name__, json.dumps(scene.to_dict())],
                 env={**os.environ, **environment},
                 capture_output=True,
                 text=True,
@@ -108,7 +109,7 @@ def run(parameters: dict) -> PointData:
     complete, bare = counts
     return PointData(
         {"instructions": ("engine", complete), "stripped": ("engine", bare)},
-        {"engine": ("engine", list(ENGINES))},
+        {"engine": ("engine", list(COUNTED_ENGINES))},
     )
 
 

@@ -1,4 +1,4 @@
-"""What a job of a grid point finds, and its file."""
+"""The data of a job of a grid point, and their file."""
 
 from __future__ import annotations
 

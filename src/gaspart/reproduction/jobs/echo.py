@@ -14,10 +14,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from gaspart.engines import EventDriven, engine_from_dict, engine_to_dict
-from gaspart.kinds import Kind, count
+from gaspart.engines import EventDriven
+from gaspart.keys import Kind, count
 from gaspart.reproduction.jobs.data import PointData
-from gaspart.reproduction.jobs.stretches import EQUILIBRATION, SLACK
+from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY, SLACK, intervals
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 RESULT = "runs forward and back"
 KEYS: dict[str, Kind] = {
-    "equilibration": EQUILIBRATION,
+    "equilibration": EQUILIBRATION_KEY,
     "samples": count(
         "number of echoes, after 1, 2 ... of the intervals into which the length is divided", default=1
     ),
@@ -44,15 +44,9 @@ def engines(point: Point) -> list[Engine]:
     return [point.engine]
 
 
-def parameters(point: Point) -> dict:
-    """Those of `echo`, in plain values. Raises SceneError."""
-    times = point.schedule
-    return {
-        "engine": engine_to_dict(point.engine),
-        "equilibration": times.equilibration,
-        "interval": times.sample_interval,
-        "samples": times.samples,
-    }
+def arguments(point: Point) -> dict:
+    """The arguments of `echo`. Raises SceneError."""
+    return {"scene": point.scene, "engine": point.engine, "seeds": point.seeds, **intervals(point)}
 
 
 def echo(
@@ -117,15 +111,15 @@ def echo(
     )
 
 
-def _exponent(equilibrium: Simulation, stretch: float) -> float:
-    """The Lyapunov exponent of the run, continued by stretches of time until `TANGENT_COLLISIONS`."""
+def _exponent(equilibrium: Simulation, interval: float) -> float:
+    """The Lyapunov exponent of the run, continued by intervals of time until `TANGENT_COLLISIONS`."""
     from gaspart.analysis.lyapunov import lyapunov_exponent  # loads xarray, which other jobs do not need
 
     equilibrium.reset_tally()
     equilibrium.record_events = True
     count = equilibrium.scene.count
     while 2.0 * equilibrium.tally.collisions < TANGENT_COLLISIONS * count:
-        equilibrium.advance(duration=stretch)
+        equilibrium.advance(duration=interval)
     tally = equilibrium.tally
     return float(lyapunov_exponent(equilibrium).estimate) * count * tally.time / (2.0 * tally.collisions)
 
@@ -146,17 +140,3 @@ def _distance(one: State, other: State) -> float:
 
     apart = ((one.positions - other.positions) ** 2).sum(axis=1)
     return float(np.sqrt(apart.mean()) / (2.0 * one.radii.max()))
-
-
-def run(parameters: dict) -> PointData:
-    """`echo` with a point's parameters."""
-    from gaspart.scene.scene import Scene
-
-    return echo(
-        Scene.from_dict(parameters["scene"]),
-        engine_from_dict(parameters["engine"]),
-        seeds=[tuple(seed) for seed in parameters["seeds"]],
-        equilibration=parameters["equilibration"],
-        interval=parameters["interval"],
-        samples=parameters["samples"],
-    )

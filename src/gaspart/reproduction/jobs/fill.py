@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gaspart.kinds import Kind, count
+from gaspart.keys import Kind, count
 from gaspart.reproduction.jobs.data import PointData
 
 if TYPE_CHECKING:
@@ -28,11 +28,11 @@ def engines(point: Point) -> list[Engine]:
     return []
 
 
-def parameters(point: Point) -> dict:
-    """Those of `fill`, in plain values. Raises SceneError."""
+def arguments(point: Point) -> dict:
+    """The arguments of `fill`. Raises SceneError."""
     if "attempts" not in point.settings:
         raise point.refused("attempts", "is required with job: fill")
-    return {"attempts": point.settings["attempts"]}
+    return {"scene": point.scene, "attempts": point.settings["attempts"], "seeds": point.seeds}
 
 
 def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData:
@@ -94,11 +94,3 @@ def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarr
         number, failures, tried = place(draws, placed, grid, block, task, none, None)
         used += tried
     return placed.failures, used, placed.positions[:number]
-
-
-def run(parameters: dict) -> PointData:
-    """`fill` with a point's parameters."""
-    from gaspart.scene.scene import Scene
-
-    seeds = [tuple(seed) for seed in parameters["seeds"]]
-    return fill(Scene.from_dict(parameters["scene"]), parameters["attempts"], seeds)

@@ -13,18 +13,13 @@ import math
 import time
 from collections.abc import Collection, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from gaspart.engines import EventDriven, TimeStepped, engine_from_dict, engine_to_dict
+from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SimulationError
-from gaspart.kinds import COUNT, POSITIVE, TEXT, Kind, count, described, flag, listed
+from gaspart.keys import COUNT, POSITIVE, TEXT, Kind, count, described, flag, listed
 from gaspart.reproduction.jobs.data import PointData
-from gaspart.reproduction.jobs.stretches import (
-    EQUILIBRATION,
-    SCAN_TIME_STEPS,
-    SLACK,
-    stretches,
-)
+from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY, SCAN_TIME_STEPS, SLACK, intervals
 from gaspart.state.optional_tallies import StressTally
 
 if TYPE_CHECKING:
@@ -35,7 +30,7 @@ if TYPE_CHECKING:
 
 RESULT = "counted work and timings, with nothing running beside them"
 KEYS: dict[str, Kind] = {
-    "equilibration": EQUILIBRATION,
+    "equilibration": EQUILIBRATION_KEY,
     "samples": count(
         "number of timings, each of one of the intervals into which the length is divided", default=1
     ),
@@ -69,14 +64,21 @@ def engines(point: Point) -> list[Engine]:
     return point.engines
 
 
-def parameters(point: Point) -> dict:
-    """Those of `measure_cost`, in plain values. Raises SceneError."""
+def arguments(point: Point) -> dict:
+    """The arguments of `measure_cost`. Raises SceneError."""
     extras = [key for key in EXTRAS if point.settings.get(key)]
     if "record_events" in extras and not point.engine.records_events:
         raise point.refused("record_events", "has a meaning with job: measure_cost and engine: event only")
     if "stress" in extras:
         point.engine.check_tally(StressTally(), point.scene)
-    return {"extras": extras, "rival": _rival(point), **stretches(point)}
+    return {
+        "scene": point.scene,
+        "engines": point.engines,
+        "seed": point.seed(),
+        **intervals(point),
+        "extras": extras,
+        "rival": _rival(point),
+    }
 
 
 def _rival(point: Point) -> dict | None:
@@ -86,7 +88,7 @@ def _rival(point: Point) -> dict | None:
         return None
     settings = {key: value for key, value in point.settings.items() if key not in point.settings["without"]}
     rival = replace(point, settings=settings)
-    return {"scene": rival.scene.to_dict(), "engines": [engine_to_dict(engine) for engine in rival.engines]}
+    return {"scene": rival.scene, "engines": rival.engines}
 
 
 def measure_cost(
@@ -94,15 +96,15 @@ def measure_cost(
     engines: Sequence[Engine],
     seed: tuple[int, ...],
     equilibration: float,
-    stretch: float,
-    repeats: int,
+    interval: float,
+    samples: int,
     extras: Collection[str] = (),
-    rival: tuple[Scene, Sequence[Engine]] | None = None,
+    rival: dict[str, Any] | None = None,
 ) -> PointData:
-    """Time `repeats` times, with each of the engines, the same stretch of simulated time of the same gas.
+    """Time `samples` times, with each of the engines, the same interval of simulated time of the same gas.
 
-    equilibration, stretch: in the scene's time; extras: of `EXTRAS`; rival: a scene and engines, timed in
-    turn with these and without extras: the last partitions.
+    equilibration, interval: in the scene's time; extras: of `EXTRAS`; rival: another `scene` and `engines`,
+    timed in turn with these and without extras: the last partitions.
     Engines without a step of their own take that of the scene.
     Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``: ``seconds``
     (partition, repeat), processor time of the advance alone (filling the container, setting up and compiling
@@ -116,15 +118,18 @@ def measure_cost(
     # By the shortest step: a longer one leaves overlaps, which would count against a shorter one.
     careful = min(engines, key=lambda engine: engine.quantum or 0.0)
     runs = []
-    for made, chosen, also in [(scene, engines, extras), *([(*rival, ())] if rival else [])]:
+    for made, chosen, also in [
+        (scene, engines, extras),
+        *([(rival["scene"], rival["engines"], ())] if rival else []),
+    ]:
         start = _start(made, careful, seed, equilibration)
         runs += [(made, start, engine.resolved(made), also) for engine in chosen]
-    seconds = [[0.0] * repeats for _ in runs]
+    seconds = [[0.0] * samples for _ in runs]
     counts: list[dict] = [{}] * len(runs)
-    for repeat in range(repeats):
+    for repeat in range(samples):
         order = range(len(runs))
         for n in order if repeat % 2 == 0 else reversed(order):
-            seconds[n][repeat], counted = _timed(*runs[n], stretch)
+            seconds[n][repeat], counted = _timed(*runs[n], interval)
             if not counts[n]:
                 counts[n] = counted
             elif counted != counts[n]:
@@ -143,7 +148,7 @@ def measure_cost(
 
 
 def _attributes(scene: Scene, engine: Engine) -> dict:
-    """Those of a dataset: the gas, and the first engine."""
+    """The attributes of a dataset: the gas, and the first engine."""
     return {
         "count": scene.count,
         "dimension": scene.dimension,
@@ -173,9 +178,9 @@ def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: f
 
 
 def _timed(
-    scene: Scene, state: State, engine: Engine, extras: Collection[str], stretch: float
+    scene: Scene, state: State, engine: Engine, extras: Collection[str], interval: float
 ) -> tuple[float, dict]:
-    """Processor time of one stretch, in s, and what was counted in it."""
+    """Processor time of one interval, in s, and what was counted in it."""
     import numpy as np
 
     from gaspart.engines.event_log import EventLog
@@ -186,7 +191,7 @@ def _timed(
     # This loads the kernels, and the first step touches all memory.
     dynamics.advance(state.time + step * (1 + SLACK), log=log)
     dynamics.reset_tally()
-    target = dynamics.time + stretch + step * SLACK
+    target = dynamics.time + interval + step * SLACK
     start = time.process_time()
     dynamics.advance(target, log=log)
     seconds = time.process_time() - start
@@ -201,24 +206,3 @@ def _sides(engine: Engine, dimension: int) -> tuple[int, ...]:
         return (1,) * dimension
     given = getattr(engine, "boxes_per_side", None) or 0
     return given if isinstance(given, tuple) else (given,) * dimension
-
-
-def run(parameters: dict) -> PointData:
-    """`measure_cost` with a point's parameters."""
-    return measure_cost(
-        *_scene_and_engines(parameters),
-        seed=tuple(parameters["seeds"][0]),
-        equilibration=parameters["equilibration"],
-        stretch=parameters["stretch"],
-        repeats=parameters["repeats"],
-        extras=parameters["extras"],
-        rival=parameters["rival"] and _scene_and_engines(parameters["rival"]),
-    )
-
-
-def _scene_and_engines(parameters: dict) -> tuple[Scene, list[Engine]]:
-    from gaspart.scene.scene import Scene
-
-    return Scene.from_dict(parameters["scene"]), [
-        engine_from_dict(engine) for engine in parameters["engines"]
-    ]

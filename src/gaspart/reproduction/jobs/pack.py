@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gaspart.kinds import Kind
+from gaspart.keys import Kind
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.reproduction.jobs.fill import ATTEMPTS, insert
 
@@ -27,11 +27,11 @@ def engines(point: Point) -> list[Engine]:
     return []
 
 
-def parameters(point: Point) -> dict:
-    """Those of `pack`, in plain values. Raises SceneError."""
+def arguments(point: Point) -> dict:
+    """The arguments of `pack`. Raises SceneError."""
     if ("attempts" in point.settings) == (point.settings.get("arrangement") == "compressed"):
         raise point.refused("attempts", "is required with job: pack, unless the arrangement is compressed")
-    return {"attempts": point.settings.get("attempts")}
+    return {"scene": point.scene, "attempts": point.settings.get("attempts"), "seeds": point.seeds}
 
 
 def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> PointData:
@@ -69,11 +69,3 @@ def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> Po
             "length": ("axis", np.array(scene.container.lengths), {"units": "length"}),
         }
     )
-
-
-def run(parameters: dict) -> PointData:
-    """`pack` with a point's parameters."""
-    from gaspart.scene.scene import Scene
-
-    seeds = [tuple(seed) for seed in parameters["seeds"]]
-    return pack(Scene.from_dict(parameters["scene"]), parameters["attempts"], seeds)

@@ -3,38 +3,41 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from gaspart.errors import SceneError
 from gaspart.files import is_remainder, may_replace, place_folder
 
-Record: TypeAlias = Callable[[dict, tuple[int, ...], Path, bool], None]
-"""Makes one trajectory of some parameters: seed, path, and whether another file there is replaced."""
+if TYPE_CHECKING:
+    from gaspart.trajectory.recipe import Recipe
+
+Record: TypeAlias = "Callable[[Recipe, Path, bool], None]"
+"""Makes one trajectory of a recipe: path, and whether another file there is replaced."""
 
 
 def write_replicas(
     record: Record,
-    parameters: dict,
+    recipes: Sequence[Recipe],
     folder: Path,
     report: Callable[[str], None] | None = None,
     overwrite: bool = True,
 ) -> None:
-    """Write a trajectory for each seed of the parameters; report(line) is called for each.
+    """Write the trajectory of each recipe; report(line) is called for each.
 
     They lie beside `folder`, which Snakemake deletes before a rerun, until all are complete: an interrupted
-    run resumes there. overwrite: whether they replace the remainder of a run with other parameters. Raises
+    run resumes there. overwrite: whether they replace the remainder of a run of another recipe. Raises
     SceneError for a folder there in which anything else lies: only what gaspart wrote is removed.
     """
     partial = Path(f"{folder}.partial")
     _make(partial)
-    paths = replica_paths(parameters, partial)
+    paths = replica_paths(partial, len(recipes))
     _remainders(partial, paths)  # before the work: refused if it is not ours
-    for path, seed in zip(paths, parameters["seeds"], strict=True):
+    for path, recipe in zip(paths, recipes, strict=True):
         if report:
-            report(f"{path}: seed {seed}")
-        record(parameters, tuple(seed), path, overwrite)
+            report(f"{path}: seed {recipe.seed}")
+        record(recipe, path, overwrite)
     for leftover in _remainders(partial, paths):
         leftover.unlink()
     try:
@@ -54,20 +57,20 @@ def _make(folder: Path) -> None:
 
 
 def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
-    """The files that runs of other parameters have left in a folder. Raises SceneError for a file that
+    """The files that runs of other recipes have left in a folder. Raises SceneError for a file that
     gaspart did not write, and for a folder or link."""
     from gaspart.trajectory.checkpoint import CHECKPOINT
     from gaspart.trajectory.partial import TRAJECTORY, UNFINISHED
 
     kinds = {".nc.partial": UNFINISHED, ".checkpoint.npz": CHECKPOINT, ".failed.npz": CHECKPOINT}
-    found = []
+    left = []
     for path in sorted({*folder.iterdir()} - {*paths}):
         kind = kinds.get("".join(path.suffixes[-2:]), TRAJECTORY)
         if is_remainder(path) or (may_replace(path, kind, overwrite=True) and kind.recognises(path)):
-            found.append(path)
-    return found
+            left.append(path)
+    return left
 
 
-def replica_paths(parameters: dict, folder: Path) -> list[Path]:
+def replica_paths(folder: Path, replicas: int) -> list[Path]:
     """The trajectories of a folder, in the order of the seeds."""
-    return [folder / f"replica-{replica}.nc" for replica in range(len(parameters["seeds"]))]
+    return [folder / f"replica-{replica}.nc" for replica in range(replicas)]

@@ -5,13 +5,14 @@ Planning reads this module, so slow imports are made inside functions.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from gaspart.engines import engine_from_dict, engine_to_dict
-from gaspart.kinds import Kind, count, flag
+from gaspart.keys import Kind, count, described, flag, positive
+from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY
 from gaspart.reproduction.jobs.replicas import write_replicas
-from gaspart.reproduction.jobs.stretches import EQUILIBRATION
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -20,9 +21,22 @@ if TYPE_CHECKING:
 
 RESULT = "trajectories"
 KEYS: dict[str, Kind] = {
-    "equilibration": EQUILIBRATION,
+    "equilibration": EQUILIBRATION_KEY,
     "samples": count(
-        "number of intervals into which the length is divided, with a frame at the end of each", default=1
+        "number of intervals into which the length is divided, with a frame at the end of each; with `until` "
+        "by default one for each collision of a particle",
+        default=1,
+    ),
+    "until": described(
+        {
+            "type": "object",
+            "minProperties": 1,
+            "additionalProperties": positive("", exclusiveMaximum=1),
+        },
+        "end the run when these observables have this relative standard error, such as `{Z: 1e-3}` or "
+        "`{'pressure:x low': 0.01}`; the length is then the largest, and the equilibration by default a "
+        "quarter of the run",
+        default=None,
     ),
     "frames": count(
         "with `lags`: keep the frames at the ends of so many equal parts of the length too, which the "
@@ -46,6 +60,9 @@ KEYS: dict[str, Kind] = {
         default=None,
     ),
 }
+_NOT_WITH_UNTIL = ("lags", "frames", "stress", "pairs", "follow")
+EXAMINER = "gaspart.accuracy.reached"
+"""The module that examines a run with `until`."""
 
 
 def engines(point: Point) -> list[Engine]:
@@ -53,24 +70,36 @@ def engines(point: Point) -> list[Engine]:
     return [point.engine]
 
 
-def parameters(point: Point) -> dict:
-    """The arguments of `gaspart.run`, in plain values. Raises SceneError."""
-    times, follow = point.schedule, point.settings.get("follow")
+def modules(point: Point) -> list[str]:
+    """The modules that this one imports by their names: only runs with `until` depend on the analysis."""
+    return [EXAMINER] if "until" in point.settings else []
+
+
+def arguments(point: Point) -> dict:
+    """The arguments of `simulate`. Raises SceneError."""
+    times, settings = point.schedule, point.settings
+    given = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
+    if "until" in settings:
+        for key in _NOT_WITH_UNTIL:
+            if settings.get(key):
+                raise point.refused(key, "has no meaning with until")
+        return {**given, **point.ending}
+    follow = settings.get("follow")
     if follow is not None and follow > point.extents.particles:
         raise point.refused("follow", f"there are {point.extents.particles} particles")
     correlations = None
-    if "lags" in point.settings:
-        lags = min(point.settings["lags"], (times.samples + 1) // 2)
+    if "lags" in settings:
+        lags = min(settings["lags"], (times.samples + 1) // 2)
         correlations = {"interval": times.sample_interval, "lags": lags, "start": times.equilibration}
-        correlations |= {"stress": True} if point.settings.get("stress") else {}
+        correlations |= {"stress": True} if settings.get("stress") else {}
     return {
-        "engine": engine_to_dict(point.engine),
+        **given,
         "duration": times.duration,
         "sample_interval": _frame_interval(point),
-        "displacements": point.settings.get("displacements", False),
+        "displacements": settings.get("displacements", False),
         "follow": follow,
         "correlations": correlations,
-        **({"pairs": True} if point.settings.get("pairs") else {}),
+        **({"pairs": True} if settings.get("pairs") else {}),
     }
 
 
@@ -85,32 +114,26 @@ def _frame_interval(point: Point) -> float:
     return times.duration if only_ends else times.sample_interval
 
 
-def run(parameters: dict, folder: Path) -> None:
-    """Write a trajectory for each seed; see `write_replicas`."""
-    write_replicas(record, parameters, folder, print)
+def simulate(folder: Path, **arguments: Any) -> None:
+    """Write a trajectory for each seed; see `write_replicas`. The other arguments are those of `recipes`."""
+    write_replicas(record, recipes(**arguments), folder, print)
 
 
-def record(parameters: dict, seed: tuple[int, ...], path: Path, overwrite: bool) -> None:
+def record(recipe: Recipe, path: Path, overwrite: bool) -> None:
     """Make one trajectory, or continue it, or find it complete."""
     from gaspart.trajectory import run as trajectory
 
-    trajectory.record(recipe(parameters, seed), path, trajectory.Manner(overwrite=overwrite))
+    examiner = import_module(EXAMINER).Examiner() if recipe.until else None
+    trajectory.record(recipe, path, trajectory.WriteOptions(overwrite=overwrite, examiner=examiner))
 
 
-def recipe(parameters: dict, seed: tuple[int, ...]) -> Recipe:
-    """The recipe of one trajectory. Raises SceneError for what cannot be run."""
-    from gaspart.scene.scene import Scene
+def recipes(
+    seeds: Sequence[tuple[int, ...]], correlations: dict | None = None, **settings: Any
+) -> list[Recipe]:
+    """The recipe of each replica; settings: the other fields of `Recipe`. Raises SceneError for settings
+    that cannot be run."""
     from gaspart.trajectory.correlator import Correlations
     from gaspart.trajectory.recipe import Recipe
 
-    return Recipe(
-        Scene.from_dict(parameters["scene"]),
-        engine_from_dict(parameters["engine"]),
-        seed=seed,
-        duration=parameters["duration"],
-        sample_interval=parameters["sample_interval"],
-        displacements=parameters["displacements"],
-        follow=parameters["follow"],
-        correlations=parameters["correlations"] and Correlations(**parameters["correlations"]),
-        pairs=parameters.get("pairs", False),
-    )
+    stated = None if correlations is None else Correlations(**correlations)
+    return [Recipe(seed=seed, correlations=stated, **settings) for seed in seeds]

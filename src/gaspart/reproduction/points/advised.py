@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from gaspart.accuracy import speed
 from gaspart.engines import DSMC, TimeStepped
 from gaspart.errors import SceneError
-from gaspart.reproduction.points import keys
+from gaspart.reproduction.points import point_keys
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -31,14 +31,14 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     except SceneError as error:
         raise error.inside(where) from None
     engine = advice.setting.engine
-    made = {key: value for key, value in settings.items() if key not in keys.ENGINES["auto"]} | {
+    made = {key: value for key, value in settings.items() if key not in point_keys.ENGINE_KEYS["auto"]} | {
         "engine": engine.name
     }
     if isinstance(engine, TimeStepped):
         made |= {"time_step": engine.time_step, "precision": engine.precision}
     if isinstance(engine, DSMC):
         made |= {"model": engine.model}
-    if not keys.LENGTHS.keys() & settings.keys():
+    if not point_keys.LENGTHS.keys() & settings.keys():
         made["collisions_per_particle"] = math.ceil(advice.collisions_per_particle)
         made.setdefault("replicas", advice.replicas)
         made.setdefault("equilibration", EQUILIBRATION)

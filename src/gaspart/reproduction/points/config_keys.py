@@ -8,19 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from gaspart.kinds import TEXT, Kind, choice, count, described, flag, listed, nullable, positive, record
+from gaspart.keys import TEXT, Kind, choice, count, described, flag, listed, nullable, positive, record
 from gaspart.reproduction.points.jobs import JOBS
-from gaspart.reproduction.points.keys import (
+from gaspart.reproduction.points.point_keys import (
     ENGINE,
-    ENGINES,
+    ENGINE_KEYS,
     EXTENTS,
     GAS,
     LENGTHS,
     SCENE_FILE,
 )
 
-# $ matches before a final line break too
-_NAME: Kind = {"pattern": r"^[a-z][a-z0-9_]*$(?!\n)", "maxLength": 100}
+_WORD = r"[a-z][a-z0-9_]*$(?!\n)"  # $ matches before a final line break too
+_NAME = {"pattern": rf"^{_WORD}", "maxLength": 100}
 
 _TAKEN = (
     *("animations", "benchmarks", "claims", "coverage", "docs", "figures", "kernels", "logs"),
@@ -32,12 +32,12 @@ _TAKEN = (
 def _of_any_engine() -> dict[str, Kind]:
     """The keys of all engines; what one means is stated for each engine that has another meaning of it."""
     merged: dict[str, Kind] = {}
-    for engine, keys in ENGINES.items():
+    for engine, keys in ENGINE_KEYS.items():
         for name, kind in keys.items():
             meaning = kind["description"]
-            known = merged.setdefault(name, {**kind, "default": None})["description"]
+            known = merged.setdefault(name, kind.stating(default=None))["description"]
             if meaning not in known:
-                merged[name] = {**merged[name], "description": f"{known}; {engine}: {meaning}"}
+                merged[name] = described(merged[name], f"{known}; {engine}: {meaning}")
     return merged
 
 
@@ -74,18 +74,17 @@ WHOLE = frozenset(
 )
 """Keys of whole numbers, which may be written 1e3."""
 
-_BLOCK: Kind = {"type": "object"}  # each value is checked against its key's kind
+_BLOCK = {"type": "object"}  # each value is checked against its key's kind
 _JOBS = "; ".join(f"`{name}`: {module.RESULT}" for name, module in JOBS.items())
 EXPERIMENT: dict[str, Kind] = {
     "job": choice(_JOBS, *JOBS, default="simulate"),
     "point": record(POINT, "the settings that all points share", patternProperties={r"^scene[.]": {}}),
-    "grid": {
-        "anyOf": [_BLOCK, listed(_BLOCK)],
-        "default": None,
-        "description": "the settings that vary: a mapping from a key to the list of its values, of which the "
-        "product is taken, or a list of such mappings, one after the other; a single value counts as a list "
-        "of one",
-    },
+    "grid": described(
+        {"anyOf": [_BLOCK, listed(_BLOCK)]},
+        "the settings that vary: a mapping from a key to the list of its values, of which the product is "
+        "taken, or a list of such mappings, one after the other; a single value counts as a list of one",
+        default=None,
+    ),
 }
 
 ANIMATION: dict[str, Kind] = {
@@ -118,7 +117,7 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
         ),
         "run": nullable(
             described(
-                {**TEXT, "pattern": rf"^(?!({'|'.join(_TAKEN)})$){_NAME['pattern'][1:]}", "maxLength": 100},
+                {**TEXT, "pattern": rf"^(?!({'|'.join(_TAKEN)})$){_WORD}", "maxLength": 100},
                 "a name: figures, claims, tables, logs and report are then in `results/<run>`, instead of "
                 "`results`, where they replace those of no other run",
                 default=None,
@@ -127,13 +126,10 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
         "experiments": described(
             {**named, "minProperties": 1, "additionalProperties": record(EXPERIMENT)}, "what is simulated"
         ),
-        "figures": {
-            **named,
-            "properties": figures,
-            "additionalProperties": own,
-            "description": "what is drawn, and the settings of its measurement; a figure with another "
-            "name has a `kind`",
-        },
+        "figures": described(
+            {**named, "properties": figures, "additionalProperties": own},
+            "what is drawn, and the settings of its measurement; a figure with another name has a `kind`",
+        ),
         "animations": described(
             {**named, "additionalProperties": nullable(record(ANIMATION))},
             "films; null takes one back",

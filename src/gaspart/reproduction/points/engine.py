@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from gaspart import engines
 from gaspart.engines.engine import required
 from gaspart.errors import SceneError
-from gaspart.reproduction.points.keys import ENGINES, SCANS
+from gaspart.reproduction.points.point_keys import ENGINE_KEYS, SCANS
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -62,7 +62,7 @@ def _made(point: Point, settings: dict) -> Engine:
     """The engine of some settings, with the particles and the container of a point."""
     name = settings.get("engine", "event")
     _check(point, name, settings)
-    fields = {key: settings[key] for key in ENGINES[name] if key in settings}
+    fields = {key: settings[key] for key in ENGINE_KEYS[name] if key in settings}
     count, radius, lengths = point.extents
     if "boxes_per_particle" in fields:
         fields["boxes_per_side"] = boxes_per_side(fields.pop("boxes_per_particle"), count, radius, lengths)
@@ -82,8 +82,8 @@ def _check(point: Point, name: str, settings: dict) -> None:
     for key in required(engines.ENGINES[name]):
         if key not in settings:
             raise point.refused(key, f"must be given with engine: {name}")
-    for key in {key: None for keys in ENGINES.values() for key in keys}:
-        if key in settings and key not in ENGINES[name]:
+    for key in {key: None for keys in ENGINE_KEYS.values() for key in keys}:
+        if key in settings and key not in ENGINE_KEYS[name]:
             raise point.refused(key, f"has no meaning with engine: {name}")
     if "boxes_per_side" in settings and "boxes_per_particle" in settings:
         raise point.refused("boxes_per_particle", "excludes boxes_per_side")

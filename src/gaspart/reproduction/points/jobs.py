@@ -1,6 +1,6 @@
 """The kinds of jobs, each a module of `reproduction.jobs`.
 
-A job runs again when its module, or its parameters, change.
+A job runs again when its module, or its arguments in plain values, change.
 """
 
 from __future__ import annotations
@@ -16,33 +16,31 @@ from gaspart.reproduction.jobs import (
     measure_cost,
     pack,
     simulate,
-    simulate_until,
 )
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
-    from gaspart.kinds import Kind
+    from gaspart.keys import Kind
     from gaspart.reproduction.points.point import Point
 
 
 class Job(Protocol):
-    """What the module of a job declares for planning, beside the function `run`, which does its work."""
+    """Declarations of a job for planning, beside the function that does its work."""
 
     RESULT: str
-    """What it makes, in words."""
+    """Its result, in words."""
     KEYS: dict[str, Kind]
     """The keys that have a meaning for it, beside those of the scene, the engine and the length."""
 
     def engines(self, point: Point) -> list[Engine]:
         """The engines whose kernels it compiles; none where particles are only placed."""
 
-    def parameters(self, point: Point) -> dict:
-        """The parameters of its work beside scene and seeds, in plain values. Raises SceneError."""
+    def arguments(self, point: Point) -> dict:
+        """The arguments of its function. Raises SceneError."""
 
 
 JOBS: Mapping[str, Job] = {
     "simulate": simulate,
-    "simulate_until": simulate_until,
     "measure_cost": measure_cost,
     "compare": compare,
     "echo": echo,
@@ -53,10 +51,10 @@ JOBS: Mapping[str, Job] = {
 
 
 def validate(point: Point) -> None:
-    """Make the parameters of a point's job, which may have no keys of other jobs. Raises SceneError."""
+    """Make the arguments of a point's job, which may have no keys of other jobs. Raises SceneError."""
     others = {key for job in JOBS.values() for key in job.KEYS} - JOBS[point.job].KEYS.keys()
     for key in others & point.settings.keys():
         if point.settings[key]:
             names = [name for name, job in JOBS.items() if key in job.KEYS]
             raise point.refused(key, f"has a meaning with job: {' or '.join(names)} only")
-    _ = point.parameters
+    _ = point.arguments

@@ -18,15 +18,15 @@ def require_observable(name: str, point: Point) -> None:
     from gaspart.analysis.needs import require_of
     from gaspart.trajectory.correlator import Correlations
 
-    parameters, scene = point.parameters, point.scene
-    stated = parameters.get("correlations")
+    arguments, scene = point.arguments, point.scene
+    stated = arguments.get("correlations")
     require_of(
         name,
         scene,
         correlations=Correlations(**stated) if stated else None,
-        displacements=parameters["displacements"],
-        pairs=parameters.get("pairs", False),
-        follow=parameters.get("follow"),
+        displacements=arguments["displacements"],
+        pairs=arguments.get("pairs", False),
+        follow=arguments.get("follow"),
     )
     if stated and "frames" not in point.settings and scene.shear_rate is None:
         rule = "is not known of the first and the last frame alone, which the file has: keep more (frames)"

@@ -52,8 +52,8 @@ def imported(path: Path) -> frozenset[Path]:
     names = set(_PLAIN.findall(text))
     for base, items in _FROM.findall(text):
         names.add(base)
-        for item in items.strip("()").split(","):
-            name = item.split("#")[0].strip().split(" as ")[0]
+        listed = (item.split("#")[0].strip().split(" as ")[0] for item in items.strip("()").split(","))
+        for name in filter(None, listed):
             names |= {f"{base}.{name}", *_homes(f"{base}.{name}").values()}
             names |= {_homes(base)[name]} if name in _homes(base) else set()
     parents = {name.rsplit(".", depth)[0] for name in names for depth in range(1, name.count(".") + 1)}

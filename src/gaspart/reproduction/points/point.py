@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from gaspart.reproduction.points.schedule import Schedule
     from gaspart.scene.scene import Scene
 
-TRAJECTORIES = ("simulate", "simulate_until")
-"""The jobs whose result is a folder of trajectories, one for each replica."""
+TRAJECTORIES = "simulate"
+"""The job whose result is a folder of trajectories, one for each replica."""
+_JOBS = "gaspart.reproduction.jobs"
 _LONGEST_NAME = 200  # of the 255 bytes of a file name, with which suffixes and names of logs are made
 
 
@@ -41,7 +42,7 @@ class Point:
     @property
     def path(self) -> str:
         """Where the result lies: a folder of trajectories (see TRAJECTORIES) or one netCDF file."""
-        suffix = "" if self.job in TRAJECTORIES else ".nc"
+        suffix = "" if self.job == TRAJECTORIES else ".nc"
         return f"{self.root}/{self.experiment}/{self.name}{suffix}"
 
     @property
@@ -50,7 +51,7 @@ class Point:
         return self.settings.get("replicas", 1)
 
     def replica_path(self, replica: int) -> str:
-        """The trajectory of one replica (of TRAJECTORIES only)."""
+        """The trajectory of one replica (of the job TRAJECTORIES only)."""
         return f"{self.path}/replica-{replica}.nc"
 
     @property
@@ -63,6 +64,11 @@ class Point:
         text = f"{self.config_seed}/{self.experiment}/{self.name}/{replica}"
         digest = hashlib.sha256(text.encode()).digest()
         return tuple(int.from_bytes(digest[i : i + 4], "little") for i in range(0, 16, 4))
+
+    @property
+    def seeds(self) -> list[tuple[int, ...]]:
+        """The seed of each replica."""
+        return [self.seed(k) for k in range(self.replicas)]
 
     @cached_property
     def scene(self) -> Scene:
@@ -91,16 +97,30 @@ class Point:
 
     @cached_property
     def kind_of_job(self) -> Job:
-        """The module of the job. It is imported by its name, so that a measurement, which reads points too,
-        depends on no job."""
-        return import_module(f"gaspart.reproduction.jobs.{self.job}")
+        """The module of the job. Here and below modules are imported by their names: measurements, which read
+        points too, so depend on no job."""
+        return import_module(f"{_JOBS}.{self.job}")
+
+    @property
+    def modules(self) -> list[str]:
+        """The modules that do the work of its job, by their names."""
+        named = getattr(self.kind_of_job, "modules", None)
+        return [f"{_JOBS}.{self.job}", *(named(self) if named else ())]
 
     @cached_property
+    def ending(self) -> dict:
+        """The end of its runs with `until`, as fields of their recipes."""
+        return import_module("gaspart.reproduction.points.ending").ending(self)
+
+    @cached_property
+    def arguments(self) -> dict:
+        """The arguments of the job's function: all that its result depends on, and nothing else."""
+        return self.kind_of_job.arguments(self)
+
+    @property
     def parameters(self) -> dict:
-        """The parameters of the job, in plain values: all that its result depends on, and nothing else."""
-        specific = self.kind_of_job.parameters(self)
-        seeds = [list(self.seed(k)) for k in range(self.replicas)]
-        return {"scene": self.scene.to_dict(), "seeds": seeds, **specific}
+        """The arguments of the job in plain values."""
+        return import_module(f"{_JOBS}.arguments").to_plain(self.arguments)
 
     def refused(self, key: str, rule: str) -> SceneError:
         """The error that a setting breaks a rule."""

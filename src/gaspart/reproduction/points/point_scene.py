@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gaspart.errors import SceneError, shown
-from gaspart.reproduction.points.keys import EXTENTS, GAS, PREFIX
+from gaspart.keys.values import MOST_PARTICLES
+from gaspart.reproduction.points.point_keys import EXTENTS, GAS, PREFIX
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.sizes import DISTRIBUTIONS
-from gaspart.scene.validation import MOST_PARTICLES
 from gaspart.yaml_text import read_yaml
 
 if TYPE_CHECKING:
@@ -169,7 +169,7 @@ def _read(point: Point) -> Scene:
 
 
 def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
-    """What the scene file of a point holds, and the scene that it is by itself."""
+    """The content of the scene file of a point, and its scene without changes."""
     try:
         changed = Path(path).stat().st_mtime_ns
     except OSError as error:
@@ -181,7 +181,7 @@ def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
 
 @cache
 def _file(path: str, changed: int) -> tuple[Any, Scene]:
-    """What a scene file holds, and the scene that it is by itself. Read again when it has changed."""
+    """The content of a scene file, and its scene. Read again when it has changed."""
     from gaspart.scene.scene import Scene
 
     content = read_yaml(path)

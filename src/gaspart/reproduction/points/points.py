@@ -16,7 +16,7 @@ from dataclasses import replace
 from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.points import config_keys, keys
+from gaspart.reproduction.points import config_keys, point_keys
 from gaspart.reproduction.points.point import Point, name_of
 
 MOST_POINTS = 100_000
@@ -58,7 +58,7 @@ def _chosen(point: Point) -> Point:
         from gaspart.reproduction.points.advised import chosen
 
         return replace(point, settings=chosen(point.settings, point.scene, where))
-    for key in keys.ENGINES["auto"]:
+    for key in point_keys.ENGINE_KEYS["auto"]:
         if key in point.settings:
             raise SceneError(f"{where}.{key}", point.settings[key], "needs engine: auto")
     return point

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.points.keys import LENGTHS
-from gaspart.scene.validation import LARGEST, SMALLEST
+from gaspart.keys.values import LARGEST, SMALLEST
+from gaspart.reproduction.points.point_keys import LENGTHS
 
 if TYPE_CHECKING:
     from gaspart.reproduction.points.point import Point

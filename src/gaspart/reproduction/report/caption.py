@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _FINDING = re.compile(r"\*\*(?=[^\s*])(.+?)\*\*\s*", re.DOTALL)
 _SCHEME = re.compile(r"([a-z][a-z0-9+.-]*):")
 _SCHEMES = ("http", "https", "mailto", "doi")
-"""What an address in a caption may begin with, unless it is within the report."""
+"""Beginnings that an address in a caption may have, unless it is within the report."""
 _SETTINGS = {
     "file_insertion_enabled": False,
     "raw_enabled": False,
@@ -83,7 +83,7 @@ def html_of(text: str) -> str:
 
 
 def _fault(tree: nodes.document) -> str:
-    """What is wrong with a text that was read; "" if nothing is."""
+    """The fault of a text that was read; "" if there is none."""
     from docutils import nodes
 
     said = [*tree.findall(nodes.system_message), *tree.parse_messages, *tree.transform_messages]

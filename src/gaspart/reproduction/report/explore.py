@@ -1,5 +1,5 @@
-"""What a reader may vary on the page, from data that the figures have measured: the packing fraction of a
-virial series, and the accuracy for which a run is to be paid."""
+"""Quantities that a reader may vary on the page, from data that the figures have measured: the packing
+fraction of a virial series, and the accuracy for which a run is to be paid."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ _STEPS = 100
 
 
 def explanations(paths: Mapping[str, str]) -> dict[str, Any] | None:
-    """What a reader may vary, from the measurements of figures, {figure: path}; None unless there are an
-    equation of state and costs."""
+    """Quantities that a reader may vary, from the measurements of figures, {figure: path}; None unless there
+    are an equation of state and costs."""
     import xarray as xr
 
     states = {figure: stated for figure, stated in registry.series().items() if figure in paths}

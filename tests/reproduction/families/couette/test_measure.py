@@ -1,7 +1,7 @@
 import numpy as np
 
 from gaspart.reproduction.families.couette import measure as couette
-from gaspart.reproduction.jobs import simulate
+from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.scene import Scene
 
@@ -37,7 +37,7 @@ def flow(tmp_path, speed):
     Scene.from_dict(scene(speed)).to_file(path)
     point = Point("flows", f"u{speed:g}", "simulate", {**FLOW, "scene": str(path)}, "results", 1)
     (tmp_path / point.path).parent.mkdir(parents=True, exist_ok=True)
-    simulate.run(point.parameters, tmp_path / point.path)
+    simulate(tmp_path / point.path, **point.arguments)
     return couette.couette([point], SETTINGS).isel(point=0)
 
 
@@ -88,7 +88,7 @@ def test_a_sheared_gas_has_enskogs_viscosity(tmp_path, monkeypatch):
     settings |= {"lags": 2, "stress": True, "replicas": 2, "scene": str(path)}
     point = Point("sheared", "s", "simulate", settings, "results", 1)
     (tmp_path / point.path).parent.mkdir(parents=True, exist_ok=True)
-    simulate.run(point.parameters, tmp_path / point.path)
+    simulate(tmp_path / point.path, **point.arguments)
     parts = {"parts": {"flows": [], "sheared": ["sheared"], "equilibrium": []}}
     row = couette.couette([point], SETTINGS | parts).isel(point=0)
     assert row["part"] == "sheared" and abs(float(row["packing_fraction"]) - 0.1) < 1e-4

@@ -1,7 +1,7 @@
 import pytest
 
 from gaspart.reproduction.families.dsmc.measure import dsmc_convergence
-from gaspart.reproduction.jobs import simulate
+from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 
 GAS = {
@@ -30,7 +30,7 @@ def test_coefficients_of_a_gas_are_near_their_exact_values(tmp_path, monkeypatch
     points = [Point(name, "one", "simulate", GAS | more, "results", 1) for name, more in made.items()]
     for one in points:
         (tmp_path / one.path).parent.mkdir(parents=True)
-        simulate.run(one.parameters, tmp_path / one.path)
+        simulate(tmp_path / one.path, **one.arguments)
     ds = dsmc_convergence(points, {"parts": {name: [name] for name in made}, "blocks": 4})
     width = float(ds["width"][0])
     assert width == pytest.approx(0.5, abs=0.01)

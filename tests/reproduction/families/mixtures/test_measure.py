@@ -4,7 +4,7 @@ import pytest
 import gaspart as gp
 from gaspart import theory
 from gaspart.reproduction.families.mixtures.measure import mixture_state
-from gaspart.reproduction.jobs import simulate
+from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 
 GAS = {
@@ -34,7 +34,7 @@ def test_both_kinds_are_near_theory(tmp_path, monkeypatch):
     points[1] = Point("many", *("one", "simulate"), points[1].settings, "results", 1)
     for one in points:
         (tmp_path / one.path).parent.mkdir(parents=True)
-        simulate.run(one.parameters, tmp_path / one.path)
+        simulate(tmp_path / one.path, **one.arguments)
     ds = mixture_state(points, {})
     assert ds["packing_fraction"].values == pytest.approx(0.2, rel=1e-12)
     for row in (ds.isel(point=n) for n in (0, 1)):

@@ -18,8 +18,7 @@ from gaspart.reproduction.claims import judge
 from gaspart.reproduction.config import check
 from gaspart.reproduction.families.own import caption, figure, measure
 from gaspart.reproduction.families.own.claims import APPROXIMATE, observable
-from gaspart.reproduction.jobs import simulate
-from gaspart.reproduction.jobs.replicas import write_replicas
+from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.points import figure_points
 
 GAS = {"dimension": 3, "count": 60, "radius": 0.5, "boundary": "periodic", "temperature": 1.0}
@@ -80,7 +79,7 @@ def simulated(tmp_path_factory):
         for point in figure_points(CONFIG, "my_gas", planned)
     ]
     for point in points:
-        write_replicas(simulate.record, point.parameters, Path(point.path))
+        simulate(Path(point.path), **point.arguments)
     return points
 
 
@@ -257,7 +256,7 @@ def test_a_viscosity_needs_frames_of_a_run_with_correlations_of_the_stress(tmp_p
     (one, _) = figure_points(config, "my_gas", check(config))
     assert one.schedule.equilibration_frames == 70  # whole intervals between frames, of 10 samples
     one = type(one).from_dict({**one.to_dict(), "root": str(tmp_path)})
-    write_replicas(simulate.record, one.parameters, Path(one.path))
+    simulate(Path(one.path), **one.arguments)
     found = measured([one], observable="shear_viscosity")
     direct = gp.analysis.shear_viscosity(one.replica_path(0), start=one.schedule.equilibration)
     assert float(found["value"][0]) == float(direct.estimate) and found["value_error"][0] > 0.0

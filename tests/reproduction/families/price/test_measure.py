@@ -13,9 +13,8 @@ from gaspart.errors import SceneError
 from gaspart.reproduction.claims import judge
 from gaspart.reproduction.families.price.claims import price_of_features as claims
 from gaspart.reproduction.families.price.measure import _together, price_of_features
-from gaspart.reproduction.jobs.count_instructions import FEATURES, stripped
-from gaspart.reproduction.jobs.count_instructions import run as count_instructions
-from gaspart.reproduction.jobs.measure_cost import run
+from gaspart.reproduction.jobs.count_instructions import FEATURES, count_instructions, stripped
+from gaspart.reproduction.jobs.measure_cost import measure_cost
 from gaspart.reproduction.points import jobs
 from gaspart.reproduction.points.point import Point
 
@@ -33,7 +32,7 @@ def points(tmp_path_factory):
         varied = {**feature, "equilibration": equilibration, "without": list(feature) or ["scene.gravity"]}
         point = Point("price", str(k), "measure_cost", {**common, **small, **varied}, str(root), 3)
         Path(point.path).parent.mkdir(parents=True, exist_ok=True)
-        run(point.parameters).write(point.path)
+        measure_cost(**point.arguments).write(point.path)
         made.append(point)
     return made
 
@@ -129,7 +128,7 @@ def test_absent_features_leave_nothing_in_the_machine_code(points, tmp_path):
     gas = {"dimension": 3, "count": 50, "radius": 0.5, "side": 9, "boundary": "periodic", "temperature": 1.0}
     point = Point("price", "plain", "count_instructions", gas, str(tmp_path), 3)
     Path(point.path).parent.mkdir(parents=True)
-    count_instructions(point.parameters).write(point.path)
+    count_instructions(**point.arguments).write(point.path)
     ds = price_of_features([*points, point], {})
     assert ds["kernel"].values.tolist() == ["event", "step"]
     assert ds["stripped"].values.min() > 1000

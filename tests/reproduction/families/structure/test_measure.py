@@ -7,7 +7,7 @@ from gaspart import theory
 from gaspart.analysis.statistics import fit_polynomial
 from gaspart.reproduction.families.structure import measure, potential
 from gaspart.reproduction.families.structure.state import POWERS, MeasuredState
-from gaspart.reproduction.jobs import simulate
+from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 
 GAS = {
@@ -33,7 +33,7 @@ def points(tmp_path_factory):
         settings = GAS | {"packing_fraction": eta}
         point = Point("states" if name == "a" else "frames", name, "simulate", settings, str(folder), 1)
         (folder / point.experiment).mkdir(exist_ok=True)
-        simulate.run(point.parameters, folder / point.experiment / name)
+        simulate(folder / point.experiment / name, **point.arguments)
         made.append(point)
     return made
 

@@ -12,7 +12,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.engines.dsmc.rates import contact_values
 from gaspart.reproduction.families.tradeoff import flows, relaxation, uniform
 from gaspart.reproduction.families.tradeoff.choices import PARTS, Choice, cheapest
-from gaspart.reproduction.jobs import simulate
+from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 
 
@@ -136,7 +136,7 @@ def point(folder, **settings):
     """A point whose runs have been made."""
     basic = {"dimension": 3, "radius": 0.5, "boundary": "periodic", "packing_fraction": 0.1}
     made = Point("gas", "point", "simulate", basic | settings, str(folder), 1)
-    simulate.run(made.parameters, folder / "gas" / "point")
+    simulate(folder / "gas" / "point", **made.arguments)
     return made
 
 

@@ -2,7 +2,7 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.reproduction.families.transport import measure as transport
-from gaspart.reproduction.jobs import simulate
+from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 
 GAS = {
@@ -30,7 +30,7 @@ def test_coefficients_are_near_enskogs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     one = Point("spheres", "one", "simulate", GAS, "results", 1)
     (tmp_path / one.path).parent.mkdir(parents=True)
-    simulate.run(one.parameters, tmp_path / one.path)
+    simulate(tmp_path / one.path, **one.arguments)
     for name, function in (("viscosity", transport.viscosity), ("conductivity", transport.conductivity)):
         row = function([one], {}).isel(point=0)
         error = float(row["value_error"])
@@ -54,7 +54,7 @@ def test_growth_is_the_integrals_own(tmp_path, monkeypatch):
             "discs", f"count={count}", "simulate", gas | {"collisions_per_particle": 200}, "results", 1
         )
         (tmp_path / one.path).parent.mkdir(parents=True, exist_ok=True)
-        simulate.run(one.parameters, tmp_path / one.path)
+        simulate(tmp_path / one.path, **one.arguments)
         points.append(one)
     found = transport.logarithmic_growth(points, {"viscosity_from": 4.0, "conductivity_from": 8.0})
     for name, function in (("viscosity", transport.viscosity), ("conductivity", transport.conductivity)):

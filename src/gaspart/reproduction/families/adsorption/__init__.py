@@ -1,6 +1,6 @@
 """Walls that hold particles."""
 
-from gaspart.kinds import count, positive
+from gaspart.keys import count, positive
 
 TITLE = "Walls that hold particles"
 CHAPTER = "Gravity, heat and walls"

@@ -1,6 +1,6 @@
 """A large particle in a gas."""
 
-from gaspart.kinds import count
+from gaspart.keys import count
 
 TITLE = "A large particle in a gas"
 CHAPTER = "Motion and its memory"

@@ -1,6 +1,6 @@
 """Under gravity."""
 
-from gaspart.kinds import count, names, positive
+from gaspart.keys import count, names, positive
 
 TITLE = "Under gravity"
 CHAPTER = "Gravity, heat and walls"

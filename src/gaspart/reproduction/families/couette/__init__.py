@@ -1,6 +1,6 @@
 """Shear between walls that slide past each other."""
 
-from gaspart.kinds import count, names, positive, record
+from gaspart.keys import count, names, positive, record
 
 TITLE = "Shear between sliding walls"
 CHAPTER = "Motion and its memory"

@@ -11,7 +11,7 @@ from gaspart.reproduction.families.shared.claims import rows, weighted_mean
 from gaspart.reproduction.families.transport.claims import ACCURATE, ENSKOG, FEW_PER_CENT
 from gaspart.theory.shear import ELEMENTARY_SLIP, NORMAL_STRESSES, VELOCITY_SLIP
 
-DILUTE = 0.03
+DILUTE_SLIP = 0.03
 """Packing fraction up to which a gas counts as dilute: its volume changes slip by less than this."""
 SLIP_FLOW, FREE = 0.08, 20.0
 """Knudsen numbers up to which a gas has a middle that walls do not see, and from which on it flies freely."""
@@ -32,8 +32,8 @@ def couette(ds: xr.Dataset) -> list[Claim]:
     wide = [row for row in flows if float(row["knudsen"]) < SLIP_FLOW]
     slow = [row for row in wide if float(row["speed"]) < FAST]
     fast = [row for row in wide if float(row["speed"]) > FAST]
-    dilute = [row for row in slow if float(row["packing_fraction"]) < DILUTE]
-    dense = [row for row in slow if float(row["packing_fraction"]) > DILUTE]
+    dilute = [row for row in slow if float(row["packing_fraction"]) < DILUTE_SLIP]
+    dense = [row for row in slow if float(row["packing_fraction"]) > DILUTE_SLIP]
     claims = [*(_dilute(row) for row in dilute), _slip(dilute)]
     claims += [_dense(row) for row in dense if float(row["packing_fraction"]) < ACCURATE + NEAR]
     claims += _equilibrium(dense, still) + _uniform(sheared, still)
@@ -45,7 +45,7 @@ def _named(row: xr.Dataset) -> str:
     """Engine and gap or density of a flow."""
     engine = row["engine"].item()
     eta = float(row["packing_fraction"])
-    if eta < DILUTE:
+    if eta < DILUTE_SLIP:
         return f"dilute spheres, mean free path {float(row['knudsen']):.2g} of the gap, {engine} engine"
     return f"spheres at packing fraction {eta:.2f}"
 
@@ -150,7 +150,7 @@ def _pressure(row: xr.Dataset) -> Claim:
     return Claim(
         claim=f"pressure on the walls over that of the middle's state, {_named(row)}",
         measured=Estimate.of(row, "pressure"),
-        expected=_second(row) + (first if float(row["packing_fraction"]) < DILUTE else 0.0),
+        expected=_second(row) + (first if float(row["packing_fraction"]) < DILUTE_SLIP else 0.0),
         required=0.005,
         source="no force acts across the gap: the equation of state of the middle, and of dilute gases the "
         "normal stress",

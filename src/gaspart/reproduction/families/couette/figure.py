@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.rendering import style
-from gaspart.reproduction.families.couette.claims import DILUTE, FAST, FREE, SLIP_FLOW
+from gaspart.reproduction.families.couette.claims import DILUTE_SLIP, FAST, FREE, SLIP_FLOW
 from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.theory.shear import ELEMENTARY_SLIP, NORMAL_STRESSES, VELOCITY_SLIP
 
@@ -40,8 +40,10 @@ def _velocity(axis: Axes, flows: xr.Dataset) -> None:
     slow = flows["speed"].values < FAST
     kinds = {
         "free flight": slow & (flows["knudsen"].values > FREE),
-        "dilute": slow & (flows["knudsen"].values < SLIP_FLOW) & (flows["packing_fraction"].values < DILUTE),
-        "dense": slow & (flows["packing_fraction"].values > DILUTE),
+        "dilute": slow
+        & (flows["knudsen"].values < SLIP_FLOW)
+        & (flows["packing_fraction"].values < DILUTE_SLIP),
+        "dense": slow & (flows["packing_fraction"].values > DILUTE_SLIP),
     }
     line = np.array([-0.5, 0.5])
     axis.plot(line, line, color=style.GREY, lw=0.8, label="no slip")
@@ -81,7 +83,7 @@ def _temperature(axis: Axes, flows: xr.Dataset) -> None:
 def _stress(axis: Axes, flows: xr.Dataset) -> None:
     """The shear stress over that of free flight by the Knudsen number."""
     for kind, engine in enumerate((DSMC, EVENT)):
-        dilute = (flows["engine"].values == engine) & (flows["packing_fraction"].values < DILUTE)
+        dilute = (flows["engine"].values == engine) & (flows["packing_fraction"].values < DILUTE_SLIP)
         row = _some(flows, dilute & (flows["speed"].values < FAST))
         style.measured(axis, row["knudsen"], estimates(row, "stress"), kind, hollow=kind == 1, label=engine)
     knudsen = np.geomspace(0.02, 0.5, 50)

@@ -7,10 +7,8 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import MODE_COUPLING, rows, weighted_mean
+from gaspart.reproduction.families.shared.claims import ENSKOG_LIMIT, MODE_COUPLING, rows, weighted_mean
 
-DILUTE = 0.02
-"""Packing fraction up to which a gas counts as dilute."""
 DILUTE_BAND = 0.007
 """Most that D differs from Enskog's there, as a part of it: by Erpenbeck and Wood's fit 0.6 % at 0.02."""
 ERPENBECK_WOOD = "[Erpenbeck 1991]"
@@ -43,7 +41,7 @@ def msd_spheres(ds: xr.Dataset) -> list[Claim]:
 
 
 def _is_dilute(row: xr.Dataset) -> bool:
-    return bool(row["packing_fraction"] <= DILUTE * (1.0 + 1e-6))
+    return bool(row["packing_fraction"] <= ENSKOG_LIMIT * (1.0 + 1e-6))
 
 
 def _diffusion(row: xr.Dataset) -> Estimate:
@@ -54,7 +52,7 @@ def _dilute_limit(dilute: list[xr.Dataset]) -> Claim:
     """Mean of D over Enskog's at the lowest packing fractions, weighted by the errors."""
     ratios = [_diffusion(row) / theory.enskog_diffusion(float(row["packing_fraction"]), 3) for row in dilute]
     return Claim.within(
-        claim=f"D over Enskog's in the dilute limit (packing fraction {DILUTE:g} and below)",
+        claim=f"D over Enskog's in the dilute limit (packing fraction {ENSKOG_LIMIT:g} and below)",
         measured=weighted_mean(ratios),
         expected=1.0,
         half_width=DILUTE_BAND,

@@ -1,6 +1,6 @@
 """Direct simulation Monte Carlo (DSMC)."""
 
-from gaspart.kinds import count, names, record
+from gaspart.keys import count, names, record
 
 TITLE = "Direct simulation Monte Carlo"
 CHAPTER = "Speed and accuracy"

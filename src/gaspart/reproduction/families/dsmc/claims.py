@@ -18,7 +18,7 @@ SEEN = 0.02
 """Change of a transport coefficient from which on a point tests the coefficient of that change."""
 WIDE = 1.5
 """Mean free paths: cells in which the diffusion coefficient is tested."""
-DILUTE = 0.003
+POINTLIKE = 0.003
 """Packing fraction up to which the volume of the spheres does not matter for the flux between plates, by
 less than 4 of it."""
 
@@ -148,7 +148,7 @@ def _plates(ds: xr.Dataset) -> list[Claim]:
     for row in _of(ds, "plates"):
         knudsen = float(row["knudsen"])
         beside = [one for one in event if abs(float(one["knudsen"]) / knudsen - 1.0) < 0.02]
-        if not beside or float(beside[0]["packing_fraction"]) > DILUTE:
+        if not beside or float(beside[0]["packing_fraction"]) > POINTLIKE:
             continue
         allowance = 4.0 * float(beside[0]["packing_fraction"])
         claims.append(

@@ -1,6 +1,6 @@
 """Speed, accuracy, stability."""
 
-from gaspart.kinds import TEXT, listed, names
+from gaspart.keys import TEXT, listed, names
 
 TITLE = "Speed, accuracy, stability"
 CHAPTER = "Speed and accuracy"

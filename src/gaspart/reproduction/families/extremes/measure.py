@@ -9,7 +9,7 @@ import xarray as xr
 
 from gaspart.reproduction.families.extremes.guard import guarded
 from gaspart.reproduction.families.extremes.rows import ROWS, Row
-from gaspart.reproduction.families.extremes.trial import ENGINES, Outcome, attempt
+from gaspart.reproduction.families.extremes.trial import TRIAL_ENGINES, Outcome, attempt
 from gaspart.reproduction.points.point import Point
 
 LIMIT = 300.0
@@ -28,9 +28,9 @@ def stability_extremes(points: list[Point], settings: dict) -> xr.Dataset:
     """
     groups = settings.get("groups")
     rows = [row for row in ROWS if groups is None or row.group in groups]
-    limit = LIMIT * len(ENGINES)
+    limit = LIMIT * len(TRIAL_ENGINES)
     outcomes = guarded(run_row, rows, limit)
-    lost = [Outcome(HANGS, f"not done within {limit:g} s")] * len(ENGINES)
+    lost = [Outcome(HANGS, f"not done within {limit:g} s")] * len(TRIAL_ENGINES)
     table = [outcome or lost for outcome in outcomes]
 
     def column(name: str, unit: str) -> tuple[tuple[str, str], np.ndarray, dict[str, str]]:
@@ -49,12 +49,12 @@ def stability_extremes(points: list[Point], settings: dict) -> xr.Dataset:
             "seconds": column("seconds", "s"),
             "refusal": (
                 ("row", "engine"),
-                np.array([[engine.startswith(row.refused) for engine in ENGINES] for row in rows]),
+                np.array([[engine.startswith(row.refused) for engine in TRIAL_ENGINES] for row in rows]),
             ),
             "group": ("row", [row.group for row in rows]),
             "expected": ("row", [-1 if row.contacts is None else row.contacts for row in rows]),
         },
-        coords={"row": [row.name for row in rows], "engine": list(ENGINES)},
+        coords={"row": [row.name for row in rows], "engine": list(TRIAL_ENGINES)},
     )
 
 
@@ -62,4 +62,4 @@ def run_row(row: Row) -> list[Outcome]:
     """What becomes of a row in each engine; the search through all pairs first, for it is the referee."""
     trial = partial(attempt, row)
     referee = trial(_ALL_PAIRS)
-    return [referee if engine == _ALL_PAIRS else trial(engine, referee) for engine in ENGINES]
+    return [referee if engine == _ALL_PAIRS else trial(engine, referee) for engine in TRIAL_ENGINES]

@@ -16,7 +16,7 @@ from gaspart.reproduction.families.extremes.rows import Row
 from gaspart.simulation import ENERGY_DRIFT, Simulation
 from gaspart.state.state import State
 
-ENGINES: dict[str, Callable[[Row], Engine]] = {
+TRIAL_ENGINES: dict[str, Callable[[Row], Engine]] = {
     "event": lambda row: EventDriven(),
     "event, all pairs": lambda row: EventDriven("pairs"),
     "step": lambda row: TimeStepped(row.time_step),
@@ -55,7 +55,7 @@ class Outcome:
 
 
 def attempt(row: Row, engine: str, referee: Outcome | None = None) -> Outcome:
-    """Run a row in one of `ENGINES`; where the exact number of contacts is not known, `referee` gives it."""
+    """Run a row in one of `TRIAL_ENGINES`; `referee` gives the number of contacts where none is exact."""
     start = time.perf_counter()
     try:
         with warnings.catch_warnings():
@@ -67,7 +67,7 @@ def attempt(row: Row, engine: str, referee: Outcome | None = None) -> Outcome:
 
 
 def _run(row: Row, engine: str, referee: Outcome | None) -> dict:
-    simulation = Simulation(row.scene(), ENGINES[engine](row), seed=1)
+    simulation = Simulation(row.scene(), TRIAL_ENGINES[engine](row), seed=1)
     overlap = 0.0
     for check in range(1, CHECKS + 1):
         if not _advance(simulation, row.duration * check / CHECKS):

@@ -1,6 +1,6 @@
 """Thin films."""
 
-from gaspart.kinds import POSITIVE, count, listed, positive
+from gaspart.keys import POSITIVE, count, listed, positive
 
 TITLE = "Thin films"
 CHAPTER = "Equation of state and structure"

@@ -1,6 +1,6 @@
 """Freezing and melting."""
 
-from gaspart.kinds import POSITIVE, count, listed, positive
+from gaspart.keys import POSITIVE, count, listed, positive
 
 TITLE = "Freezing and melting"
 CHAPTER = "Equation of state and structure"

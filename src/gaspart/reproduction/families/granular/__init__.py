@@ -1,6 +1,6 @@
 """Rough and inelastic particles."""
 
-from gaspart.kinds import count, names, positive
+from gaspart.keys import count, names, positive
 
 TITLE = "Rough and inelastic particles"
 CHAPTER = "Granular matter"

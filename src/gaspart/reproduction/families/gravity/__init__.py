@@ -1,6 +1,6 @@
 """Under gravity."""
 
-from gaspart.kinds import POSITIVE, TEXT, count, described, listed, positive, record
+from gaspart.keys import POSITIVE, TEXT, count, described, listed, positive, record
 
 TITLE = "Under gravity"
 CHAPTER = "Gravity, heat and walls"

@@ -14,7 +14,7 @@ HYDROSTATICS = "hydrostatics dP/dz = -m g rho"
 REFERENCE = "virial series to B10 with a linear tail ([Clisby 2006])"
 EXCHANGE = "exchange of two discs of one size costs (M - m) g dz (exact at any density)"
 C = "notebooks of [source C]'s code (tms-ninja/billiards)"
-DILUTE = 0.01
+IDEAL = 0.01
 """Packing fraction up to which a column counts as an ideal gas."""
 
 
@@ -158,7 +158,7 @@ def _is_source(row: xr.Dataset) -> bool:
 
 
 def _dilute(row: xr.Dataset) -> bool:
-    return float(row["packing_fraction"].max()) < DILUTE
+    return float(row["packing_fraction"].max()) < IDEAL
 
 
 def _at(row: xr.Dataset) -> str:

@@ -1,6 +1,6 @@
 """Heat between walls."""
 
-from gaspart.kinds import count, positive
+from gaspart.keys import count, positive
 
 TITLE = "Heat between walls"
 CHAPTER = "Gravity, heat and walls"

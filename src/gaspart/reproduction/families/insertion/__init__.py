@@ -1,6 +1,6 @@
 """Random insertion."""
 
-from gaspart.kinds import count, listed, names, positive
+from gaspart.keys import count, listed, names, positive
 
 TITLE = "Random insertion"
 CHAPTER = "Equation of state and structure"

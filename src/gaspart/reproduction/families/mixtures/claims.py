@@ -13,7 +13,7 @@ REQUIRED = 1e-3
 """The largest uncertainty of Z, relative to it, at which its comparison means anything."""
 CONTACT = 5e-3
 """The same of a contact value of one pair of species."""
-DILUTE = 0.1
+THEORIES_AGREE = 0.1
 """Packing fraction up to which the theories of mixtures hardly differ: all have the exact second virial
 coefficient."""
 NEARLY_EQUAL = {"size_ratio": 0.9, "polydispersity": 0.1}
@@ -63,7 +63,7 @@ def _sharp(row: xr.Dataset) -> bool:
     """Whether the uncertainty of theory is small."""
     ratio, spread = float(row["size_ratio"]), float(row["polydispersity"])
     alike = ratio >= NEARLY_EQUAL["size_ratio"] or spread <= NEARLY_EQUAL["polydispersity"]
-    return alike or float(row["packing_fraction"]) <= DILUTE * (1.0 + 1e-6)
+    return alike or float(row["packing_fraction"]) <= THEORIES_AGREE * (1.0 + 1e-6)
 
 
 def _compressibility(row: xr.Dataset) -> Claim:
@@ -73,7 +73,7 @@ def _compressibility(row: xr.Dataset) -> Claim:
     allowance = np.hypot(allowance, abs(float(row["correction"])) * _UNSURE)
     others: dict = {}
     what, required = "Z over that of [Santos 2002]", REQUIRED
-    if int(row["dimension"]) == 3 and float(row["packing_fraction"]) > DILUTE * (1.0 + 1e-6):
+    if int(row["dimension"]) == 3 and float(row["packing_fraction"]) > THEORIES_AGREE * (1.0 + 1e-6):
         base = float(row["boublik"])
         what, others = "Z over Boublik's and Mansoori's", {"alternative": 1.0}
         required = abs(expected / base - 1.0) / 5.0

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from gaspart.analysis.observables import OBSERVABLES
-from gaspart.kinds import TEXT, Kind, choice, described, flag, listed, names, positive, record
+from gaspart.keys import NUMBER, TEXT, Kind, choice, described, flag, listed, names, positive, record
 
 if TYPE_CHECKING:
     from gaspart.reproduction.points.point import Point
@@ -15,7 +15,6 @@ TITLE = "Own figures"
 CHAPTER = "Own figures"
 FIGURES: dict[str, dict[str, Kind]] = {}
 
-_NUMBER: Kind = {"type": "number"}
 _CLAIM = record(
     {
         "that": choice(
@@ -23,7 +22,7 @@ _CLAIM = record(
             "bound, a value, or the exponent of a power law",
             *("theory", "at_least", "at_most", "value", "exponent"),
         ),
-        "value": described(_NUMBER, "the bound, value or exponent", default=None),
+        "value": described(NUMBER, "the bound, value or exponent", default=None),
         "tolerance": positive(
             "half of the width of the band in which a value or an exponent lies; with `theory`, if it is an "
             "approximation, the same over theory's value",
@@ -35,7 +34,7 @@ _CLAIM = record(
             default=None,
         ),
         "between": listed(
-            _NUMBER,
+            NUMBER,
             "lowest and highest value of `against` of the points that it is about",
             2,
             2,
@@ -57,7 +56,7 @@ KINDS: dict[str, dict[str, Kind]] = {
         ),
         "experiments": names("experiments that make trajectories, whose points are measured"),
         "place": described(
-            _NUMBER, "of a curve: the place, or the nearest one, whose value is taken instead", default=None
+            NUMBER, "of a curve: the place, or the nearest one, whose value is taken instead", default=None
         ),
         "theory": flag("draw theory, where there is one for the scene", default=True),
         "logarithmic": choice("axes with a logarithmic scale", "none", "x", "y", "both", default="none"),

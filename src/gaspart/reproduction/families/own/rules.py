@@ -35,8 +35,8 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
     where = f"figures.{figure}"
     against = settings["against"]
     for point in points:
-        if point.job not in TRAJECTORIES:
-            rule = f"must make trajectories (job: {' or '.join(TRAJECTORIES)})"
+        if point.job != TRAJECTORIES:
+            rule = f"must make trajectories (job: {TRAJECTORIES})"
             raise SceneError(f"{where}.experiments", point.experiment, rule)
         value = point.settings.get(against)
         if not isinstance(value, int | float) or isinstance(value, bool):

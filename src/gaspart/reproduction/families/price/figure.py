@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from gaspart.rendering import style
 from gaspart.reproduction.families.price.claims import LARGEST_RATIO
 
-ENGINES = ("event", "step")
+TIMED_ENGINES = ("event", "step")
 WORK = {"pair_tests": "pair tests", "crossings": "crossings"}
 
 
@@ -22,7 +22,7 @@ def price_of_features(ds: xr.Dataset) -> Figure:
     place = {name: -k for k, name in enumerate(names)}
     left.axvline(1.0, color=style.GREY, linewidth=0.6, zorder=1)
     left.axvspan(0.0, LARGEST_RATIO, color=style.GREY, alpha=0.18, linewidth=0, zorder=0)
-    for kind, engine in enumerate(ENGINES):
+    for kind, engine in enumerate(TIMED_ENGINES):
         one = ds.isel(point=np.flatnonzero(ds["engine"].values == engine))
         if not one.sizes["point"]:
             continue

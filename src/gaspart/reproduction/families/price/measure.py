@@ -12,9 +12,12 @@ import xarray as xr
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.timings import log_ratios, per_event, ratio_of_jobs
 from gaspart.reproduction.points.point import Point
+from gaspart.scene.features import features
 from gaspart.scene.scene import Scene
 
 PLAIN = "plain"
+FEATURES = {"gravity": "gravity", "roughness": "spin"}
+"""Features of `scene.features` that are timed, and their names in the figure."""
 WORK = ("pair_tests", "box_visits", "crossings")
 
 
@@ -70,9 +73,8 @@ def _feature(scene: Scene, extras: list[str]) -> str:
     has = {
         "recording": "record_events" in extras,
         "stress": "stress" in extras,
-        "gravity": scene.gravity is not None,
-        "walls": "wall" in scene.container.boundary,
-        "spin": scene.rough,
+        **{name: feature in features(scene) for feature, name in FEATURES.items()},
+        "walls": bool(scene.container.walls),
         "two masses": len({kind.mass for kind in scene.species}) > 1,
     }
-    return next((name for name, there in has.items() if there), PLAIN)
+    return next((name for name, present in has.items() if present), PLAIN)

@@ -10,7 +10,7 @@ from gaspart.rendering import style
 from gaspart.reproduction.families.shared.claims import PARTICLES
 from gaspart.reproduction.families.shared.rows import estimates
 
-ENGINES = {
+LINES_OF_ENGINES = {
     ("event", "float64"): ("event-driven", "-"),
     ("step", "float64"): ("time-stepped", "--"),
     ("step", "float32"): ("time-stepped, float32", ":"),
@@ -24,11 +24,11 @@ def reversibility(ds: xr.Dataset) -> Figure:
     for n in range(ds.sizes["row"]):
         row = ds.isel(row=n)
         gas = int(row.dimension), float(row.packing_fraction)
-        _, line = ENGINES[str(row.engine.values), str(row.precision.values)]
+        _, line = LINES_OF_ENGINES[str(row.engine.values), str(row.precision.values)]
         label = f"{gas[0]}D, {gas[1]:g}" if line == "-" else None
         colour = style.COLOURS[gases.index(gas) % len(style.COLOURS)]
         axes[0].plot(row.collisions, row.echo, color=colour, ls=line, label=label)
-    for name, line in ENGINES.values():
+    for name, line in LINES_OF_ENGINES.values():
         axes[0].plot([], [], color=style.GREY, ls=line, label=name)
     axes[0].set(
         xscale="log",
@@ -66,7 +66,7 @@ def _growth(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _memory(axis: Axes, ds: xr.Dataset) -> None:
-    for kind, ((engine, precision), (label, _)) in enumerate(ENGINES.items()):
+    for kind, ((engine, precision), (label, _)) in enumerate(LINES_OF_ENGINES.items()):
         of = ds.isel(row=((ds.engine == engine) & (ds.precision == precision)).values)
         for dimension in (2, 3):
             rows = of.isel(row=(of.dimension == dimension).values)

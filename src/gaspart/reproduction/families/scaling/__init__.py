@@ -1,6 +1,6 @@
 """Gain from space partitioning."""
 
-from gaspart.kinds import COUNT, count, listed, positive, record
+from gaspart.keys import COUNT, count, listed, positive, record
 
 TITLE = "Gain from space partitioning"
 CHAPTER = "Speed and accuracy"

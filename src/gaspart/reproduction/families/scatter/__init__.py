@@ -1,6 +1,6 @@
 """The scatter of all claims."""
 
-from gaspart.kinds import TEXT, listed
+from gaspart.keys import TEXT, listed
 
 TITLE = "All claims together"
 CHAPTER = "Pictures and checks"

@@ -1,6 +1,6 @@
 """Piles at rest and flow through an orifice."""
 
-from gaspart.kinds import positive
+from gaspart.keys import positive
 
 TITLE = "Settling and discharge"
 CHAPTER = "Granular matter"

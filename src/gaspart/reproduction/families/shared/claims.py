@@ -16,6 +16,8 @@ OTHER_MACHINE = "on this machine, and by this program, tests and boxes have othe
 """Why an optimum that source A reports need not be the one found here."""
 PARTICLES = {2: "discs", 3: "spheres"}
 """Names of the particles in each dimension."""
+ENSKOG_LIMIT = 0.02
+"""Packing fraction up to which a gas counts as dilute."""
 MODE_COUPLING = "hydrodynamic modes of the container, transport coefficients Enskog's (gaspart.theory.modes)"
 
 

@@ -1,6 +1,6 @@
 """Speed distributions."""
 
-from gaspart.kinds import POSITIVE, count, listed, positive
+from gaspart.keys import POSITIVE, count, listed, positive
 
 TITLE = "Speed distributions"
 CHAPTER = "Motion and its memory"

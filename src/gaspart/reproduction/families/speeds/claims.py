@@ -9,7 +9,7 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import rows
 from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, Relaxation
 
-ENGINES = {"step": "time-stepped", "event": "event-driven"}
+ENGINE_TITLES = {"step": "time-stepped", "event": "event-driven"}
 BOLTZMANN = "homogeneous Boltzmann equation from equal speeds (gaspart.theory.homogeneous)"
 MONTE_CARLO = "statistical error of the Monte Carlo solution"
 MAXWELL = "Maxwell's distribution (exact)"
@@ -23,7 +23,7 @@ def speed_relaxation(ds: xr.Dataset) -> list[Claim]:
     relaxation = theory.relaxation(dimension)
     claims = []
     for run in rows(ds, "engine"):
-        by = f"{ENGINES[run['engine'].item()]} engine"
+        by = f"{ENGINE_TITLES[run['engine'].item()]} engine"
         for frame in ds["shown"].values:
             claims += _frame(run.isel(frame=int(frame)), by, relaxation)
         claims += [

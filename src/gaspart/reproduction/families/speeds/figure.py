@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 from gaspart import theory
 from gaspart.rendering import style
 from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.families.speeds.claims import ENGINE_TITLES
 
-ENGINES = {"step": "time-stepped", "event": "event-driven"}
 KOLMOGOROV_BAND = 1.36
 """sqrt(n) times the Kolmogorov distance of n samples of the right distribution is below this in 95 %."""
 
@@ -93,7 +93,7 @@ def _compare(
     for kind, engine in enumerate(ds["engine"].values):
         row = ds.sel(engine=engine).isel(frame=slice(1, None))
         s, (values, errors) = row["collisions"].values, estimates(row, name)
-        label = ENGINES[str(engine)] if name == "never_hit" else None
+        label = ENGINE_TITLES[str(engine)] if name == "never_hit" else None
         style.points(top, s, values, errors, kind=kind, hollow=kind > 0, label=label)
         style.points(bottom, s, (values - curve(s)) / errors, kind=kind, hollow=kind > 0)
     bottom.set_ylim(-4.5, 4.5)
@@ -125,7 +125,7 @@ def _distribution(ds: xr.Dataset) -> Figure:
     width = ds["upper"].values[0] - ds["lower"].values[0]
     for kind in range(ds.sizes["point"]):
         row = ds.isel(point=kind)
-        label = rf"$\eta={float(row['packing_fraction']):.2g}$, {ENGINES[str(row['engine'].values)]}"
+        label = rf"$\eta={float(row['packing_fraction']):.2g}$, {ENGINE_TITLES[str(row['engine'].values)]}"
         values, errors = estimates(row, "density")
         style.points(density, middle, values, errors, kind=kind, hollow=True, label=label)
         # Different packing fractions are drawn side by side within their bin.

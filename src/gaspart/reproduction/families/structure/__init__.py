@@ -1,6 +1,6 @@
 """Structure of the fluid and its chemical potential."""
 
-from gaspart.kinds import count, names, positive
+from gaspart.keys import count, names, positive
 
 TITLE = "Structure and chemical potential"
 CHAPTER = "Equation of state and structure"

@@ -1,6 +1,6 @@
 """Speed against accuracy."""
 
-from gaspart.kinds import COUNT, POSITIVE, count, listed, names, positive
+from gaspart.keys import COUNT, POSITIVE, count, listed, names, positive
 
 TITLE = "Speed against accuracy"
 CHAPTER = "Speed and accuracy"

@@ -1,6 +1,6 @@
 """Viscosity and conductivity of heat."""
 
-from gaspart.kinds import positive
+from gaspart.keys import positive
 
 TITLE = "Viscosity and conductivity"
 CHAPTER = "Motion and its memory"

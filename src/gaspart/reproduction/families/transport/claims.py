@@ -5,10 +5,8 @@ from __future__ import annotations
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES, rows, weighted_mean
+from gaspart.reproduction.families.shared.claims import ENSKOG_LIMIT, PARTICLES, rows, weighted_mean
 
-DILUTE = 0.02
-"""Packing fraction up to which a gas counts as dilute."""
 DILUTE_BAND = 0.01
 """Most that a coefficient of such a gas differs from Enskog's, as a part of it: at 0.02 a particle meets a
 former partner again in 2 of 100 collisions, which changes D by 0.6 %."""
@@ -31,7 +29,7 @@ def conductivity(ds: xr.Dataset) -> list[Claim]:
 def _bulk(row: xr.Dataset) -> Claim:
     """The bulk viscosity."""
     eta, dimension = float(row["packing_fraction"]), int(row["dimension"])
-    known = {2: DILUTE, 3: ACCURATE}[dimension] * (1.0 + 1e-6)
+    known = {2: ENSKOG_LIMIT, 3: ACCURATE}[dimension] * (1.0 + 1e-6)
     unknown = {
         2: "of discs its integral grows with the logarithm of time",
         3: "what correlated collisions do near freezing is not known",
@@ -54,7 +52,7 @@ def _claims(ds: xr.Dataset, name: str) -> list[Claim]:
         eta, dimension = float(row["packing_fraction"]), int(row["dimension"])
         where = f"{PARTICLES[dimension]}, packing fraction {eta:.3g}, {int(row['count'])} particles"
         value = Estimate.of(row, "value")
-        if eta <= DILUTE * (1.0 + 1e-6):
+        if eta <= ENSKOG_LIMIT * (1.0 + 1e-6):
             claims.append(
                 Claim.within(
                     claim=f"{name} over Chapman and Enskog's, {where}",

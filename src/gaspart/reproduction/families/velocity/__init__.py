@@ -1,6 +1,6 @@
 """Velocity autocorrelation."""
 
-from gaspart.kinds import POSITIVE, listed, positive
+from gaspart.keys import POSITIVE, listed, positive
 
 TITLE = "Velocity autocorrelation"
 CHAPTER = "Motion and its memory"

@@ -1,6 +1,6 @@
 """Vibrated granular beds."""
 
-from gaspart.kinds import count, positive
+from gaspart.keys import count, positive
 
 TITLE = "Vibrated granular beds"
 CHAPTER = "Granular matter"

@@ -1,6 +1,6 @@
 """Equation of state."""
 
-from gaspart.kinds import count, flag, listed, positive, record
+from gaspart.keys import count, flag, listed, positive, record
 
 TITLE = "Equation of state"
 CHAPTER = "Equation of state and structure"

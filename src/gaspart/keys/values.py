@@ -1,4 +1,4 @@
-"""Validation of values given by a user: each function returns a value of its type, or raises SceneError.
+"""Checks of single values given by a user: each returns the value in its type, or raises SceneError.
 
 Every function takes any object at all: None, text, nan, an integer that no float can hold, an array.
 """
@@ -8,16 +8,10 @@ from __future__ import annotations
 import math
 import numbers
 from collections.abc import Iterable, Mapping, Set
-from dataclasses import fields
 from itertools import islice
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any
 
-from gaspart.errors import SceneError, unknown_word
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
-T = TypeVar("T", bound="DataclassInstance")
+from gaspart.errors import SceneError
 
 SMALLEST, LARGEST = 1e-60, 1e60
 """Size of any quantity: contacts multiply four of them, and the product must neither vanish nor overflow."""
@@ -25,6 +19,7 @@ MOST_PARTICLES = 2**31 - 1
 """Largest number of particles of a scene or a species: their indices have 32 bits."""
 MOST_BOXES = 2**26
 """Largest number of boxes of a partition: more exceed the memory of a common machine."""
+LARGEST_INTEGER = 2**63 - 1
 MOST_LISTED = 50_000
 """Species, single particles or walls of a scene, each of which is written in the scene's text."""
 
@@ -71,7 +66,7 @@ def _refuse_text(key: str, value: Any) -> None:
         raise SceneError(key, value, "must be a number, without a unit")
 
 
-def positive(key: str, value: Any) -> float:
+def positive_number(key: str, value: Any) -> float:
     """`value` as a float above 0 of an acceptable `size`."""
     _refuse_text(key, value)
     found = number(key, value, "must be positive", above=0.0)
@@ -80,7 +75,7 @@ def positive(key: str, value: Any) -> float:
     return found
 
 
-def not_negative(key: str, value: Any) -> float:
+def not_negative_number(key: str, value: Any) -> float:
     """`value` as a float of at least 0 of an acceptable `size`."""
     _refuse_text(key, value)
     found = number(key, value, "must not be negative", least=0.0)
@@ -88,7 +83,14 @@ def not_negative(key: str, value: Any) -> float:
     return found
 
 
-def count_of(key: str, value: Any, least: int = 0, most: int = 2**63 - 1) -> int:
+def sized_number(key: str, value: Any) -> float:
+    """`value` as a float of either sign, 0 or of an acceptable `size`."""
+    found = number(key, value, "must be a finite number")
+    size(key, found)
+    return found
+
+
+def count_of(key: str, value: Any, least: int = 0, most: int = LARGEST_INTEGER) -> int:
     """`value` as an integer from `least` to `most`."""
     rule = f"must be a whole number of at least {least}"
     if number(key, value, rule, least=least) != int(value):
@@ -98,7 +100,7 @@ def count_of(key: str, value: Any, least: int = 0, most: int = 2**63 - 1) -> int
     return int(value)
 
 
-def vector(key: str, value: Any, dimension: int | None = None) -> tuple[float, ...]:
+def finite_vector(key: str, value: Any, dimension: int | None = None) -> tuple[float, ...]:
     """`value` as a tuple of finite floats, of length `dimension`, or 2 or 3 where that is not known."""
     rule = f"must be a list of {dimension or '2 or 3'} finite numbers"
     found = tuple(number(key, item, rule) for item in _items(key, value, rule, 4))
@@ -129,21 +131,21 @@ def instances(key: str, value: Any, kinds: type | tuple[type, ...], rule: str) -
     return tuple(found)
 
 
-def flag(key: str, value: Any) -> bool:
+def true_or_false(key: str, value: Any) -> bool:
     """`value`, which must be true or false."""
     if not isinstance(value, bool):
         raise SceneError(key, value, "must be true or false")
     return value
 
 
-def choice(key: str, value: Any, known: Iterable[str]) -> str:
-    """`value`, which must be one of the words `known`."""
-    if not isinstance(value, str) or value not in known:
+def one_of(key: str, value: Any, known: Iterable[Any]) -> Any:
+    """`value`, which must be one of the words, or numbers, `known`."""
+    if not any(isinstance(value, type(one)) and value == one for one in known):
         raise SceneError(key, value, f"must be one of {tuple(known)}")
     return value
 
 
-def per_side(key: str, value: Any) -> int | tuple[int, ...]:
+def partition(key: str, value: Any) -> int | tuple[int, ...]:
     """Boxes per side: a number, or a tuple of one per axis, of at most `MOST_BOXES` boxes."""
     given = value if isinstance(value, (tuple, list)) else (value,)
     sides = tuple(count_of(key, n, least=1) for n in given)
@@ -151,26 +153,3 @@ def per_side(key: str, value: Any) -> int | tuple[int, ...]:
         rule = f"must be one number, or one per axis, of at most {MOST_BOXES} boxes"
         raise SceneError(key, value, rule)
     return sides if isinstance(value, (tuple, list)) else sides[0]
-
-
-def set_fields(instance: object, **values: object) -> None:
-    """Write validated `values` into a frozen dataclass that is being made."""
-    for name, value in values.items():
-        object.__setattr__(instance, name, value)
-
-
-def from_mapping(cls: type[T], mapping: object, where: str) -> T:
-    """Make the dataclass `cls` from a mapping whose keys must all be fields of it."""
-    if not isinstance(mapping, dict):
-        raise SceneError(where, mapping, "must be a mapping of keys to values")
-    known = {f.name: f for f in fields(cls)}
-    for key in mapping:
-        if key not in known:
-            raise SceneError(f"{where}.{key}", mapping[key], unknown_word(key, known))
-    for name, field in known.items():
-        if name not in mapping and field.default is field.default_factory:  # both MISSING: no default
-            raise SceneError(f"{where}.{name}", None, "is required")
-    try:
-        return cls(**mapping)
-    except SceneError as error:
-        raise error.inside(where) from None

@@ -1,18 +1,17 @@
-"""What jobs that run a scene have in common: keys, and the division of a run into stretches of time."""
+"""Common to jobs that run a scene: keys, and the division of a run into intervals."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gaspart.engines import engine_to_dict
-from gaspart.kinds import NOT_NEGATIVE, POSITIVE, described, listed
+from gaspart.keys import NOT_NEGATIVE, POSITIVE, described, listed
 
 if TYPE_CHECKING:
     from gaspart.reproduction.points.point import Point
 
 SLACK = 1e-6
 """Part of a time step by which a run is longer, so that rounding of its duration loses no step."""
-EQUILIBRATION = described(
+EQUILIBRATION_KEY = described(
     NOT_NEGATIVE,
     "time before the length, in the same unit; rounded up to whole samples, which are not measured",
     default=0,
@@ -24,12 +23,11 @@ SCAN_TIME_STEPS = listed(
 )
 
 
-def stretches(point: Point) -> dict:
-    """The parameters of a job that runs several engines for the same stretches of time."""
+def intervals(point: Point) -> dict:
+    """The arguments of a job that divides its run after the equilibration into `samples` intervals."""
     times = point.schedule
     return {
-        "engines": [engine_to_dict(engine) for engine in point.engines],
         "equilibration": times.equilibration,
-        "stretch": times.sample_interval,
-        "repeats": times.samples,
+        "interval": times.sample_interval,
+        "samples": times.samples,
     }

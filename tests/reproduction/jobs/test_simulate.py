@@ -1,17 +1,18 @@
-"""The job whose trajectories end when observables are accurate."""
+"""The job whose trajectories may end when observables are accurate."""
 
 import pytest
 
 import gaspart as gp
 from gaspart.reproduction.config import checked_points
-from gaspart.reproduction.jobs import simulate_until
+from gaspart.reproduction.jobs.arguments import from_plain
+from gaspart.reproduction.jobs.simulate import simulate
 
 POINT = {"dimension": 3, "count": 60, "side": 8, "radius": 0.5, "boundary": "periodic", "temperature": 1.0}
 
 
 def planned(folder="results/points", **settings):
     point = {**POINT, "duration": 4000.0, "until": {"Z": 0.1}, **settings}
-    block = {"job": "simulate_until", "point": {key: one for key, one in point.items() if one is not None}}
+    block = {"point": {key: one for key, one in point.items() if one is not None}}
     config = {"experiments": {"accurate": block}, "points": str(folder), "seed": 1}
     (point,) = checked_points(config, "accurate").values()
     return point
@@ -19,7 +20,7 @@ def planned(folder="results/points", **settings):
 
 def test_a_point_ends_when_it_is_accurate(tmp_path):
     point = planned(tmp_path, replicas=2)
-    simulate_until.run(point.parameters, tmp_path / "accurate/single")
+    simulate(tmp_path / "accurate/single", **from_plain(point.parameters))
     for path in point.replica_paths:
         (reached,) = gp.reached_accuracy(path)
         assert reached.met and reached.accuracy <= 0.1
@@ -28,18 +29,21 @@ def test_a_point_ends_when_it_is_accurate(tmp_path):
 
 
 def test_the_equilibration_is_not_examined():
-    assert planned().parameters["start"] is None  # a quarter of the run
-    assert planned(equilibration=10.0, samples=4000).parameters["start"] == 10.0
-    assert planned(samples=4000).parameters["sample_interval"] == 1.0
+    def start(**settings):
+        (asked,) = planned(**settings).arguments["until"].accuracies
+        return asked.start
+
+    assert start() is None  # a quarter of the run
+    assert start(equilibration=10.0, samples=4000) == 10.0
+    assert planned(samples=4000).arguments["sample_interval"] == 1.0
 
 
 @pytest.mark.parametrize(
     ("settings", "line"),
     [
-        ({"until": None}, "until = None: must be given with job: simulate_until"),
         ({"until": {"Q": 0.1}}, "until.observable = 'Q': unknown observable"),
         ({"until": {"pressure": 0.1}}, "until = 'pressure': container.boundary: has no walls: measure comp"),
-        ({"lags": 10}, "lags = 10: has a meaning with job: simulate only"),
+        ({"lags": 10}, "lags = 10: has no meaning with until"),
         ({"duration": None}, "exactly one of collisions_per_particle, duration, steps must be given"),
     ],
 )

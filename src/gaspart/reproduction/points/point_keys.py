@@ -9,8 +9,7 @@ from typing import Any
 
 from gaspart import engines
 from gaspart.analysis.observables import having
-from gaspart.kinds import POSITIVE, TEXT, Kind, choice, count, described, flag, positive
-from gaspart.scene.keys import schema_of
+from gaspart.keys import POSITIVE, TEXT, Kind, choice, count, described, flag, positive, schema_of
 from gaspart.scene.sizes import DISTRIBUTIONS
 
 PREFIX = "scene."
@@ -103,13 +102,13 @@ _BOXES_PER_PARTICLE = positive(
 def _settings(engine: Any) -> dict[str, Kind]:
     """The keys of an engine, as its fields declare them. What it requires, a point with another does not."""
     declared = schema_of(engine)
-    made = {name: {"default": None, **kind} for name, kind in declared["properties"].items()}
+    made = {name: Kind({"default": None, **kind}) for name, kind in declared["properties"].items()}
     for name in declared.get("required", ()):
         made[name]["description"] += "; required"
     return {**made, **({"boxes_per_particle": _BOXES_PER_PARTICLE} if "boxes_per_side" in made else {})}
 
 
-ENGINES: dict[str, dict[str, Kind]] = {
+ENGINE_KEYS: dict[str, dict[str, Kind]] = {
     **{name: _settings(engine) for name, engine in engines.ENGINES.items()},
     "auto": {
         "accuracy": positive(
