@@ -1,15 +1,23 @@
-"""What the dynamics of all engines share: optional tallies by parts."""
+"""What the dynamics of all engines share: checkpoints, and optional tallies by parts."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar
+
 import numpy as np
 
-from gaspart.engines.features.part import Part, TallyPart
+from gaspart.engines.belonging import check_parts
+from gaspart.engines.features.part import Part, TallyPart, arrays_of
 
 
-class EngineDynamics:
-    """A scene in progress under an engine."""
+class EngineDynamics(ABC):
+    """A scene in progress under an engine.
 
+    numbers: the attributes that are plain numbers, by their names in a checkpoint, which have no underscore.
+    """
+
+    numbers: ClassVar[tuple[str, ...]]
     _parts: list[Part]
     _clock = 0.0
 
@@ -24,3 +32,35 @@ class EngineDynamics:
         if part is None:
             raise KeyError(tally)
         return part.read(self._clock)
+
+    def checkpoint(self) -> dict[str, np.ndarray]:
+        """All that a continuation to the same bits needs; copies."""
+        return {key: np.array(value) for key, value in self._kept().items()}
+
+    def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
+        """Go on from a checkpoint of the same scene and engine, to the same bits whatever the settings that
+        change none. Raises SceneError, with nothing changed, for one that lacks an array."""
+        needed = self._needed(checkpoint)
+        check_parts(checkpoint, needed)
+        for key, array in self._arrays().items():
+            if key in needed:
+                array[...] = checkpoint[key]
+        for key in self.numbers:
+            setattr(self, f"_{key}", checkpoint[key].item())
+        self._go_on(checkpoint)
+
+    def _arrays(self) -> dict[str, np.ndarray]:
+        """The arrays that a run changes and that a checkpoint has as they are, by name."""
+        return arrays_of(self._parts)
+
+    def _kept(self) -> dict[str, Any]:
+        """All of a checkpoint."""
+        return {**{key: getattr(self, f"_{key}") for key in self.numbers}, **self._arrays()}
+
+    def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """The arrays that `restore` needs of this checkpoint, of their shapes. Raises SceneError."""
+        return self.checkpoint()
+
+    @abstractmethod
+    def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
+        """Make what follows from a checkpoint besides its arrays and numbers, which are in place."""

@@ -74,11 +74,11 @@ def kicks(scene: Scene, seed: int | tuple[int, ...], unit_mass: float) -> Kicks 
     return Kicks(scene.thermostat, scene.dimension, seed, unit_mass)
 
 
-class StepKicks:
+class StepKicks(Part):
     """The thermostat of a scene in steps. A step in which several kicks are due ends with one as strong as
     all.
 
-    given (1, 2): the energy given since the tally began, see `running_sum.add`.
+    given_terms (1, 2): the energy given since the tally began, see `running_sum.add`.
     """
 
     def __init__(
@@ -87,7 +87,12 @@ class StepKicks:
         self._per_step = time_step / thermostat.interval
         self._width = _width(thermostat, dimension, 1.0)
         self._key = key_of(seed, _KICK_DRAWS)
-        self.given = np.zeros((1, 2))
+        self.given_terms = np.zeros((1, 2))
+        super().__init__({"given": self.given_terms})
+
+    def reset(self, clock: float) -> None:
+        """Begin to sum energies up from zero."""
+        self.given_terms[:] = 0.0
 
     def _due(self, steps: float) -> int:
         """How many kicks are due by the end of so many steps."""
@@ -101,7 +106,7 @@ class StepKicks:
             number += 1
         return number
 
-    def happen(self, particles: dsmc.Particles, tools: dsmc.Tools, steps: float, part: float) -> None:
+    def kick(self, particles: dsmc.Particles, tools: dsmc.Tools, steps: float, part: float) -> None:
         """Kick all particles if that is due after so many steps, the last `part` of which has just been
         made."""
         from gaspart.kernels.dsmc.kicks import kick_all
@@ -110,7 +115,7 @@ class StepKicks:
         number = due - self._due(steps - part)
         if number > 0:
             counter = self._key, due & _MOST_NUMBERS
-            kick_all(particles, tools, self._width * math.sqrt(number), counter, self.given)
+            kick_all(particles, tools, self._width * math.sqrt(number), counter, self.given_terms)
 
 
 def step_kicks(scene: Scene, time_step: float, seed: int | tuple[int, ...]) -> StepKicks | None:

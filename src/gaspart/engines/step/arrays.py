@@ -119,7 +119,8 @@ def parts_for(scene: Scene, rules: Rules | None) -> list[Part]:
     """The parts of a run of a scene with such rules; none without."""
     if rules is None:
         return []
-    law, faces, heat = rules.model.law, rules.model.faces, Part({"heat": rules.heat})
+    law, faces = rules.model.law, rules.model.faces
+    heat = Part({}, sums={"heat": rules.heat[np.newaxis]})  # all threads have one
     parts = LawPart(law) if law else None, FacesPart(scene, faces, 1.0) if faces else None, heat
     return [part for part in parts if part]
 
