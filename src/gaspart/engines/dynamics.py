@@ -1,4 +1,4 @@
-"""What the dynamics of all engines share: checkpoints, and optional tallies by parts."""
+"""A scene in progress: what every engine gives, and what all share, checkpoints and optional tallies."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from gaspart.engines.belonging import check_parts
+from gaspart.engines.checkpoint_identity import check_parts
+from gaspart.engines.event_log import EventLog
 from gaspart.engines.features.part import Part, TallyPart, arrays_of
+from gaspart.state.state import State
+from gaspart.state.tally import Tally
 
 
-class EngineDynamics(ABC):
+class Dynamics(ABC):
     """A scene in progress under an engine.
 
     numbers: the attributes that are plain numbers, by their names in a checkpoint, which have no underscore.
@@ -20,6 +23,49 @@ class EngineDynamics(ABC):
     numbers: ClassVar[tuple[str, ...]]
     _parts: list[Part]
     _clock = 0.0
+
+    @property
+    @abstractmethod
+    def time(self) -> float:
+        """The time reached."""
+
+    @property
+    @abstractmethod
+    def state(self) -> State:
+        """All particles now; a copy."""
+
+    @property
+    @abstractmethod
+    def tally(self) -> Tally:
+        """Counters and sums since the last `reset_tally`; a copy."""
+
+    @property
+    @abstractmethod
+    def dissipated(self) -> float:
+        """The energy that contacts and thermal walls have taken since time 0, less what kicks have given."""
+
+    @property
+    @abstractmethod
+    def exchanged(self) -> float:
+        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
+
+    @abstractmethod
+    def advance(
+        self,
+        until: float,
+        max_events: int | None = None,
+        log: EventLog | None = None,
+        max_work: int | None = None,
+    ) -> None:
+        """Advance to the time `until`, or by so many events or so much work, and record events in `log`.
+
+        Raises SceneError for a limit that the engine does not have, and SimulationError, with the state kept,
+        for a run that cannot go on.
+        """
+
+    @abstractmethod
+    def reset_tally(self) -> None:
+        """Begin to count from zero."""
 
     def _tally_part(self, name: str) -> TallyPart | None:
         """The part of the optional tally of this name; None if it was not asked for."""

@@ -1,4 +1,4 @@
-"""What the engines share that make steps: particles by slots, tallies by threads, whole numbers of steps."""
+"""The skeleton of engines that make steps: particles by slots, tallies by threads, whole numbers of steps."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gaspart.engines.dynamics import EngineDynamics
+from gaspart.engines.dynamics import Dynamics
 from gaspart.engines.event_log import EventLog
 from gaspart.engines.features.part import sums_of, write_parts
 from gaspart.errors import SceneError
@@ -23,7 +23,7 @@ _MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
 _PLACED = ("slots", "positions", "velocities", "images")
 
 
-class SteppedDynamics(EngineDynamics):
+class SteppedDynamics(Dynamics):
     """A scene under way by steps. A *slot* is a particle's present place in memory.
 
     time_step: the length of a step; reference: a state of the same particles, whose time is that of the
@@ -78,7 +78,7 @@ class SteppedDynamics(EngineDynamics):
 
     @abstractmethod
     def _counts(self) -> dict[str, Any]:
-        """What these have counted, by the fields of `Tally`; without time, steps and what faces gave."""
+        """The values of these sums, by the fields of `Tally`; without time, steps and the energy of faces."""
 
     @property
     @abstractmethod
@@ -113,14 +113,22 @@ class SteppedDynamics(EngineDynamics):
         return self._start + self._progress * self.time_step
 
     def advance(
-        self, until: float, most: int | None = None, log: EventLog | None = None, work: int | None = None
+        self,
+        until: float,
+        max_events: int | None = None,
+        log: EventLog | None = None,
+        max_work: int | None = None,
     ) -> None:
         """Step to the last whole step not after `until` (to within 1e-9 of a step).
 
         Raises SceneError for what only the event-driven engine can do, count or record events, and for a time
         that is not within 2^53 steps; SimulationError if the particles are too fast for a step.
         """
-        wanted = {"max_events": most, "max_work": work, "record_events": None if log is None else True}
+        wanted = {
+            "max_events": max_events,
+            "max_work": max_work,
+            "record_events": None if log is None else True,
+        }
         for key, value in wanted.items():
             if value is not None:
                 raise SceneError(key, value, 'needs the "event" engine; this one makes whole steps only')
@@ -171,7 +179,7 @@ class SteppedDynamics(EngineDynamics):
 
     @property
     def tally(self) -> Tally:
-        """What was counted since the last `reset_tally`."""
+        """Counters and sums since the last `reset_tally`."""
         counts: dict[str, Any] = {"steps": self._steps - self._since} | self._counts()
         for part in self._parts:
             counts |= part.counts(self._clock)

@@ -1,4 +1,4 @@
-"""What the DSMC engine's kernels work on: particles, grid, tools, and what a scene may not have."""
+"""Arrays of the DSMC engine's kernels: particles, grid and workspace."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.engines.belonging import check_parts
+from gaspart.engines.checkpoint_identity import check_parts
 from gaspart.engines.dsmc.arrays import TALLY, empty_particles, faces_for, kinds_of, law_for, tools_for
 from gaspart.engines.dsmc.crowding import EPOCH, HIGHEST
 from gaspart.engines.dsmc.limits import check_made, check_scene

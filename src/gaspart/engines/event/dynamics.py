@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.engines.dynamics import EngineDynamics
+from gaspart.engines.dynamics import Dynamics
 from gaspart.engines.event.clock_epochs import Epochs
 from gaspart.engines.event.model import event_model, event_parts, particles_of, wrap
 from gaspart.engines.event.search import chosen_search, make_lists, neighbour_lists
@@ -33,7 +33,7 @@ from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
 
-class EventDynamics(EngineDynamics):
+class EventDynamics(Dynamics):
     """A scene in progress. Clocks count from the start of the current epoch, so that they lose no
     precision."""
 
@@ -103,18 +103,24 @@ class EventDynamics(EngineDynamics):
         return self._start + self._clock
 
     def advance(
-        self, until: float, most: int | None = None, log: EventLog | None = None, work: int | None = None
+        self,
+        until: float,
+        max_events: int | None = None,
+        log: EventLog | None = None,
+        max_work: int | None = None,
     ) -> None:
-        """Process events up to time `until`, at most `most` of them (collisions and wall hits).
+        """Process events up to time `until`, at most `max_events` of them (collisions and wall hits).
 
-        work: the number of events, crossings and predictions of a new epoch after which to return as well, to
-        within a factor of 2, at the time reached.
+        max_work: the number of events, crossings and predictions of a new epoch after which to return as
+        well, to within a factor of 2, at the time reached.
 
         Raises SimulationError, with the state kept, if particles collapse: they would meet for ever in no
         time; and if nothing happens in a thousand flights through the container, where only events end the
         run.
         """
-        left, work = (np.iinfo(np.int64).max if number is None else number for number in (most, work))
+        left, work = (
+            np.iinfo(np.int64).max if number is None else number for number in (max_events, max_work)
+        )
         many, begun = MANY, self._clock
         while left > 0 and work > 0:
             if self._at_rest:
@@ -139,18 +145,14 @@ class EventDynamics(EngineDynamics):
                 work -= 1 + len(self._flights)  # what follows predicts all anew
                 if scheduled:
                     self._clock = end
-                    if part.happen(self._particles, self._model, self._tally.arrays, self._start):
+                    if part.apply_event(self._particles, self._model, self._tally.arrays, self._start):
                         begun -= self._renew_epoch()
                         self._predict()
                     continue
                 if not ends_epoch:
                     self._clock = stop
                     return
-                begun -= self._epoch
-                self._next_epoch()
-                if until == np.inf:
-                    velocities = self._flights["velocity"]
-                    check_events(self.time, self._quiet, self._epochs.flights(velocities, self._epoch))
+                begun -= self._next_epoch(endless=until == np.inf)
             else:
                 self._clock = max(self._clock, last)
             if reason == loop.NO_ROOM:
@@ -177,8 +179,10 @@ class EventDynamics(EngineDynamics):
         scene = self._particles, self._queue, self._boxes, self._model, self._tally.arrays
         return loop.run(*scene, monitors, limits, () if self._queue is None else None)
 
-    def _next_epoch(self) -> None:
-        """Start the clocks again from zero, and predict all events anew."""
+    def _next_epoch(self, endless: bool) -> float:
+        """Start the clocks again from zero, and predict all events anew. endless: whether only events end the
+        run. Returns the length of the epoch that has ended."""
+        length = self._epoch
         check_clocks(self._start, self._epoch)
         for part in self._parts:
             part.close_epoch(self._epoch)
@@ -192,6 +196,10 @@ class EventDynamics(EngineDynamics):
         speed = self._epochs.speed(self._flights["velocity"])
         self._begin_epoch(self._epochs.quiet(speed, self._base, self._quiet))
         self._predict()
+        if endless:
+            flights = self._epochs.flights(self._flights["velocity"], self._epoch)
+            check_events(self.time, self._quiet, flights)
+        return length
 
     def _base_from(self, present: float) -> float:
         """The length of an epoch without the factor of `Epochs.quiet`; `present`: that of the last one."""
@@ -224,7 +232,7 @@ class EventDynamics(EngineDynamics):
 
     @property
     def tally(self) -> Tally:
-        """What was counted since the last `reset_tally`."""
+        """Counters and sums since the last `reset_tally`."""
         return self._tally.read(self.time, self._clock)
 
     @property

@@ -56,7 +56,7 @@ class Kicks(Part):
         """Begin to sum energies up from zero."""
         self._given[:] = 0.0
 
-    def happen(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
+    def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
         """Kick all particles. Returns that their flights have changed."""
         from gaspart.kernels.event.kicks import kick_all
 
@@ -68,7 +68,7 @@ class Kicks(Part):
 
 
 def kicks(scene: Scene, seed: int | tuple[int, ...], unit_mass: float) -> Kicks | None:
-    """Those of a scene's thermostat, if it has one and particles that can move."""
+    """The kicks of a scene's thermostat, if it has one and particles that can move."""
     if scene.thermostat is None or not any(not kind.fixed for kind in scene.kinds):
         return None
     return Kicks(scene.thermostat, scene.dimension, seed, unit_mass)
@@ -119,7 +119,7 @@ class StepKicks(Part):
 
 
 def step_kicks(scene: Scene, time_step: float, seed: int | tuple[int, ...]) -> StepKicks | None:
-    """Those of a scene's thermostat in steps, if it has one."""
+    """The kicks of a scene's thermostat in steps, if it has one."""
     if scene.thermostat is None or not scene.count:
         return None
     return StepKicks(scene.thermostat, scene.dimension, time_step, seed)

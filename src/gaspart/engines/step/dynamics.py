@@ -88,7 +88,7 @@ class StepDynamics(SteppedDynamics):
 
     @property
     def _loss(self) -> np.ndarray:
-        """Of contacts of particles, and of those with walls by thread."""
+        """Of contacts between particles, and with walls by thread."""
         tally = self._tally
         at_walls = running_sum.whole_parts(tally.wall_loss, self._largest[1])
         return np.vstack([tally.sums[layout.LOSS], at_walls])
@@ -143,7 +143,7 @@ class StepDynamics(SteppedDynamics):
             self._particles.bounds[...] = checkpoint["reach"]
 
     def _list_parts(self) -> dict[str, np.ndarray]:
-        """What the neighbour list is made of: `origin` (d, N), where particles were, by slot; settings."""
+        """The origin of the neighbour list: `origin` (d, N), where particles were, by slot; settings."""
         if self._search.cells is None:
             return {}
         settings = {key: np.array(getattr(self._search.cells, key)) for key in ("skin", "per_side")}

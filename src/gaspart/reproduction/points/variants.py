@@ -110,7 +110,7 @@ def task(point: Point) -> str:
         scene = full.to_dict()
     engine = parameters.get("engine") or parameters.get("engines", [None])[0]
     if engine:
-        engine = engine_to_dict(engine_from_dict(engine).for_few(full))
+        engine = engine_to_dict(engine_from_dict(engine).for_small_scene(full))
     asked = {"stress": "stress", "events": "pairs"}  # of the task, by a key of the point
     extra = {name: True for name, key in asked.items() if point.settings.get(key)}
     return json.dumps({"scene": scene, "engine": engine, **extra})
