@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.engines.checkpoint_identity import check_parts
-from gaspart.engines.dsmc.arrays import TALLY, empty_particles, faces_for, kinds_of, law_for, tools_for
+from gaspart.engines.dsmc.arrays import TALLY, empty_particles, faces_for, kinds_of, law_for, workspace_for
 from gaspart.engines.dsmc.crowding import EPOCH, HIGHEST
 from gaspart.engines.dsmc.limits import check_made, check_scene
 from gaspart.engines.dsmc.pace import FINEST
@@ -56,8 +56,8 @@ class DsmcDynamics(SteppedDynamics):
         self._resolution = Resolution(engine, scene, state, len(kinds_of(state)[0]))
         super().__init__(scene, state, self._resolution.step, engine.threads)
         self._particles = empty_particles(state)
-        self._tools = tools_for(engine, scene, state, self.time_step, seed)
-        self._space = Space(scene.container.lengths, scene.container.periodic, self._tools.margin)
+        self._workspace = workspace_for(engine, scene, state, self.time_step, seed)
+        self._space = Space(scene.container.lengths, scene.container.periodic, self._workspace.margin)
         law = contact_law(scene, state)
         self._faces, self._law = faces_for(scene, engine.threads), law_for(law)
         self._kicks = step_kicks(scene, self.time_step, seed)
@@ -135,57 +135,57 @@ class DsmcDynamics(SteppedDynamics):
             at += part * self._run(level, number)
             self._steps, self._place_in_step = divmod(at, _WHOLE)
             if self._kicks is not None:
-                self._kicks.kick(self._particles, self._tools, at / _WHOLE, 0.5**level)
-            check_made(self._tools.counts, self.time)
+                self._kicks.kick(self._particles, self._workspace, at / _WHOLE, 0.5**level)
+            check_made(self._workspace.counts, self.time)
 
     def _run(self, level: int, number: int) -> int:
         """Let the kernel make so many parts of a step of a level. Returns how many it has made."""
         now = self._resolution
         pace = now.pace and now.pace._replace(level=level)
-        tools = self._tools._replace(dt=math.ldexp(self.time_step, -level))
-        setting = layout.Setting(self._space, tools, 0)
+        workspace = self._workspace._replace(dt=math.ldexp(self.time_step, -level))
+        context = layout.ThreadContext(self._space, workspace, 0)
         stress = self._optional.get("stress")
         options = self._scene.gravity, self._faces, self._law, now.dense, stress, pace
-        return loop.run_steps(self._particles, now.grid, setting, number, self._threads, options)
+        return loop.run_steps(self._particles, now.grid, context, number, self._threads, options)
 
     def reset_tally(self) -> None:
         """Begin to count anew."""
         super().reset_tally()
-        self._clock_since = int(self._tools.clock[0])
+        self._clock_since = int(self._workspace.clock[0])
 
     @property
     def _heat(self) -> np.ndarray:
-        return exact_parts(self._tools.wall_heat)
+        return exact_parts(self._workspace.wall_heat)
 
     @property
     def _loss(self) -> np.ndarray:
-        return exact_parts(self._tools.loss)[np.newaxis]
+        return exact_parts(self._workspace.loss)[np.newaxis]
 
     @property
     def _given(self) -> np.ndarray:
         return super()._given if self._kicks is None else self._kicks.given_terms
 
     def _sums(self) -> dict[str, np.ndarray]:
-        return {key: getattr(self._tools, key) for key in TALLY}
+        return {key: getattr(self._workspace, key) for key in TALLY}
 
     def _joined(self, sums: np.ndarray) -> np.ndarray:
         return joined(sums) if sums.shape[-1] == WIDTH else super()._joined(sums)
 
     def _counts(self) -> dict[str, Any]:
         """With the steps that were made in parts."""
-        tools, counts = self._tools, self._tools.counts.sum(axis=0)
+        workspace, counts = self._workspace, self._workspace.counts.sum(axis=0)
         return {
             "collisions": int(counts[layout.COLLISIONS]),
-            "wall_hits": tools.wall_hits.sum(axis=0),
-            "wall_impulse": exact_parts(tools.wall_impulse)[..., 0],
-            "virial_sum": float(exact_parts(tools.virial)[0]),
+            "wall_hits": workspace.wall_hits.sum(axis=0),
+            "wall_impulse": exact_parts(workspace.wall_impulse)[..., 0],
+            "virial_sum": float(exact_parts(workspace.virial)[0]),
             "pair_tests": int(counts[layout.TRIALS]),
             "box_visits": 0,
-            "steps": int(tools.clock[0] - self._clock_since),
+            "steps": int(workspace.clock[0] - self._clock_since),
         }
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        return {**super()._arrays(), "clock": self._tools.clock}
+        return {**super()._arrays(), "clock": self._workspace.clock}
 
     def _kept(self) -> dict[str, Any]:
         """The level of density, too, and what a dense gas has of each of its cells."""

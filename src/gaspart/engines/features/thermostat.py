@@ -106,7 +106,7 @@ class StepKicks(Part):
             number += 1
         return number
 
-    def kick(self, particles: dsmc.Particles, tools: dsmc.Tools, steps: float, part: float) -> None:
+    def kick(self, particles: dsmc.Particles, workspace: dsmc.Workspace, steps: float, part: float) -> None:
         """Kick all particles if that is due after so many steps, the last `part` of which has just been
         made."""
         from gaspart.kernels.dsmc.kicks import kick_all
@@ -115,7 +115,7 @@ class StepKicks(Part):
         number = due - self._due(steps - part)
         if number > 0:
             counter = self._key, due & _MOST_NUMBERS
-            kick_all(particles, tools, self._width * math.sqrt(number), counter, self.given_terms)
+            kick_all(particles, workspace, self._width * math.sqrt(number), counter, self.given_terms)
 
 
 def step_kicks(scene: Scene, time_step: float, seed: int | tuple[int, ...]) -> StepKicks | None:
