@@ -12,6 +12,7 @@ import numpy as np
 import gaspart
 from gaspart.engines import Engine
 from gaspart.engines.checkpoint_identity import check_identity, checkpoint_identity
+from gaspart.engines.engine import constructors
 from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene
@@ -75,9 +76,7 @@ class Simulation:
         if not isinstance(scene, Scene):
             raise SceneError("scene", scene, "must be a Scene, such as Scene.from_file(path)")
         if not isinstance(engine, Engine):
-            raise SceneError(
-                "engine", engine, "must be an engine: EventDriven(), TimeStepped(time_step) or DSMC()"
-            )
+            raise SceneError("engine", engine, f"must be an engine: {constructors()}")
         self.scene, self.engine, self.seed = scene, engine, seed
         self._asked, self._given = engine, initial
         self._tallies = (*tallies, *([StressTally()] if stress else []))

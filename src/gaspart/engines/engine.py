@@ -143,6 +143,12 @@ def required(engine: type[Engine]) -> list[str]:
     return [item.name for item in fields(engine) if item.default is MISSING]
 
 
+def constructors() -> str:
+    """The calls that make an engine of each kind, with the settings that have no default, for messages."""
+    *others, last = (f"{engine.__name__}({', '.join(required(engine))})" for engine in ENGINES.values())
+    return f"{', '.join(others)} or {last}"
+
+
 def engine_from_dict(mapping: dict) -> Engine:
     """The engine described by {"name": name, setting: value, ...}. Raises SceneError."""
     if not isinstance(mapping, dict):

@@ -21,6 +21,7 @@ from gaspart.engines.stepped import SteppedDynamics
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc import loop
 from gaspart.kernels.dsmc import model as layout
+from gaspart.kernels.dsmc.kicks import kick_all
 from gaspart.kernels.model import Space
 from gaspart.kernels.physics.exact_sum import WIDTH, exact_parts, joined
 from gaspart.scene.scene import Scene
@@ -134,8 +135,8 @@ class DsmcDynamics(SteppedDynamics):
                 number = min(number, self._kicks.until(at / _WHOLE, 0.5**level))
             at += part * self._run(level, number)
             self._steps, self._place_in_step = divmod(at, _WHOLE)
-            if self._kicks is not None:
-                self._kicks.kick(self._particles, self._workspace, at / _WHOLE, 0.5**level)
+            if self._kicks is not None and (kick := self._kicks.due(at / _WHOLE, 0.5**level)):
+                kick_all(self._particles, self._workspace, *kick, self._kicks.given_terms)
             check_made(self._workspace.counts, self.time)
 
     def _run(self, level: int, number: int) -> int:

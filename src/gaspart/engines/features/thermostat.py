@@ -14,7 +14,6 @@ from gaspart.scene.thermostat import Thermostat
 from gaspart.state.random import key_of
 
 if TYPE_CHECKING:
-    from gaspart.kernels.dsmc import model as dsmc
     from gaspart.kernels.model import Model, Particles, Tally
 
 _MOST_NUMBERS = 2**63 - 1  # of kicks, before they begin anew
@@ -94,28 +93,26 @@ class StepKicks(Part):
         """Begin to sum energies up from zero."""
         self.given_terms[:] = 0.0
 
-    def _due(self, steps: float) -> int:
+    def _kicks_by(self, steps: float) -> int:
         """How many kicks are due by the end of so many steps."""
         return math.floor(steps * self._per_step * (1.0 + 4e-16) + 1e-9)
 
     def until(self, steps: float, part: float) -> int:
         """The number of the next parts of a step, of such a length, of which the last ends with a kick."""
-        due = self._due(steps)
+        due = self._kicks_by(steps)
         number = max(1, math.floor(((due + 1) / self._per_step - steps) / part) - 1)
-        while self._due(steps + number * part) <= due:
+        while self._kicks_by(steps + number * part) <= due:
             number += 1
         return number
 
-    def kick(self, particles: dsmc.Particles, workspace: dsmc.Workspace, steps: float, part: float) -> None:
-        """Kick all particles if that is due after so many steps, the last `part` of which has just been
-        made."""
-        from gaspart.kernels.dsmc.kicks import kick_all
-
-        due = self._due(steps)
-        number = due - self._due(steps - part)
-        if number > 0:
-            counter = self._key, due & _MOST_NUMBERS
-            kick_all(particles, workspace, self._width * math.sqrt(number), counter, self.given_terms)
+    def due(self, steps: float, part: float) -> tuple[float, tuple[np.ndarray, int]] | None:
+        """The width of the kick that all particles get after so many steps, the last `part` of which has just
+        been made, and the counter of its random numbers; None if none is due."""
+        due = self._kicks_by(steps)
+        number = due - self._kicks_by(steps - part)
+        if number <= 0:
+            return None
+        return self._width * math.sqrt(number), (self._key, due & _MOST_NUMBERS)
 
 
 def step_kicks(scene: Scene, time_step: float, seed: int | tuple[int, ...]) -> StepKicks | None:
