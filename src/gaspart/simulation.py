@@ -11,7 +11,8 @@ import numpy as np
 
 import gaspart
 from gaspart.engines import Engine
-from gaspart.engines.belonging import belonging, check_belonging
+from gaspart.engines.checkpoint_identity import check_identity, checkpoint_identity
+from gaspart.engines.engine import constructors
 from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys.values import count_of, number
@@ -75,9 +76,7 @@ class Simulation:
         if not isinstance(scene, Scene):
             raise SceneError("scene", scene, "must be a Scene, such as Scene.from_file(path)")
         if not isinstance(engine, Engine):
-            raise SceneError(
-                "engine", engine, "must be an engine: EventDriven(), TimeStepped(time_step) or DSMC()"
-            )
+            raise SceneError("engine", engine, f"must be an engine: {constructors()}")
         self.scene, self.engine, self.seed = scene, engine, seed
         self._asked, self._given = engine, initial
         self._tallies = (*tallies, *([StressTally()] if stress else []))
@@ -102,7 +101,7 @@ class Simulation:
             self._initial = initial_state(self.scene, self.seed)
         else:
             self._initial = state_at_time_zero(self.scene, self._given)
-            if self.engine.keeps_apart:
+            if self.engine.forbids_overlap:
                 check_apart(self.scene, self._initial)
         self._energy = self._initial.energy
         self._moving = self._initial.kinetic_energy + self._initial.vibrational_energy
@@ -331,10 +330,12 @@ class Simulation:
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Arrays from which `restore` continues to the same bits, and what they belong to: scene, seed,
         engine, version and the initial state, if it was given."""
-        return {**self._dynamics.checkpoint(), **self._belonging()}
+        return {**self._dynamics.checkpoint(), **self._identity()}
 
-    def _belonging(self) -> dict[str, np.ndarray]:
-        return belonging(self.scene, self.engine, self.seed, None if self._given is None else self._initial)
+    def _identity(self) -> dict[str, np.ndarray]:
+        return checkpoint_identity(
+            self.scene, self.engine, self.seed, None if self._given is None else self._initial
+        )
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
         """Continue from a checkpoint of a simulation of the same scene and seed, with the same engine, to the
@@ -342,6 +343,6 @@ class Simulation:
 
         Raises SceneError, with nothing changed, for any other checkpoint, and for one with missing arrays.
         """
-        check_belonging(checkpoint, self._belonging())
+        check_identity(checkpoint, self._identity())
         self._advanced = True
         self._dynamics.restore(checkpoint)

@@ -8,12 +8,14 @@ import pytest
 
 import gaspart as gp
 from gaspart.engines.engine import ENGINES, engine_from_dict, required
+from gaspart.state.optional_tallies import ASKED
 
 DISCS = gp.Scene(gp.Container((12.0, 12.0), "periodic"), [gp.Species(20, 0.5, temperature=1.0)])
 MIXED = gp.Scene(
     gp.Container((8.0, 9.0, 7.0), ("wall", "periodic", "wall")),
     [gp.Species(40, 0.5, temperature=1.0), gp.Species(10, 0.3, mass=3.0, temperature=1.0)],
 )
+PERIODIC = replace(MIXED, container=gp.Container((8.0, 9.0, 7.0), "periodic"))
 PULLED = gp.Scene(
     gp.Container((8.0, 9.0)),
     [gp.Species(25, 0.4, temperature=1.0)],
@@ -113,28 +115,24 @@ def one_of_each():
     yield from (gp.EventDriven(search="lists"), STEPS[1], gp.DSMC(model="enskog"))
 
 
+SEARCH = {"search", "boxes_per_side", "origin", "skin", "per_side", "threads"}
+"""What a checkpoint of another search does not have, or of another value."""
+
+
 @pytest.mark.filterwarnings("ignore:gaspart")
-@pytest.mark.parametrize("engine", list(one_of_each()))
-def test_a_checkpoint_that_lacks_anything_is_refused(engine):
-    begun = gp.Simulation(MIXED, engine, 1)
+@pytest.mark.parametrize(
+    ("engine", "tally"),
+    [(engine, tally) for engine in one_of_each() for tally in (None, *sorted(engine.tallies & set(ASKED)))],
+)
+def test_a_checkpoint_that_lacks_anything_is_refused(engine, tally):
+    """Whatever the engine, with each optional tally that it makes, and with nothing changed."""
+    scene, asked = (MIXED, []) if tally is None else (PERIODIC, [ASKED[tally]()])
+    begun, sim = (gp.Simulation(scene, engine, 1, tallies=asked) for _ in range(2))
     begun.advance(until=1.0)
-    sim = gp.Simulation(MIXED, engine, 1)
     before, whole = bits(sim), begun.checkpoint()
-    search = {
-        "search",
-        "boxes_per_side",
-        "origin",
-        "skin",
-        "per_side",
-        "threads",
-        "momentum",
-        "energy",
-        "wall_loss",
-    }
-    for key in whole:
-        if key not in search - {"wall_loss"}:
-            with pytest.raises(gp.SceneError, match="checkpoint"):
-                sim.restore({name: value for name, value in whole.items() if name != key})
+    for key in {*whole} - SEARCH:
+        with pytest.raises(gp.SceneError, match="checkpoint"):
+            sim.restore({name: value for name, value in whole.items() if name != key})
     for wrong in (None, {}, {**whole, "images": whole["images"][1:]}, {**whole, "lost": np.array("x")}):
         with pytest.raises(gp.SceneError, match="checkpoint"):
             sim.restore(wrong)

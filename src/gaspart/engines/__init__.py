@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from gaspart.engines.dynamics import Dynamics
 from gaspart.engines.engine import (
     ENGINES,
-    Dynamics,
     Engine,
     engine_from_dict,
     engine_to_dict,

@@ -1,4 +1,4 @@
-"""What an engine is: settings that a scene can be started with, and the dynamics that this gives.
+"""Engines: settings that a scene can be started with, and the dynamics that this gives.
 
 An engine is a frozen dataclass derived from `Engine`, each field of which declares its kind and its meaning
 (`gaspart.keys`): the options of the command line, the keys of a config and the reference page follow from
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import MISSING, asdict, dataclass, fields
-from typing import TYPE_CHECKING, ClassVar, Protocol, TypeVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.keys import from_mapping, validate
@@ -18,60 +18,12 @@ from gaspart.keys.values import one_of
 from gaspart.scene.features import FEATURES, features
 
 if TYPE_CHECKING:
-    import numpy as np
-
-    from gaspart.engines.event_log import EventLog
+    from gaspart.engines.dynamics import Dynamics
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
-    from gaspart.state.tally import Tally
 
 E = TypeVar("E", bound="type[Engine]")
-
-
-class Dynamics(Protocol):
-    """A scene in progress."""
-
-    @property
-    def time(self) -> float:
-        """The time reached."""
-
-    @property
-    def state(self) -> State:
-        """All particles now; a copy."""
-
-    @property
-    def tally(self) -> Tally:
-        """What was counted since the last `reset_tally`; a copy."""
-
-    @property
-    def dissipated(self) -> float:
-        """The energy that contacts and thermal walls have taken since time 0, less what kicks have given."""
-
-    @property
-    def exchanged(self) -> float:
-        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
-
-    def advance(
-        self, until: float, most: int | None = None, log: EventLog | None = None, work: int | None = None
-    ) -> None:
-        """Advance to the time `until`, or by so many events or so much work, and record events in `log`.
-
-        Raises SceneError for a limit that the engine does not have, and SimulationError, with the state kept,
-        for a run that cannot go on.
-        """
-
-    def sums_of(self, tally: str) -> np.ndarray:
-        """See `Simulation.sums_of`."""
-
-    def reset_tally(self) -> None:
-        """Begin to count from zero."""
-
-    def checkpoint(self) -> dict[str, np.ndarray]:
-        """Arrays from which `restore` continues to the same bits."""
-
-    def restore(self, parts: dict[str, np.ndarray]) -> None:
-        """Continue from a checkpoint of the same scene and engine."""
 
 
 @dataclass(frozen=True)
@@ -80,9 +32,9 @@ class Engine:
 
     name: by which files, configs and the command line know it; title: in messages and captions;
     records_events: whether its events can be recorded and counted; counters: fields of `Tally` that only
-    such an engine fills; same_bits: settings that change no bit of its results; keeps_apart: whether
-    particles never overlap; tallies: names of the `state.optional_tallies` that it can make; models: names of
-    the `scene.features` that it models, and excludes: pairs of them that it does not model together;
+    such an engine fills; neutral_settings: settings that change no bit of its results; forbids_overlap:
+    whether particles never overlap; tallies: names of the `state.optional_tallies` that it can make; models:
+    names of the `scene.features` that it models, and excludes: pairs of them that it does not model together;
     first_segment: the work, in events or steps, that a run begins with between two looks at the clock.
     """
 
@@ -92,8 +44,8 @@ class Engine:
     counters: ClassVar[tuple[str, ...]] = ()
     models: ClassVar[frozenset[str]] = frozenset()
     excludes: ClassVar[tuple[tuple[str, str], ...]] = ()
-    same_bits: ClassVar[tuple[str, ...]] = ()
-    keeps_apart: ClassVar[bool] = True
+    neutral_settings: ClassVar[tuple[str, ...]] = ()
+    forbids_overlap: ClassVar[bool] = True
     tallies: ClassVar[frozenset[str]] = frozenset()
     first_segment: ClassVar[int] = 1
 
@@ -102,7 +54,7 @@ class Engine:
 
     @property
     def equation(self) -> str:
-        """What its particles obey: "exact" if they meet where they touch, or "boltzmann" or "enskog", the
+        """The law of its particles: "exact" if they meet where they touch, or "boltzmann" or "enskog", the
         kinetic equation by which partners are drawn. A run is compared with the theory of this equation."""
         return "exact"
 
@@ -112,8 +64,8 @@ class Engine:
         return None
 
     def resolved(self, scene: Scene, interval: float | None = None) -> Engine:
-        """The same with what was left to the scene, so that `interval`, if any, is a multiple of its quantum.
-        Raises SceneError."""
+        """These settings with those that were left to the scene, so that `interval`, if any, is a multiple of
+        its quantum. Raises SceneError."""
         return self
 
     def predictions(self, scene: Scene) -> dict[str, float]:
@@ -149,7 +101,7 @@ class Engine:
         """The name of its compiled kernels for a scene, beside the scene's features."""
         raise NotImplementedError
 
-    def for_few(self, scene: Scene) -> Engine:
+    def for_small_scene(self, scene: Scene) -> Engine:
         """Settings with which the scene with only a few particles needs the same kernels."""
         return self
 
@@ -190,6 +142,12 @@ def register(engine: E) -> E:
 def required(engine: type[Engine]) -> list[str]:
     """The settings that have no default."""
     return [item.name for item in fields(engine) if item.default is MISSING]
+
+
+def constructors() -> str:
+    """The calls that make an engine of each kind, with the settings that have no default, for messages."""
+    *others, last = (f"{engine.__name__}({', '.join(required(engine))})" for engine in ENGINES.values())
+    return f"{', '.join(others)} or {last}"
 
 
 def engine_from_dict(mapping: dict) -> Engine:

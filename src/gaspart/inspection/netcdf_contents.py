@@ -241,5 +241,5 @@ def _add_scene(contents: Contents, path: Path) -> None:
     contents.masses = per_particle(scene, "mass")[:count].astype(float)
     contents.plain = contents.isolated = bool(elastic and quiet and free and alike)
     contents.part = recipe.stored_count < scene.count
-    contents.sampled = not recipe.engine.keeps_apart
+    contents.sampled = not recipe.engine.forbids_overlap
     contents.engine, contents.scene = recipe.engine, recipe.scene

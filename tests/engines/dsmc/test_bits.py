@@ -59,7 +59,7 @@ def test_random_scenes_keep_what_is_conserved(scene, model, seed):
     sim.advance(duration=5.0)
     sim.check_invariants()
     after, tally = sim.state, sim.tally
-    assert sim._dynamics._tools.counts[0, 2] == 0  # chances above 1
+    assert sim._dynamics._workspace.counts[0, 2] == 0  # chances above 1
     periodic = np.array(scene.container.periodic)
     low, high = scene.reach(scene.smallest_radius)
     assert (after.positions >= np.array(low) - 1e-12).all()

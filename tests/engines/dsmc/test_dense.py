@@ -32,7 +32,7 @@ def test_pressure_and_collisions_of_a_uniform_gas(packing_fraction):
     excess = tally.virial_sum / (3.0 * n * temperature * tally.time) * n / (n - 1)
     assert excess == pytest.approx(4.0 * eta * chi, rel=3.0 / math.sqrt(tally.collisions) + 1e-3)
     assert state.kinetic_energy == pytest.approx(sim.initial_state.kinetic_energy, rel=1e-12)
-    assert sim._dynamics._tools.counts[0, 2] == 0
+    assert sim._dynamics._workspace.counts[0, 2] == 0
 
 
 def test_contact_values_are_those_of_one_species_where_particles_are_alike():

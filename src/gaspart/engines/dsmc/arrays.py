@@ -1,4 +1,4 @@
-"""What the DSMC engine's kernels work on: particles, grid, tools, and what a scene may not have."""
+"""Arrays of the DSMC engine's kernels: particles, grid and workspace."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from gaspart.engines.dsmc.rates import accessible
 from gaspart.engines.features.faces import WALL_DRAWS, kinds_and_levels, sliding_velocities
 from gaspart.errors import SceneError
-from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Tools
+from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Workspace
 from gaspart.kernels.model import ContactLaw, flight_dtype
 from gaspart.kernels.physics.exact_sum import WIDTH
 from gaspart.scene.scene import Scene
@@ -61,12 +61,14 @@ def kinds_of(state: State) -> tuple[np.ndarray, np.ndarray]:
     return kinds, which.ravel().astype(np.uint16)
 
 
-def tools_for(engine: DSMC, scene: Scene, state: State, step: float, seed: int | tuple[int, ...]) -> Tools:
-    """What a step works with."""
+def workspace_for(
+    engine: DSMC, scene: Scene, state: State, step: float, seed: int | tuple[int, ...]
+) -> Workspace:
+    """The workspace of a step, with the tally at zero."""
     kinds, which = kinds_of(state)
     threads, faces, d = engine.threads, 2 * scene.dimension, scene.dimension
     radius, mass, inertia = (np.ascontiguousarray(column) for column in kinds.T)
-    return Tools(
+    return Workspace(
         margin=float(not scene.centres_to_walls),
         dt=step,
         clock=np.zeros(1, np.int64),
@@ -92,7 +94,7 @@ def tools_for(engine: DSMC, scene: Scene, state: State, step: float, seed: int |
 
 
 TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")
-"""The arrays of `Tools` that count; by thread."""
+"""The arrays of `Workspace` that count; by thread."""
 
 
 def faces_for(scene: Scene, threads: int) -> Faces | None:

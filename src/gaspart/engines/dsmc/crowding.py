@@ -31,7 +31,8 @@ def may_crowd(scene: Scene) -> bool:
 
 
 def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> float:
-    """That of particles at these positions (N, d), by the pairs in each of some cells; 1 in a uniform gas."""
+    """The crowding of particles at these positions (N, d), by the pairs in each of some cells; 1 in
+    a uniform gas."""
     lower, upper = accessible(scene)
     places = (positions - lower) / (upper - lower) * cells
     at = np.clip(places.astype(np.int64), 0, np.array(cells) - 1)

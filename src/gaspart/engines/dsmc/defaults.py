@@ -129,7 +129,7 @@ def _moved(step: float, dimension: int, found: Rates) -> float:
 def coarse(
     engine: DSMC, cells: tuple[int, ...], step: float, scene: Scene, found: Rates, crowding: float = 1.0
 ) -> dict[str, str]:
-    """What to warn of, by setting: cells and steps that were given and are coarser than recommended, with
+    """Warnings, by setting: cells and steps that were given and are coarser than recommended, with
     those that are not. found: the rates at present; crowding: see `cells_for`."""
     texts = {}
     fit = recommended_cells(engine.model, scene, found, crowding * scene.count)

@@ -1,4 +1,4 @@
-"""What the kernels of the Enskog model work on, beside those of the dilute gas."""
+"""Arrays of the Enskog collision scheme."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:
 
 
 def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
-    """Those of a state, for so many kinds of particles. Raises SceneError for a scene that the model is not
-    made for."""
+    """The arrays of a state, for so many kinds of particles. Raises SceneError for a scene that the model
+    is not made for."""
     d, cells, sigma = scene.dimension, len(grid.starts) - 1, 2.0 * scene.largest_radius
     if kinds > MOST_KINDS:
         rule = (

@@ -1,4 +1,4 @@
-"""What the DSMC engine can model."""
+"""The scenes that the DSMC engine can model."""
 
 from __future__ import annotations
 

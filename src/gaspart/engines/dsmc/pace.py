@@ -1,4 +1,4 @@
-"""What lengths of a step fit a scene, whatever speeds its particles come to.
+"""The lengths of a step that fit a scene, whatever speeds its particles come to.
 
 A step is short enough if a particle of the mean speed flies at most 0.2 mean free paths and half of the
 container in it, and no faster by what gravity and kicks give it in the step. Where speeds can rise, an own
@@ -43,7 +43,7 @@ _FIRST = 20
 
 @dataclass(frozen=True)
 class Reach:
-    """What bounds the way of a particle in a step. path: the mean free path; across: the shortest side;
+    """Bounds of the way of a particle in a step. path: the mean free path; across: the shortest side;
     fall: that between walls along which particles fall; walled: the shortest side between walls; pull: the
     acceleration towards walls; push: the mean width of kicks over the square root of time; interval: between
     kicks."""
@@ -88,7 +88,7 @@ class Reach:
 
 
 def reach_of(scene: Scene, path: float) -> Reach:
-    """That of a scene, for a mean free path."""
+    """The bounds of a scene, for a mean free path."""
     lengths, periodic = scene.container.lengths, scene.container.periodic
     walled = [length for length, around in zip(lengths, periodic, strict=True) if not around]
     pull = [g for g, around in zip(scene.gravity or (), periodic, strict=False) if not around]
@@ -129,7 +129,7 @@ def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.nda
 
 
 def pace_for(scene: Scene, reach: Reach, step: float, divided: bool) -> Pace:
-    """What the kernels take of it."""
+    """The kernels' form of it."""
     from gaspart.kernels.dsmc import pace
 
     pulls = scene.gravity or (0.0,) * scene.dimension

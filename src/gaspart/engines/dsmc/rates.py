@@ -29,7 +29,7 @@ class Rates:
     path: float
 
     def crowded(self, times: float) -> Rates:
-        """Those where the density is so many times as high."""
+        """The rates where the density is so many times as high."""
         return Rates(times * self.frequency, self.speed, self.path / times)
 
 
@@ -54,7 +54,8 @@ def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: i
 
 
 def rates(scene: Scene, dense: bool) -> Rates:
-    """Those of a scene at its start, or as hot as its faces; dense: with contact values of a dense gas."""
+    """The rates of a scene at its start, or as hot as its faces; dense: with contact values of a
+    dense gas."""
     d, kinds = scene.dimension, _moving(scene)
     heat = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
     if not kinds:

@@ -62,8 +62,8 @@ class DSMC(Engine):
 
     name: ClassVar[str] = "dsmc"
     title: ClassVar[str] = "DSMC"
-    same_bits: ClassVar[tuple[str, ...]] = ("threads",)
-    keeps_apart: ClassVar[bool] = False
+    neutral_settings: ClassVar[tuple[str, ...]] = ("threads",)
+    forbids_overlap: ClassVar[bool] = False
     tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear"))
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
@@ -123,14 +123,15 @@ class DSMC(Engine):
         return {"viscosity_error": predicted_error(cells, step, scene, found)}
 
     def cells_along(self, scene: Scene) -> int:
-        """Those of the axis with the most."""
+        """The cells along the axis with the most."""
         from gaspart.engines.dsmc.defaults import cells_for
         from gaspart.engines.dsmc.rates import rates
 
         return max(cells_for(self, scene, rates(scene, self.model == "enskog")))
 
     def bias(self, scene: Scene, kind: str) -> float:
-        """Of its cells and steps, by the literature, and of the collisions that the Enskog model loses."""
+        """The bias of its cells and steps, by the literature, and of the collisions that the Enskog model
+        loses."""
         from gaspart.engines.dsmc import defaults
         from gaspart.engines.dsmc.rates import rates
 
@@ -148,7 +149,7 @@ class DSMC(Engine):
         paced = "-paced" if may_speed_up(scene) else ""
         return self.model + paced + ("-threads" if self.threads > 1 else "")
 
-    def for_few(self, scene: Scene) -> DSMC:
+    def for_small_scene(self, scene: Scene) -> DSMC:
         """With one cell, and the step for the full scene."""
         return self.resolved(scene)._with(cells_per_side=1, adapts=(self.adapts_steps, False))
 

@@ -50,7 +50,7 @@ class WallShearPart(Part):
 
 
 PARTS = {"stress": StressPart}
-"""What makes the part of an optional tally that was asked for, by its name."""
+"""Classes of the parts of optional tallies, by name."""
 
 
 def tally_parts(asked: Iterable[OptionalTally], scene: Scene, state: State, threads: int) -> list[TallyPart]:

@@ -6,18 +6,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
-from gaspart.engines.belonging import check_parts
-from gaspart.engines.dynamics import EngineDynamics
+from gaspart.engines.dynamics import Dynamics
 from gaspart.engines.event.clock_epochs import Epochs
 from gaspart.engines.event.model import event_model, event_parts, particles_of, wrap
 from gaspart.engines.event.search import chosen_search, make_lists, neighbour_lists
 from gaspart.engines.event.stalling import MANY, CollapsePart, check_clocks, check_events, check_progress
 from gaspart.engines.event.tally import EventTally, tally_parts
 from gaspart.engines.event_log import EventLog
-from gaspart.engines.features.part import arrays_of, write_parts
+from gaspart.engines.features.part import write_parts
 from gaspart.errors import SimulationError
 from gaspart.kernels.event import loop, prediction
 from gaspart.kernels.event import neighbour_lists as lists
@@ -32,12 +32,12 @@ from gaspart.state.oversized import boxes_and_largest
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
-_NUMBERS = ("start", "epoch", "base", "quiet", "clock")  # of a checkpoint
 
-
-class EventDynamics(EngineDynamics):
+class EventDynamics(Dynamics):
     """A scene in progress. Clocks count from the start of the current epoch, so that they lose no
     precision."""
+
+    numbers = ("start", "epoch", "base", "quiet", "clock", "since")
 
     def __init__(
         self,
@@ -103,18 +103,24 @@ class EventDynamics(EngineDynamics):
         return self._start + self._clock
 
     def advance(
-        self, until: float, most: int | None = None, log: EventLog | None = None, work: int | None = None
+        self,
+        until: float,
+        max_events: int | None = None,
+        log: EventLog | None = None,
+        max_work: int | None = None,
     ) -> None:
-        """Process events up to time `until`, at most `most` of them (collisions and wall hits).
+        """Process events up to time `until`, at most `max_events` of them (collisions and wall hits).
 
-        work: the number of events, crossings and predictions of a new epoch after which to return as well, to
-        within a factor of 2, at the time reached.
+        max_work: the number of events, crossings and predictions of a new epoch after which to return as
+        well, to within a factor of 2, at the time reached.
 
         Raises SimulationError, with the state kept, if particles collapse: they would meet for ever in no
         time; and if nothing happens in a thousand flights through the container, where only events end the
         run.
         """
-        left, work = (np.iinfo(np.int64).max if number is None else number for number in (most, work))
+        left, work = (
+            np.iinfo(np.int64).max if number is None else number for number in (max_events, max_work)
+        )
         many, begun = MANY, self._clock
         while left > 0 and work > 0:
             if self._at_rest:
@@ -139,18 +145,14 @@ class EventDynamics(EngineDynamics):
                 work -= 1 + len(self._flights)  # what follows predicts all anew
                 if scheduled:
                     self._clock = end
-                    if part.happen(self._particles, self._model, self._tally.arrays, self._start):
+                    if part.apply_event(self._particles, self._model, self._tally.arrays, self._start):
                         begun -= self._renew_epoch()
                         self._predict()
                     continue
                 if not ends_epoch:
                     self._clock = stop
                     return
-                begun -= self._epoch
-                self._next_epoch()
-                if until == np.inf:
-                    velocities = self._flights["velocity"]
-                    check_events(self.time, self._quiet, self._epochs.flights(velocities, self._epoch))
+                begun -= self._next_epoch(endless=until == np.inf)
             else:
                 self._clock = max(self._clock, last)
             if reason == loop.NO_ROOM:
@@ -177,8 +179,10 @@ class EventDynamics(EngineDynamics):
         scene = self._particles, self._queue, self._boxes, self._model, self._tally.arrays
         return loop.run(*scene, monitors, limits, () if self._queue is None else None)
 
-    def _next_epoch(self) -> None:
-        """Start the clocks again from zero, and predict all events anew."""
+    def _next_epoch(self, endless: bool) -> float:
+        """Start the clocks again from zero, and predict all events anew. endless: whether only events end the
+        run. Returns the length of the epoch that has ended."""
+        length = self._epoch
         check_clocks(self._start, self._epoch)
         for part in self._parts:
             part.close_epoch(self._epoch)
@@ -192,6 +196,10 @@ class EventDynamics(EngineDynamics):
         speed = self._epochs.speed(self._flights["velocity"])
         self._begin_epoch(self._epochs.quiet(speed, self._base, self._quiet))
         self._predict()
+        if endless:
+            flights = self._epochs.flights(self._flights["velocity"], self._epoch)
+            check_events(self.time, self._quiet, flights)
+        return length
 
     def _base_from(self, present: float) -> float:
         """The length of an epoch without the factor of `Epochs.quiet`; `present`: that of the last one."""
@@ -224,7 +232,7 @@ class EventDynamics(EngineDynamics):
 
     @property
     def tally(self) -> Tally:
-        """What was counted since the last `reset_tally`."""
+        """Counters and sums since the last `reset_tally`."""
         return self._tally.read(self.time, self._clock)
 
     @property
@@ -259,40 +267,43 @@ class EventDynamics(EngineDynamics):
         wrap(state.positions, state.images, self._model.space)
         return state
 
+    @property
+    def _since(self) -> float:
+        """The time of the last reset of the tally."""
+        return self._tally.since
+
+    @_since.setter
+    def _since(self, time: float) -> None:
+        self._tally.since = time
+
     def _arrays(self) -> dict[str, np.ndarray]:
         """Everything that the kernels change and that cannot be made again, by name."""
-        arrays = {**self._particles._asdict(), **self._tally.changing, **arrays_of(self._parts)}
-        arrays["event_count"] = self._event_count
+        arrays = {**self._particles._asdict(), **self._tally.changing, **super()._arrays()}
+        arrays |= {"event_count": self._event_count, "lost": self._tally.lost}
         if self._boxes.lists:
             arrays["centres"] = self._boxes.lists.listed["centre"]
         return arrays
 
-    def checkpoint(self) -> dict[str, np.ndarray]:
-        """All that a continuation to the same bits needs: particles at their own clocks, predictions,
-        counts."""
-        parts = {key: getattr(self, f"_{key}") for key in _NUMBERS}
-        parts |= {"since": self._tally.since, "lost": self._tally.lost, **self._arrays()}
-        parts |= {"search": self._search, "boxes_per_side": self._grid.per_side}
-        return {key: np.array(value) for key, value in parts.items()}
+    def _kept(self) -> dict[str, Any]:
+        """Particles at their own clocks, predictions and counts, and of which search they are."""
+        return {**super()._kept(), **self._searched()}
 
-    def restore(self, parts: dict[str, np.ndarray]) -> None:
-        """Go on from a checkpoint of the same scene, to the same bits whatever its search and boxes."""
-        arrays = self._arrays()
-        alike = str(parts.get("search")) == self._search
-        alike = alike and np.array_equal(parts.get("boxes_per_side", ()), self._grid.per_side)
-        if not alike:
-            arrays.pop("centres", None)  # of other neighbour lists, or of none
-        numbers = {key: np.array(getattr(self, f"_{key}")) for key in _NUMBERS}
-        check_parts(
-            parts, {**arrays, **numbers, "lost": self._tally.lost, "since": np.array(self._tally.since)}
-        )
-        for key, array in arrays.items():
-            array[...] = parts[key]
-        for key in _NUMBERS:
-            setattr(self, f"_{key}", parts[key].item())
-        self._tally.since, self._tally.lost = parts["since"].item(), parts["lost"].copy()
+    def _searched(self) -> dict[str, Any]:
+        """The search of which predictions and centres of lists are."""
+        return {"search": self._search, "boxes_per_side": self._grid.per_side}
+
+    def _is_of_this_search(self, checkpoint: dict[str, np.ndarray]) -> bool:
+        return all(np.array_equal(checkpoint.get(key, ()), value) for key, value in self._searched().items())
+
+    def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """All but the search; nor the centres of other neighbour lists, or of none."""
+        spared = {*self._searched(), *(() if self._is_of_this_search(checkpoint) else ("centres",))}
+        return {key: array for key, array in self.checkpoint().items() if key not in spared}
+
+    def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
+        """Begin the epoch again; of another search, with everything predicted anew."""
         self._begin_epoch(self._epoch)
-        if not alike:
+        if not self._is_of_this_search(checkpoint):
             self._particles.predictions["box"] = self._grid.coordinates(self._present()["position"])
             self._predict()
             return

@@ -1,4 +1,4 @@
-"""What the kernels of the event-driven engine work with, and the parts of a run."""
+"""The model and the particles of the event-driven engine's kernels, and the parts of a run."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ class EventDriven(Engine):
     records_events: ClassVar[bool] = True
     tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear"))
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
-    same_bits: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
+    neutral_settings: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
     first_segment: ClassVar[int] = 256  # events with crossings and predictions
 
     def __post_init__(self) -> None:
@@ -68,7 +68,7 @@ class EventDriven(Engine):
         search = self._search(scene)
         return "boxes" if search == "direct" else search
 
-    def for_few(self, scene: Scene) -> EventDriven:
+    def for_small_scene(self, scene: Scene) -> EventDriven:
         """With the search for this scene, not the one for a few particles, and one box if there are any."""
         boxes = None if self.boxes_per_side is None else 1
         return EventDriven(search=self._search(scene), boxes_per_side=boxes)

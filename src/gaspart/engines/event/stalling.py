@@ -82,7 +82,7 @@ class CollapsePart(Part):
         return model
 
     def error(self, time: float) -> SimulationError:
-        """That of a scene in which a particle has had too many contacts, up to `time`."""
+        """The error of a scene in which a particle has had too many contacts, up to `time`."""
         watch = self.watch
         assert watch is not None  # or the kernels would have seen none
         return SimulationError(

@@ -1,4 +1,4 @@
-"""What the event-driven engine counts, and the energy that leaves and enters a scene."""
+"""Counters of the event-driven engine, and the energy that leaves and enters a scene."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
 PARTS = {"stress": stress_part}
-"""What makes the part of an optional tally that was asked for, by its name."""
+"""Functions that make the part of an optional tally, by its name."""
 _OPTIONAL = kernels.Tally._field_defaults  # entries that a part has
 
 
@@ -52,7 +52,7 @@ class EventTally:
         self.begin(time, clock)
 
     def begin(self, time: float, clock: float) -> None:
-        """The same without what was counted before."""
+        """Begin to count from zero, and forget what was counted before."""
         self.arrays = kernels.empty_tally(self._surfaces)._replace(**self._optional)
         for part in self._parts:
             part.reset(clock)
@@ -64,7 +64,7 @@ class EventTally:
         return {key: array for key, array in self.arrays._asdict().items() if key not in _OPTIONAL}
 
     def read(self, time: float, clock: float) -> Tally:
-        """What was counted up to the present `time`."""
+        """Counters and sums up to the present `time`."""
         arrays = self.arrays
         sums = (net(terms) * self._unit_mass for terms in arrays.sums)
         counted: dict[str, Any] = dict(zip(kernels.COUNTS, arrays.counts.tolist(), strict=True))

@@ -1,4 +1,5 @@
-"""Masses of the particles in the kernels' unit, and what few of their momenta and energies exceed."""
+"""Masses of the particles in the kernels' unit; power-of-two bounds of momenta and energies, for fixed-point
+sums."""
 
 from __future__ import annotations
 

@@ -77,7 +77,7 @@ class Part:
         for times in self._times:
             times -= length
 
-    def happen(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
+    def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
         """Let the event happen that is scheduled for the time `next` of an epoch with this `start`. Returns
         whether all events must be predicted anew."""
         raise NotImplementedError
@@ -88,7 +88,7 @@ class Part:
             sums[...] = 0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """What it has counted from the last `reset` until this time on the clocks of the epoch, by the fields
+        """Its counters from the last `reset` until this time on the clocks of the epoch, by the fields
         of `state.tally.Tally`."""
         return {}
 

@@ -52,7 +52,7 @@ class RestWatch(Part):
         """Look for the first time after the time of a fall from now on."""
         self._next[0] = clock + self._window
 
-    def happen(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
+    def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
         """Look which particles rest, and stop them. Returns whether events must be predicted anew: not if all
         rest."""
         from gaspart.kernels.event.scene_at_rest import MOVES, RESTS, find_resting, stop_all
@@ -87,7 +87,7 @@ class RestWatch(Part):
 
 
 def rest_watch(scene: Scene, state: State) -> RestWatch | None:
-    """That of a scene in which all particles may come to rest: contacts that last, gravity that drives no
-    flow, and no face that gives energy."""
+    """The watch of a scene in which all particles may come to rest: contacts that last, gravity that
+    drives no flow, and no face that gives energy."""
     falls = scene.gravity is not None and not driven_axes(scene)
     return RestWatch(scene, state) if scene.contact_duration > 0.0 and falls and not scene.faces else None

@@ -20,7 +20,7 @@ from gaspart.state.tally import tallied_fluxes
 
 
 class StressPart(TallyPart):
-    """What is tallied of them.
+    """The stress tensor and the heat flux of a gas without walls.
 
     flights (N,): the particles, each with a velocity that holds at any time until its next contact; drift
     (d,): the velocity of their centre of mass.
@@ -56,8 +56,8 @@ class StressPart(TallyPart):
 
 
 class ShearedStressPart(StressPart):
-    """The same of a sheared gas, whose velocities relative to the flow change in flight, so that each flight
-    counts from its clock on."""
+    """The stress tensor and the heat flux of a sheared gas. Velocities relative to the flow change in flight,
+    so that each flight counts from its clock on."""
 
     def __init__(self, flights: np.ndarray, model: Model, unit_mass: float, drift: np.ndarray) -> None:
         super().__init__(flights, model, unit_mass, drift)

@@ -14,7 +14,6 @@ from gaspart.scene.thermostat import Thermostat
 from gaspart.state.random import key_of
 
 if TYPE_CHECKING:
-    from gaspart.kernels.dsmc import model as dsmc
     from gaspart.kernels.model import Model, Particles, Tally
 
 _MOST_NUMBERS = 2**63 - 1  # of kicks, before they begin anew
@@ -56,7 +55,7 @@ class Kicks(Part):
         """Begin to sum energies up from zero."""
         self._given[:] = 0.0
 
-    def happen(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
+    def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
         """Kick all particles. Returns that their flights have changed."""
         from gaspart.kernels.event.kicks import kick_all
 
@@ -68,17 +67,17 @@ class Kicks(Part):
 
 
 def kicks(scene: Scene, seed: int | tuple[int, ...], unit_mass: float) -> Kicks | None:
-    """Those of a scene's thermostat, if it has one and particles that can move."""
+    """The kicks of a scene's thermostat, if it has one and particles that can move."""
     if scene.thermostat is None or not any(not kind.fixed for kind in scene.kinds):
         return None
     return Kicks(scene.thermostat, scene.dimension, seed, unit_mass)
 
 
-class StepKicks:
+class StepKicks(Part):
     """The thermostat of a scene in steps. A step in which several kicks are due ends with one as strong as
     all.
 
-    given (1, 2): the energy given since the tally began, see `running_sum.add`.
+    given_terms (1, 2): the energy given since the tally began, see `running_sum.add`.
     """
 
     def __init__(
@@ -87,34 +86,37 @@ class StepKicks:
         self._per_step = time_step / thermostat.interval
         self._width = _width(thermostat, dimension, 1.0)
         self._key = key_of(seed, _KICK_DRAWS)
-        self.given = np.zeros((1, 2))
+        self.given_terms = np.zeros((1, 2))
+        super().__init__({"given": self.given_terms})
 
-    def _due(self, steps: float) -> int:
+    def reset(self, clock: float) -> None:
+        """Begin to sum energies up from zero."""
+        self.given_terms[:] = 0.0
+
+    def _kicks_by(self, steps: float) -> int:
         """How many kicks are due by the end of so many steps."""
         return math.floor(steps * self._per_step * (1.0 + 4e-16) + 1e-9)
 
     def until(self, steps: float, part: float) -> int:
         """The number of the next parts of a step, of such a length, of which the last ends with a kick."""
-        due = self._due(steps)
+        due = self._kicks_by(steps)
         number = max(1, math.floor(((due + 1) / self._per_step - steps) / part) - 1)
-        while self._due(steps + number * part) <= due:
+        while self._kicks_by(steps + number * part) <= due:
             number += 1
         return number
 
-    def happen(self, particles: dsmc.Particles, tools: dsmc.Tools, steps: float, part: float) -> None:
-        """Kick all particles if that is due after so many steps, the last `part` of which has just been
-        made."""
-        from gaspart.kernels.dsmc.kicks import kick_all
-
-        due = self._due(steps)
-        number = due - self._due(steps - part)
-        if number > 0:
-            counter = self._key, due & _MOST_NUMBERS
-            kick_all(particles, tools, self._width * math.sqrt(number), counter, self.given)
+    def due(self, steps: float, part: float) -> tuple[float, tuple[np.ndarray, int]] | None:
+        """The width of the kick that all particles get after so many steps, the last `part` of which has just
+        been made, and the counter of its random numbers; None if none is due."""
+        due = self._kicks_by(steps)
+        number = due - self._kicks_by(steps - part)
+        if number <= 0:
+            return None
+        return self._width * math.sqrt(number), (self._key, due & _MOST_NUMBERS)
 
 
 def step_kicks(scene: Scene, time_step: float, seed: int | tuple[int, ...]) -> StepKicks | None:
-    """Those of a scene's thermostat in steps, if it has one."""
+    """The kicks of a scene's thermostat in steps, if it has one."""
     if scene.thermostat is None or not scene.count:
         return None
     return StepKicks(scene.thermostat, scene.dimension, time_step, seed)

@@ -1,4 +1,4 @@
-"""What the time-stepped engine's kernels work on: particles, model and tally."""
+"""Arrays of the time-stepped engine's kernels: particles, model and tally."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def masses_of(scene: Scene, state: State) -> tuple[float, np.ndarray]:
 def model_for(
     engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...], radii: np.ndarray
 ) -> StepModel:
-    """What is simulated. radii: of the ordinary particles; `seed` is that of thermal walls."""
+    """The model of a scene. radii: of the ordinary particles; `seed` is that of thermal walls."""
     real = np.dtype(engine.precision).type
     lengths, margin = scene.container.lengths, real(not scene.centres_to_walls)
     space = Space(tuple(real(length) for length in lengths), scene.container.periodic, margin)
@@ -119,7 +119,8 @@ def parts_for(scene: Scene, rules: Rules | None) -> list[Part]:
     """The parts of a run of a scene with such rules; none without."""
     if rules is None:
         return []
-    law, faces, heat = rules.model.law, rules.model.faces, Part({"heat": rules.heat})
+    law, faces = rules.model.law, rules.model.faces
+    heat = Part({}, sums={"heat": rules.heat[np.newaxis]})  # all threads have one
     parts = LawPart(law) if law else None, FacesPart(scene, faces, 1.0) if faces else None, heat
     return [part for part in parts if part]
 

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import DTypeLike
 
-from gaspart.engines.belonging import check_parts
-from gaspart.engines.dynamics import EngineDynamics
-from gaspart.engines.event_log import EventLog
 from gaspart.engines.features.masses import largest_terms
-from gaspart.engines.features.part import arrays_of, write_parts
 from gaspart.engines.step.arrays import empty_particles, masses_of, model_for, parts_for, step_tally
 from gaspart.engines.step.limits import (
     check_late,
@@ -22,21 +16,22 @@ from gaspart.engines.step.limits import (
     oversized_particles,
 )
 from gaspart.engines.step.search import search_for
-from gaspart.errors import SceneError
+from gaspart.engines.stepped import SteppedDynamics
 from gaspart.kernels.physics import running_sum
 from gaspart.kernels.step import loop
 from gaspart.kernels.step import model as layout
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
-from gaspart.state.tally import Tally
 
 if TYPE_CHECKING:
     from gaspart.engines.step.settings import TimeStepped
 
-_MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
+_BY_THREAD = ("wall_hits", "wall_impulse", "wall_loss")
+_OF_ALL = ("counts", "sums", "extremes")
+"""The arrays of `StepTally`."""
 
 
-class StepDynamics(EngineDynamics):
+class StepDynamics(SteppedDynamics):
     """A scene under way; its time is a whole number of steps."""
 
     def __init__(self, engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
@@ -45,26 +40,23 @@ class StepDynamics(EngineDynamics):
         check_scene(scene, state, oversized)
         check_precision(engine, scene, state)
         check_step(engine, state)
-        self._engine, self._scene, self._reference = engine, scene, state
+        unit_mass, _ = masses_of(scene, state)
+        super().__init__(scene, state, engine.time_step, engine.threads, unit_mass)
+        self._engine = engine
         self._real = np.dtype(engine.precision).type
-        self._unit_mass, _ = masses_of(scene, state)
         ordinary = state.radii[~oversized]
         self._particles = empty_particles(engine, scene, state, len(ordinary))
         slots = np.argsort(oversized, kind="stable")  # oversized particles last
         self._place(slots, state.positions, state.velocities, state.images)
         self._search = search_for(engine, scene, state, ordinary)
         self._model = model_for(engine, scene, state, seed, ordinary)
-        self._threads = engine.threads if engine.threads > 1 else None
         self._parts = parts_for(scene, self._model.rules)
-        self._largest = largest_terms(scene, state, self._unit_mass)
-        self._lost = np.zeros(2)  # net and gross, before the tally began
-        self._start, self._steps = state.time, 0
-        self._count()
+        self._largest = largest_terms(scene, state, unit_mass)
+        self._tally = step_tally(2 * scene.dimension, engine.threads, self._largest)
 
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
     ) -> None:
-        """Put the particles into their slots: (N,) which particle is in each."""
         particles = self._particles
         particles.positions[...] = positions[slots].T
         particles.velocities[...] = velocities[slots].T
@@ -72,191 +64,98 @@ class StepDynamics(EngineDynamics):
         particles.radii[...] = self._reference.radii[slots]
         particles.index[...] = slots
 
-    def _by_particle(self, values: np.ndarray, dtype: DTypeLike) -> np.ndarray:
-        """(N, d) of the particles in their own order, from (d, N) by slot."""
-        found = np.empty(values.shape[::-1], dtype)
-        found[self._particles.index] = values.T
-        return found
-
-    def reset_tally(self) -> None:
-        """Begin to count anew."""
-        self._lost = np.array([self.dissipated, self.exchanged])
-        self._count()
-
-    def _count(self) -> None:
-        """Set the tally to zero."""
-        if self._model.rules:
-            self._model.rules.heat[:] = 0
-        faces = 2 * self._scene.dimension
-        self._tally = step_tally(faces, self._engine.threads, self._largest)
-        self._since = self._steps
+    @property
+    def _slots(self) -> np.ndarray:
+        return self._particles.index
 
     @property
-    def dissipated(self) -> float:
-        """The energy that contacts and thermal walls have taken since time 0."""
-        return float(self._lost[0]) + running_sum.net(*self._loss, self._heat) * self._unit_mass
+    def _positions(self) -> np.ndarray:
+        return self._particles.positions
 
     @property
-    def exchanged(self) -> float:
-        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
-        gross = running_sum.net(*self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
-        return float(self._lost[1]) + gross * self._unit_mass
+    def _velocities(self) -> np.ndarray:
+        return self._particles.velocities
+
+    @property
+    def _images(self) -> np.ndarray:
+        return self._particles.images
 
     @property
     def _heat(self) -> np.ndarray:
-        """(2d, 2) what each face was given by particles that left it at its temperature, since the tally
-        began, in two parts, in units of the unit mass."""
         if self._model.rules is None:
             return np.zeros((2 * self._scene.dimension, 2))
         return running_sum.whole_parts(self._model.rules.heat, self._largest[1])
 
     @property
-    def _loss(self) -> tuple[np.ndarray, np.ndarray]:
-        """The energy that contacts of particles (2,) and with walls (threads, 2) have taken, likewise."""
+    def _loss(self) -> np.ndarray:
+        """Of contacts between particles, and with walls by thread."""
         tally = self._tally
-        return tally.sums[layout.LOSS], running_sum.whole_parts(tally.wall_loss, self._largest[1])
+        at_walls = running_sum.whole_parts(tally.wall_loss, self._largest[1])
+        return np.vstack([tally.sums[layout.LOSS], at_walls])
 
-    @property
-    def time(self) -> float:
-        """The time reached, at the end of a step."""
-        return self._start + self._steps * self._engine.time_step
-
-    def advance(
-        self, until: float, most: int | None = None, log: EventLog | None = None, work: int | None = None
-    ) -> None:
-        """Step to the last whole step not after `until` (to within 1e-9 of a step).
-
-        Raises SceneError for what only the event-driven engine can do, count or record events, and for a time
-        that is not within 2^53 steps.
-        """
-        for key, limit in (("max_events", most), ("max_work", work)):
-            if limit is not None:
-                raise SceneError(key, limit, 'needs the "event" engine; this one makes whole steps only')
-        if log is not None:
-            raise SceneError(
-                "record_events", True, 'needs the "event" engine; this one makes whole steps only'
-            )
-        steps = (until - self._start) / self._engine.time_step
-        if not steps < _MOST_STEPS:
-            rule = f"must be within {_MOST_STEPS:g} steps of {self._engine.time_step:g}"
-            raise SceneError("until", until, rule)
-        target = int(np.floor(steps * (1.0 + 4e-16) + 1e-9))
-        if target > self._steps:
-            if self._threads is not None:
-                from numba import config, set_num_threads
-
-                set_num_threads(min(self._threads, config.NUMBA_NUM_THREADS))
-            self._run(target - self._steps)
-            self._steps = target
-            counts = self._tally.counts
-            found = (int(counts[n]) for n in (layout.COLLISIONS, layout.LATE, layout.PASSED))
-            check_late(self._engine, self.time, *found)
+    def _advance_to(self, step: int) -> None:
+        """Raises SimulationError for a step that is too long for the particles."""
+        self._run(step - self._steps)
+        self._steps = step
+        counts = self._tally.counts
+        found = (int(counts[n]) for n in (layout.COLLISIONS, layout.LATE, layout.PASSED))
+        check_late(self._engine, self.time, *found)
 
     def _run(self, steps: int) -> None:
         """Let the kernel make so many steps; or, if none, only a list."""
-        settings = self._real(self._engine.time_step), self._engine.rewind, self._engine.passes
+        settings = self._real(self.time_step), self._engine.rewind, self._engine.passes
         pairs = loop.run_steps(
             self._particles, self._search, self._model, settings, steps, self._tally, self._threads
         )
         self._search = self._search._replace(pairs=pairs)
 
-    @property
-    def state(self) -> State:
-        """All particles at the present time, in float64 whatever the precision."""
-        state = replace(
-            self._reference,
-            time=self.time,
-            positions=self._by_particle(self._particles.positions, float),
-            velocities=self._by_particle(self._particles.velocities, float),
-            images=self._particles.images.T.astype(self._reference.images.dtype),
-        )
-        write_parts(self._parts, state)
-        return state
+    def _sums(self) -> dict[str, np.ndarray]:
+        """With those of which all threads have one, as if it were that of the first."""
+        whole = {key: getattr(self._tally, key)[np.newaxis] for key in _OF_ALL}
+        return whole | {key: getattr(self._tally, key) for key in _BY_THREAD}
 
-    @property
-    def tally(self) -> Tally:
-        """What was counted since the last `reset_tally`."""
+    def _counts(self) -> dict[str, Any]:
         tally = self._tally
         impulse = running_sum.whole_parts(tally.wall_impulse.sum(axis=0), self._largest[0])
-        sums = (running_sum.net(terms) * self._unit_mass for terms in tally.sums)
-        values: dict[str, Any] = dict(zip(layout.COUNTS, tally.counts.tolist(), strict=False))
-        values |= zip(layout.EXTREMES, tally.extremes.tolist(), strict=True)
-        values |= zip(layout.SUMS, sums, strict=True)
-        values["dissipated_energy"] = running_sum.net(*self._loss) * self._unit_mass
-        return Tally(
-            time=(self._steps - self._since) * self._engine.time_step,
-            wall_hits=tally.wall_hits.sum(axis=0),
-            wall_impulse=impulse.sum(axis=-1) * self._unit_mass,
-            wall_energy=self._heat.sum(axis=1) * self._unit_mass,
-            steps=self._steps - self._since,
-            **values,
-        )
-
-    def checkpoint(self) -> dict[str, np.ndarray]:
-        """Everything that a continuation to the same bits needs."""
-        particles = self._particles
-        return {
-            "steps": np.array(self._steps),
-            "since": np.array(self._since),
-            "lost": self._lost.copy(),
-            "positions": self._by_particle(particles.positions, self._real),
-            "velocities": self._by_particle(particles.velocities, self._real),
-            "images": particles.images.T.copy(),
-            "slots": particles.index.copy(),
-            **({} if self._search.cells is None else self._list_parts()),
-            **{key: array.copy() for key, array in arrays_of(self._parts).items()},
-            "reach": self._particles.bounds.copy(),
-            **{key: np.array(value) for key, value in self._tally._asdict().items()},
+        counts: dict[str, Any] = dict(zip(layout.COUNTS, tally.counts.tolist(), strict=False))
+        counts |= zip(layout.EXTREMES, tally.extremes.tolist(), strict=True)
+        return counts | {
+            "wall_hits": tally.wall_hits.sum(axis=0),
+            "wall_impulse": impulse.sum(axis=-1) * self._unit_mass,
+            "virial_sum": running_sum.net(tally.sums[layout.VIRIAL]) * self._unit_mass,
         }
 
-    def restore(self, parts: dict[str, np.ndarray]) -> None:
-        """Go on from a checkpoint of the same scene and settings, to the same bits whatever its search and
-        threads. Raises SceneError, with nothing changed, for one that lacks an array."""
-        particles, tally, rules = self._particles, self._tally, arrays_of(self._parts)
-        by_thread = ("wall_hits", "wall_impulse", "wall_loss")
-        sums = dict(parts)
-        sums |= {key: parts[key].sum(axis=0) for key in by_thread if key in parts}  # whole: in any order
-        wanted: dict[str, np.ndarray] = {
-            "slots": particles.index,
-            "positions": particles.positions.T,
-            "velocities": particles.velocities.T,
-            "images": particles.images.T,
-            "reach": particles.bounds,
-            "lost": self._lost,
-            **{key: np.array(0) for key in ("steps", "since")},
-            **{key: getattr(tally, key) for key in ("counts", "sums", "extremes")},
-            **{key: getattr(tally, key)[0] for key in by_thread},
-            **rules,
-        }
-        check_parts(sums, wanted)
-        self._place(*(parts[key] for key in ("slots", "positions", "velocities", "images")))
+    def _kept(self) -> dict[str, Any]:
+        """The bounds of the neighbour list, too, and what it is made of."""
+        return {**super()._kept(), "reach": self._particles.bounds, **self._list_parts()}
+
+    def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """All but what the list is made of: it may be that of another search."""
+        spared = self._list_parts()
+        return {key: array for key, array in self.checkpoint().items() if key not in spared}
+
+    def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
+        """With the list of the checkpoint, if it is one of these settings."""
+        super()._place_again(checkpoint)
         self._particles.bounds[...] = 0.0, np.inf  # as at the start: the next step makes a list
-        if self._search.cells is not None and self._has_list_of(parts):
-            self._list_from(parts["origin"])
-            self._particles.bounds[...] = parts["reach"]
-        for key in ("counts", "sums", "extremes"):
-            getattr(tally, key)[...] = parts[key]
-        for key in by_thread:
-            getattr(tally, key)[...] = 0
-            getattr(tally, key)[0] = sums[key]
-        for key, array in rules.items():
-            array[...] = parts[key]
-        self._steps, self._since = int(parts["steps"]), int(parts["since"])
-        self._lost = parts["lost"].copy()
+        if self._has_list_of(checkpoint):
+            self._list_from(checkpoint["origin"])
+            self._particles.bounds[...] = checkpoint["reach"]
 
     def _list_parts(self) -> dict[str, np.ndarray]:
-        """What the neighbour list is made of: `origin` (d, N), where particles were, by slot; settings."""
+        """The origin of the neighbour list: `origin` (d, N), where particles were, by slot; settings."""
+        if self._search.cells is None:
+            return {}
         settings = {key: np.array(getattr(self._search.cells, key)) for key in ("skin", "per_side")}
-        origin = self._search.cells.origin.copy()
-        return {"origin": origin, "threads": np.array(self._engine.threads), **settings}
+        return {"origin": self._search.cells.origin, "threads": np.array(self._engine.threads), **settings}
 
-    def _has_list_of(self, parts: dict[str, np.ndarray]) -> bool:
+    def _has_list_of(self, checkpoint: dict[str, np.ndarray]) -> bool:
         """Whether a checkpoint has a list that was made with the settings of this engine."""
-        if not parts["reach"][layout.DISPLACEMENT] < np.inf:
-            return False
         own = self._list_parts()
-        del own["origin"]
-        return all(key in parts and np.array_equal(parts[key], value) for key, value in own.items())
+        if not own or not checkpoint["reach"][layout.DISPLACEMENT] < np.inf:
+            return False
+        origin = np.shape(own.pop("origin")) == np.shape(checkpoint.get("origin", ()))
+        return origin and all(np.array_equal(checkpoint.get(key, ()), value) for key, value in own.items())
 
     def _list_from(self, origin: np.ndarray) -> None:
         """Make the list again that was made when particles were at `origin` (d, N), by slot."""

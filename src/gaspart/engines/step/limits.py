@@ -1,4 +1,4 @@
-"""What the time-stepped engine can model, and with what settings."""
+"""The scenes that the time-stepped engine can model, and with which settings."""
 
 from __future__ import annotations
 

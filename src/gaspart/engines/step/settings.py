@@ -70,7 +70,7 @@ class TimeStepped(Engine):
         ("gravity", "restitution", "roughness", "fixed", "vibrations", "centres_to_walls", "polydispersity")
     ) | {kind for kind, face in FACE_KINDS.items() if not face.moves}
     excludes: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "gravity"), ("fixed", "gravity"))
-    same_bits: ClassVar[tuple[str, ...]] = ("boxes_per_side", "near_boxes", "skin", "threads")
+    neutral_settings: ClassVar[tuple[str, ...]] = ("boxes_per_side", "near_boxes", "skin", "threads")
     counters: ClassVar[tuple[str, ...]] = (
         "steps",
         "overlaps_left",
@@ -100,7 +100,7 @@ class TimeStepped(Engine):
         search = "list" if self.boxes_per_side is None else "boxes"
         return f"{search}-{self.precision}" + ("-threads" if self.threads > 1 else "")
 
-    def for_few(self, scene: Scene) -> TimeStepped:
+    def for_small_scene(self, scene: Scene) -> TimeStepped:
         """With one box, if there are any."""
         return self if self.boxes_per_side is None else replace(self, boxes_per_side=1)
 

@@ -14,11 +14,11 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.dsmc.contact import (
-    collide_in_room,
+    collide_loaded_pair,
     collide_smooth,
     contact_vector,
-    give_back,
-    take_in,
+    load_particle,
+    store_particle,
     unit_vector,
 )
 from gaspart.kernels.dsmc.draws import below, fraction, waiting_time, words_of
@@ -54,9 +54,9 @@ def bounds_of(u, v, w, first, end):
 
 
 @inner_helper
-def section_of(particles, pair, setting):
+def section_of(particles, pair, context):
     """The cross-section of the particles in two slots."""
-    d, kinds = len(setting.space.lengths), setting.tools
+    d, kinds = len(context.space.lengths), context.workspace
     if len(kinds.kind) == 0:
         return cross_section(2.0 * kinds.largest, d)
     one, other = kind_in(particles, pair[0], kinds), kind_in(particles, pair[1], kinds)
@@ -77,10 +77,10 @@ def scatter_equal(particles, pair, g, square, counter):
 
 
 @inner_helper
-def collide_pair(particles, pair, g, square, counter, setting, law):
+def collide_pair(particles, pair, g, square, counter, context, law):
     """Let the particles in two slots collide. g (3,): their relative velocity, second minus first; counter:
     of the random numbers."""
-    d, kinds = len(setting.space.lengths), setting.tools
+    d, kinds = len(context.space.lengths), context.workspace
     if law is None:
         if d == 3 and len(kinds.kind) == 0:
             scatter_equal(particles, pair, g, square, counter)
@@ -90,11 +90,11 @@ def collide_pair(particles, pair, g, square, counter, setting, law):
     if law is None:
         collide_smooth(particles, pair, normal, (kinds.mass[one], kinds.mass[other]))
     else:
-        take_in(particles, pair[0], 0, one, setting, law)
-        take_in(particles, pair[1], 1, other, setting, law)
-        collide_in_room(normal, setting, law)
-        give_back(particles, pair[0], 0, setting, law)
-        give_back(particles, pair[1], 1, setting, law)
+        load_particle(particles, pair[0], 0, one, context, law)
+        load_particle(particles, pair[1], 1, other, context, law)
+        collide_loaded_pair(normal, context, law)
+        store_particle(particles, pair[0], 0, context, law)
+        store_particle(particles, pair[1], 1, context, law)
 
 
 @inner_helper
@@ -107,18 +107,23 @@ def between(particles, pair):
 
 
 @inner_helper
-def collide_cell(particles, cell, slots, volume, setting, law, stress):
+def collide_cell(particles, cell, slots, volume, context, law, stress):
     """Make the collisions of one step in a cell, whose particles are in the slots from slots[0] to
     slots[1]. The stress is that of the algorithm: what passes has passed between two places of the cell."""
     first, end = slots
-    d, number, key, step = len(setting.space.lengths), end - first, setting.tools.key, setting.tools.clock[0]
+    d, number, key, step = (
+        len(context.space.lengths),
+        end - first,
+        context.workspace.key,
+        context.workspace.clock[0],
+    )
     u = particles.data[velocity_row(particles, 0)]
     v = particles.data[velocity_row(particles, 1)]
     w = particles.data[velocity_row(particles, d - 1)]
     low_u, high_u, low_v, high_v, low_w, high_w = bounds_of(u, v, w, first, end)
     flat = 0.0 if d == 2 else 1.0
-    most = cross_section(2.0 * setting.tools.largest, d)
-    pairs = 0.5 * number * (number - 1.0) * most / volume * setting.tools.dt
+    most = cross_section(2.0 * context.workspace.largest, d)
+    pairs = 0.5 * number * (number - 1.0) * most / volume * context.workspace.dt
     bound, left, trial, met, exceeded = -1.0, 1.0, 0, 0, 0
     while True:
         if bound < 0.0:
@@ -132,33 +137,33 @@ def collide_cell(particles, cell, slots, volume, setting, law, stress):
         j += j >= i
         g = u[j] - u[i], v[j] - v[i], flat * (w[j] - w[i])
         square = g[0] * g[0] + g[1] * g[1] + g[2] * g[2]
-        share = section_of(particles, (i, j), setting) / most
+        share = section_of(particles, (i, j), context) / most
         wanted, offered = fraction(words[3]) * bound, square * share * share
         exceeded += offered > bound * bound * _ROUNDED
         if wanted * wanted < offered:
             if stress is not None:
-                note_pair(particles, (i, j), setting, stress, law)
-            collide_pair(particles, (i, j), g, square, (key, step, cell, trial), setting, law)
+                note_pair(particles, (i, j), context, stress, law)
+            collide_pair(particles, (i, j), g, square, (key, step, cell, trial), context, law)
             if stress is not None:
-                add_contact(particles, (i, j), between(particles, (i, j)), setting, stress, law)
+                add_contact(particles, (i, j), between(particles, (i, j)), context, stress, law)
             met += 1
             low_u, high_u = widened(u[i], u[j], low_u, high_u)
             low_v, high_v = widened(v[i], v[j], low_v, high_v)
             low_w, high_w = widened(w[i], w[j], low_w, high_w)
             bound = -1.0
         trial += 1
-    counts = setting.tools.counts[setting.part]
+    counts = context.workspace.counts[context.part]
     counts[COLLISIONS] += met
     counts[TRIALS] += trial
     counts[EXCEEDED] += exceeded
     if stress is not None:
-        finish_cell(setting, stress)
+        finish_cell(context, stress)
 
 
 @inner_kernel
-def collide_cells(particles, cells, grid, setting, law, stress):
+def collide_cells(particles, cells, grid, context, law, stress):
     """Make the collisions of one step in one thread's cells, from cells[0] to cells[1]."""
     for cell in range(cells[0], cells[1]):
         slots = np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])
         if slots[1] - slots[0] > 1:
-            collide_cell(particles, cell, slots, grid.volume, setting, law, stress)
+            collide_cell(particles, cell, slots, grid.volume, context, law, stress)

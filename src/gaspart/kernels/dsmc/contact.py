@@ -98,71 +98,73 @@ def collide_smooth(particles, pair, normal, masses):
 
 
 @inner_helper
-def law_of(setting, law):
+def law_of(context, law):
     """The law of the event-driven engine's physics, for the two particles in a thread's room."""
-    tools, part = setting.tools, setting.part
-    inverses = tools.inverse_mass[part], tools.inverse_inertia[part]
-    return ContactLaw(law.normal, law.tangential, law.viscous, *inverses, tools.pair_spins[part], None, None)
+    workspace, part = context.workspace, context.part
+    inverses = workspace.inverse_mass[part], workspace.inverse_inertia[part]
+    return ContactLaw(
+        law.normal, law.tangential, law.viscous, *inverses, workspace.pair_spins[part], None, None
+    )
 
 
 @inner_helper
-def take_spin(i, place, which, setting, law):
+def load_spin(i, place, which, context, law):
     """Write mass and spin of particle i, of a kind, into a place of a thread's room."""
-    tools, part = setting.tools, setting.part
-    tools.inverse_mass[part, place] = 1.0 / tools.mass[which]
-    tools.inverse_inertia[part, place] = 1.0 / tools.inertia[which]
+    workspace, part = context.workspace, context.part
+    workspace.inverse_mass[part, place] = 1.0 / workspace.mass[which]
+    workspace.inverse_inertia[part, place] = 1.0 / workspace.inertia[which]
     for k in range(3):
-        tools.pair_spins[part, place, k] = law.spins[i, k]
+        workspace.pair_spins[part, place, k] = law.spins[i, k]
 
 
 @inner_helper
-def return_spin(i, place, setting, law):
+def store_spin(i, place, context, law):
     """Write the spin back from there."""
     for k in range(3):
-        law.spins[i, k] = setting.tools.pair_spins[setting.part, place, k]
+        law.spins[i, k] = context.workspace.pair_spins[context.part, place, k]
 
 
 @inner_helper
-def take_in(particles, slot, place, which, setting, law):
+def load_particle(particles, slot, place, which, context, law):
     """Write the particle in a slot, of a kind, into a place of a thread's room."""
-    flights = setting.tools.flights[setting.part]
+    flights = context.workspace.flights[context.part]
     for k in range(len(particles.images)):
         flights[place].velocity[k] = particles.data[velocity_row(particles, k), slot]
         flights[place].position[k] = 0.0
-    flights[place].radius = setting.tools.radius[which]
-    take_spin(number_at(particles, slot), place, which, setting, law)
+    flights[place].radius = context.workspace.radius[which]
+    load_spin(number_at(particles, slot), place, which, context, law)
 
 
 @inner_helper
-def give_back(particles, slot, place, setting, law):
+def store_particle(particles, slot, place, context, law):
     """Write velocity and spin back from there."""
-    flights = setting.tools.flights[setting.part]
+    flights = context.workspace.flights[context.part]
     for k in range(len(particles.images)):
         particles.data[velocity_row(particles, k), slot] = flights[place].velocity[k]
-    return_spin(number_at(particles, slot), place, setting, law)
+    store_spin(number_at(particles, slot), place, context, law)
 
 
 @inner_helper
-def count_loss(setting):
+def count_loss(context):
     """Move the energy that the law has taken from the thread's room to its tally."""
-    tools, sums = setting.tools, setting.tools.sums[setting.part]
-    add_exact(tools.loss[setting.part], sums[LOSS, 0] + sums[LOSS, 1])
+    workspace, sums = context.workspace, context.workspace.sums[context.part]
+    add_exact(workspace.loss[context.part], sums[LOSS, 0] + sums[LOSS, 1])
     sums[LOSS, 0] = sums[LOSS, 1] = 0.0
 
 
 @inner_helper
-def collide_in_room(normal, setting, law):
+def collide_loaded_pair(normal, context, law):
     """A contact by the law of the two particles in a thread's room. Returns the momentum that passes along
     the normal."""
-    flights = setting.tools.flights[setting.part]
+    flights = context.workspace.flights[context.part]
     rr = rv = 0.0
-    for k in range(len(setting.space.lengths)):
+    for k in range(len(context.space.lengths)):
         flights[1].position[k] = normal[k]
         rr += normal[k] * normal[k]
         rv += normal[k] * (flights[1].velocity[k] - flights[0].velocity[k])
-    sums = Sums(setting.tools.sums[setting.part])
+    sums = Sums(context.workspace.sums[context.part])
     passed = collide_by_law(
-        flights, 0, 1, rr, rv, open_space(setting.space.lengths), sums, law_of(setting, law)
+        flights, 0, 1, rr, rv, open_space(context.space.lengths), sums, law_of(context, law)
     )
-    count_loss(setting)
+    count_loss(context)
     return passed

@@ -15,11 +15,11 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.dsmc.contact import (
-    collide_in_room,
+    collide_loaded_pair,
     collide_smooth,
-    give_back,
     in_plane,
-    take_in,
+    load_particle,
+    store_particle,
     unit_vector,
 )
 from gaspart.kernels.dsmc.draws import below, fraction, waiting_time, words_of
@@ -75,7 +75,7 @@ def contact_value(filled, surface, radius, dense):
 
 
 @inner_kernel
-def widest(values, room, reach, stride, per_side, wraps):
+def sliding_maximum(values, room, reach, stride, per_side, wraps):
     """Along one axis: values become the highest of those within reach, by way of `room`."""
     number = len(values)
     for n in range(number):
@@ -97,11 +97,11 @@ def widest(values, room, reach, stride, per_side, wraps):
 
 
 @inner_kernel
-def survey(particles, grid, tools, dense):
+def update_bounds(particles, grid, workspace, dense):
     """Find for each cell what bounds its trials, and smooth the fields."""
     d, cells = len(particles.images), len(grid.starts) - 1
     if dense.weight > 0.0:
-        smooth(particles, grid, tools, dense)
+        smooth(particles, grid, workspace, dense)
     filled = surface = 0.0
     for cell in range(cells):
         first, end = np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])
@@ -116,22 +116,22 @@ def survey(particles, grid, tools, dense):
         dense.near_count[cell] = end - first
         filled = max(filled, dense.fields[FILLED, cell])
         surface = max(surface, dense.fields[SURFACE, cell])
-    dense.highest[0] = contact_value(filled, surface, 0.5 * tools.largest, dense)
+    dense.highest[0] = contact_value(filled, surface, 0.5 * workspace.largest, dense)
     for k in range(d):
         along = dense.reach[k], grid.strides[k], grid.per_side[k], dense.wraps[k]
-        widest(dense.near_speed, dense.room, *along)
-        widest(dense.near_count, dense.room, *along)
+        sliding_maximum(dense.near_speed, dense.room, *along)
+        sliding_maximum(dense.near_count, dense.room, *along)
 
 
 @inner_kernel
-def smooth(particles, grid, tools, dense):
+def smooth(particles, grid, workspace, dense):
     """Let the fields follow what is in each cell now."""
     d = len(particles.images)
     factor = dense.ball / grid.volume
     for cell in range(len(grid.starts) - 1):
         filled = surface = 0.0
         for slot in range(np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])):
-            radius = tools.radius[kind_in(particles, slot, tools)]
+            radius = workspace.radius[kind_in(particles, slot, workspace)]
             power = radius if d == 2 else radius * radius
             filled += power * radius
             surface += power
@@ -140,9 +140,9 @@ def smooth(particles, grid, tools, dense):
 
 
 @inner_helper
-def cell_at(particles, slot, sigma, direction, grid, setting):
+def cell_at(particles, slot, sigma, direction, grid, context):
     """The cell at a distance from the particle in a slot; -1 outside the container."""
-    found, space = 0, setting.space
+    found, space = 0, context.space
     for k in range(len(space.lengths)):
         x = particles.data[position_row(particles, k), slot] + sigma * direction[k]
         if space.periodic[k]:
@@ -200,23 +200,25 @@ def note_speed(particles, slot, cell, grid, dense):
 
 
 @inner_helper
-def collide_at(particles, pair, kinds, direction, sigma, setting, law, stress):
+def collide_at(particles, pair, kinds, direction, sigma, context, law, stress):
     """A contact of the particles in two slots, of these kinds, along a direction. Counts |r . dp|."""
-    tools = setting.tools
+    workspace = context.workspace
     if stress is not None:
-        note_pair(particles, pair, setting, stress, law)
+        note_pair(particles, pair, context, stress, law)
     if law is None:
-        passed = collide_smooth(particles, pair, direction, (tools.mass[kinds[0]], tools.mass[kinds[1]]))
+        passed = collide_smooth(
+            particles, pair, direction, (workspace.mass[kinds[0]], workspace.mass[kinds[1]])
+        )
     else:
-        take_in(particles, pair[0], 0, kinds[0], setting, law)
-        take_in(particles, pair[1], 1, kinds[1], setting, law)
-        passed = collide_in_room(direction, setting, law)
-        give_back(particles, pair[0], 0, setting, law)
-        give_back(particles, pair[1], 1, setting, law)
+        load_particle(particles, pair[0], 0, kinds[0], context, law)
+        load_particle(particles, pair[1], 1, kinds[1], context, law)
+        passed = collide_loaded_pair(direction, context, law)
+        store_particle(particles, pair[0], 0, context, law)
+        store_particle(particles, pair[1], 1, context, law)
     if stress is not None:
         apart = -sigma * direction[0], -sigma * direction[1], -sigma * direction[2]
-        add_contact(particles, pair, apart, setting, stress, law)
-    add_exact(tools.virial[setting.part], sigma * passed)
+        add_contact(particles, pair, apart, context, stress, law)
+    add_exact(workspace.virial[context.part], sigma * passed)
 
 
 @inner_helper
@@ -230,9 +232,9 @@ def approach_along(particles, pair, direction):
 
 
 @inner_helper
-def partner_of(particles, slot, sigma, direction, pick, grid, setting):
+def partner_of(particles, slot, sigma, direction, pick, grid, context):
     """The partner of the particle in a slot: (its slot, its cell); -1 if the draw finds none."""
-    cell = cell_at(particles, slot, sigma, direction, grid, setting)
+    cell = cell_at(particles, slot, sigma, direction, grid, context)
     if cell < 0:
         return np.int64(-1), np.int64(-1)
     found = np.int64(grid.starts[cell]) + pick
@@ -242,11 +244,11 @@ def partner_of(particles, slot, sigma, direction, pick, grid, setting):
 
 
 @inner_helper
-def relative_chance(pair, cells, kinds, largest, dense, tools, dimension):
+def relative_chance(pair, cells, kinds, largest, dense, workspace, dimension):
     """What sizes and density let two particles of these kinds in two cells collide, over what is possible at
     most."""
-    one, other = tools.radius[kinds[0]], tools.radius[kinds[1]]
-    size = (one + other) / (2.0 * tools.largest)
+    one, other = workspace.radius[kinds[0]], workspace.radius[kinds[1]]
+    size = (one + other) / (2.0 * workspace.largest)
     filled = 0.5 * (dense.fields[FILLED, cells[0]] + dense.fields[FILLED, cells[1]])
     surface = 0.5 * (dense.fields[SURFACE, cells[0]] + dense.fields[SURFACE, cells[1]])
     contact = contact_value(filled, surface, one * other / (one + other), dense) / largest
@@ -254,32 +256,32 @@ def relative_chance(pair, cells, kinds, largest, dense, tools, dimension):
 
 
 @inner_helper
-def try_once(particles, counter, words, bound, grid, setting, dense, options):
+def try_once(particles, counter, words, bound, grid, context, dense, options):
     """One trial. counter: key, step, cell and trial. Returns whether it is a collision, and whether its
     chance exceeded 1."""
     key, step, cell, trial = counter
     law, stress = options
-    tools, d = setting.tools, len(setting.space.lengths)
+    workspace, d = context.workspace, len(context.space.lengths)
     first = np.int64(grid.starts[cell])
     i = first + below(words[1], np.int64(grid.starts[cell + 1]) - first)
-    one, other = kind_in(particles, i, tools), np.int64(0)
-    if len(tools.radius) > 1:
+    one, other = kind_in(particles, i, workspace), np.int64(0)
+    if len(workspace.radius) > 1:
         extra = words_of(key, step, cell, trial, KIND_BLOCK)
-        other = below(extra[0], len(tools.radius))
+        other = below(extra[0], len(workspace.radius))
     direction = in_plane(key, step, cell, trial) if d == 2 else unit_vector(key, step, cell, trial)
-    sigma = tools.radius[one] + tools.radius[other]
+    sigma = workspace.radius[one] + workspace.radius[other]
     pick = below(words[2], np.int64(dense.near_count[cell]))
-    j, there = partner_of(particles, i, sigma, direction, pick, grid, setting)
+    j, there = partner_of(particles, i, sigma, direction, pick, grid, context)
     if j < 0:
         return False, False
-    if kind_in(particles, j, tools) != other:
+    if kind_in(particles, j, workspace) != other:
         return False, False
     pair, kinds = (i, j), (one, other)
     approach = approach_along(particles, pair, direction)
-    chance = relative_chance(pair, (cell, there), kinds, dense.highest[0], dense, tools, d)
+    chance = relative_chance(pair, (cell, there), kinds, dense.highest[0], dense, workspace, d)
     exceeded = approach * chance > bound * _ROUNDED
     if fraction(words[3]) * bound < approach * chance:
-        collide_at(particles, pair, kinds, direction, sigma, setting, law, stress)
+        collide_at(particles, pair, kinds, direction, sigma, context, law, stress)
         note_speed(particles, i, cell, grid, dense)
         note_speed(particles, j, there, grid, dense)
         return True, exceeded
@@ -287,15 +289,15 @@ def try_once(particles, counter, words, bound, grid, setting, dense, options):
 
 
 @inner_kernel
-def collide_dense(particles, grid, setting, dense, law, stress):
+def collide_dense(particles, grid, context, dense, law, stress):
     """Make the collisions of one step, cell after cell."""
-    tools, d = setting.tools, len(setting.space.lengths)
-    survey(particles, grid, tools, dense)
+    workspace, d = context.workspace, len(context.space.lengths)
+    update_bounds(particles, grid, workspace, dense)
     if stress is not None:
-        add_flights(particles, (0, len(grid.starts) - 1), grid, setting, stress, law)
-    sigma, key, step = 2.0 * tools.largest, tools.key, tools.clock[0]
+        add_flights(particles, (0, len(grid.starts) - 1), grid, context, stress, law)
+    sigma, key, step = 2.0 * workspace.largest, workspace.key, workspace.clock[0]
     around = 6.283185307179586 * (sigma if d == 2 else 2.0 * sigma * sigma)
-    rate = 0.5 * around * dense.highest[0] / grid.volume * tools.dt * len(tools.radius)
+    rate = 0.5 * around * dense.highest[0] / grid.volume * workspace.dt * len(workspace.radius)
     met = trials = exceeded = 0
     for cell in range(len(grid.starts) - 1):
         number = np.int64(grid.starts[cell + 1]) - np.int64(grid.starts[cell])
@@ -308,14 +310,14 @@ def collide_dense(particles, grid, setting, dense, law, stress):
             if not left > 0.0:
                 break
             done, beyond = try_once(
-                particles, (key, step, cell, trial), words, bound, grid, setting, dense, (law, stress)
+                particles, (key, step, cell, trial), words, bound, grid, context, dense, (law, stress)
             )
             met += done
             exceeded += beyond
             trial += 1
         trials += trial
         if stress is not None:
-            finish_cell(setting, stress)
-    tools.counts[0, COLLISIONS] += met
-    tools.counts[0, TRIALS] += trials
-    tools.counts[0, EXCEEDED] += exceeded
+            finish_cell(context, stress)
+    workspace.counts[0, COLLISIONS] += met
+    workspace.counts[0, TRIALS] += trials
+    workspace.counts[0, EXCEEDED] += exceeded

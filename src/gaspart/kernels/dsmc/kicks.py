@@ -36,17 +36,17 @@ def _kick(particles, slot, width, counter, mass, momentum):
 
 
 @kernel
-def kick_all(particles, tools, width, counter, given):
+def kick_all(particles, workspace, width, counter, given):
     """Kick all particles, with a width of `width` for mass 1, without changing the total momentum. counter:
     see `_kick`; given (1, 2): the energy that they have been given, see `running_sum.add`."""
     momentum, total = (0.0, 0.0, 0.0), 0.0
     for slot in range(particles.data.shape[1]):
-        mass = tools.mass[kind_in(particles, slot, tools)]
+        mass = workspace.mass[kind_in(particles, slot, workspace)]
         add(given, 0, -_energy(particles, slot, mass))
         momentum = _kick(particles, slot, width / sqrt(mass), counter, mass, momentum)
         total += mass
     for slot in range(particles.data.shape[1]):
-        mass = tools.mass[kind_in(particles, slot, tools)]
+        mass = workspace.mass[kind_in(particles, slot, workspace)]
         for k in range(len(particles.images)):
             particles.data[velocity_row(particles, k), slot] -= momentum[k] / total
         add(given, 0, _energy(particles, slot, mass))

@@ -1,8 +1,8 @@
 """One step after another: motion, sort into cells, collisions.
 
 The parts of a step that threads share are in functions of their own; with `threads` None there is one thread,
-and machine code in which others do not exist. numba passes no tuples in tuples to threads: a `Setting` is put
-together there. What a particle meets does not depend on which thread works on it.
+and machine code in which others do not exist. numba passes no tuples in tuples to threads: a `ThreadContext`
+is put together there. What a particle meets does not depend on which thread works on it.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ from gaspart.kernels.dsmc.cells import (
     swap_row,
 )
 from gaspart.kernels.dsmc.enskog import collide_dense
-from gaspart.kernels.dsmc.model import Setting
+from gaspart.kernels.dsmc.model import ThreadContext
 from gaspart.kernels.dsmc.motion import move
 from gaspart.kernels.dsmc.pace import still_fits
 from gaspart.kernels.dsmc.stress import add_flights
@@ -33,19 +33,19 @@ from gaspart.kernels.step.model import part_of
 
 
 @inner_helper
-def move_part(particles, grid, setting, parts, gravity, faces, law):
+def move_part(particles, grid, context, parts, gravity, faces, law):
     """Make the motion of one step for one of all parts of the slots."""
-    slots = part_of(setting.part, parts, particles.data.shape[1])
-    move(particles, slots, grid, setting, gravity, faces, law)
+    slots = part_of(context.part, parts, particles.data.shape[1])
+    move(particles, slots, grid, context, gravity, faces, law)
 
 
 @inner_parallel_kernel
-def move_shared(particles, grid, tools, lengths, periodic, gravity, faces, law):
+def move_shared(particles, grid, workspace, lengths, periodic, gravity, faces, law):
     """`move_part` for all parts."""
     parts = len(grid.counts)
     for part in prange(parts):
-        setting = Setting(Space(lengths, periodic, tools.margin), tools, part)
-        move_part(particles, grid, setting, parts, gravity, faces, law)
+        context = ThreadContext(Space(lengths, periodic, workspace.margin), workspace, part)
+        move_part(particles, grid, context, parts, gravity, faces, law)
 
 
 @inner_parallel_kernel
@@ -70,29 +70,29 @@ def gather_shared(particles, row, grid):
 
 
 @inner_helper
-def collide_part(particles, cells, grid, setting, law, stress):
+def collide_part(particles, cells, grid, context, law, stress):
     """Make the collisions of one step in one thread's cells, from cells[0] to cells[1]."""
     if stress is not None:
-        add_flights(particles, cells, grid, setting, stress, law)
-    collide_cells(particles, cells, grid, setting, law, stress)
+        add_flights(particles, cells, grid, context, stress, law)
+    collide_cells(particles, cells, grid, context, law, stress)
 
 
 @inner_parallel_kernel
-def collide_shared(particles, shares, grid, tools, lengths, periodic, law, stress):
+def collide_shared(particles, shares, grid, workspace, lengths, periodic, law, stress):
     """`collide_part` for all parts."""
     for part in prange(len(shares) - 1):
-        setting = Setting(Space(lengths, periodic, tools.margin), tools, part)
-        collide_part(particles, (shares[part], shares[part + 1]), grid, setting, law, stress)
+        context = ThreadContext(Space(lengths, periodic, workspace.margin), workspace, part)
+        collide_part(particles, (shares[part], shares[part + 1]), grid, context, law, stress)
 
 
 @inner_helper
-def move_all(particles, grid, setting, threads, gravity, faces, law):
+def move_all(particles, grid, context, threads, gravity, faces, law):
     """Make the motion of one step."""
-    space, tools = setting.space, setting.tools
+    space, workspace = context.space, context.workspace
     if threads is None:
-        move_part(particles, grid, setting, 1, gravity, faces, law)
+        move_part(particles, grid, context, 1, gravity, faces, law)
     else:
-        move_shared(particles, grid, tools, space.lengths, space.periodic, gravity, faces, law)
+        move_shared(particles, grid, workspace, space.lengths, space.periodic, gravity, faces, law)
 
 
 @inner_helper
@@ -118,21 +118,21 @@ def sort_all(particles, grid, threads):
 
 
 @inner_allocating_kernel
-def collide_all(particles, grid, setting, threads, law, dense, stress):
+def collide_all(particles, grid, context, threads, law, dense, stress):
     """Make the collisions of one step."""
-    space, tools = setting.space, setting.tools
+    space, workspace = context.space, context.workspace
     if dense is not None:
-        collide_dense(particles, grid, setting, dense, law, stress)
+        collide_dense(particles, grid, context, dense, law, stress)
     elif threads is None:
-        collide_part(particles, (0, len(grid.starts) - 1), grid, setting, law, stress)
+        collide_part(particles, (0, len(grid.starts) - 1), grid, context, law, stress)
     else:
         shares = np.empty(len(grid.counts) + 1, np.int64)
         share_cells(grid, shares)
-        collide_shared(particles, shares, grid, tools, space.lengths, space.periodic, law, stress)
+        collide_shared(particles, shares, grid, workspace, space.lengths, space.periodic, law, stress)
 
 
 @allocating_kernel
-def run_steps(particles, grid, setting, steps, threads, options):
+def run_steps(particles, grid, context, steps, threads, options):
     """Make so many steps, or fewer if their length no longer fits. threads: their number, or None for one;
     options: gravity (d,), the faces with a kind, the law, what a dense gas needs, the sums of the stress, and
     the lengths that fit; each may be None. Returns how many steps it has made, at least one."""
@@ -140,8 +140,8 @@ def run_steps(particles, grid, setting, steps, threads, options):
     for n in range(steps):
         if n > 0 and not still_fits(particles, pace):
             return n
-        move_all(particles, grid, setting, threads, gravity, faces, law)
+        move_all(particles, grid, context, threads, gravity, faces, law)
         sort_all(particles, grid, threads)
-        collide_all(particles, grid, setting, threads, law, dense, stress)
-        setting.tools.clock[0] += 1
+        collide_all(particles, grid, context, threads, law, dense, stress)
+        context.workspace.clock[0] += 1
     return steps

@@ -45,9 +45,9 @@ class Grid(NamedTuple):
     starts: np.ndarray
 
 
-class Tools(NamedTuple):
-    """What a step works with. margin: 1 if walls stop surfaces, 0 if they stop centres; dt: the length of a
-    step; clock (1,): its number, counted from 0.
+class Workspace(NamedTuple):
+    """Constants and working arrays of a step. margin: 1 if walls stop surfaces, 0 if they stop centres; dt:
+    the length of a step; clock (1,): its number, counted from 0.
 
     By particle: kind (N,), or (0,) if all are alike; by kind (K,): radius, mass, inertia (moment of);
     largest: the largest radius. key (2,): words of 32 bits for the random numbers of collisions; wall_key
@@ -104,11 +104,11 @@ class Law(NamedTuple):
     viscous: float | None
 
 
-class Setting(NamedTuple):
-    """What one thread, number `part`, works with."""
+class ThreadContext(NamedTuple):
+    """The arguments of one thread of a step, number `part`."""
 
     space: Space
-    tools: Tools
+    workspace: Workspace
     part: int
 
 
@@ -137,11 +137,11 @@ def number_at(particles, slot):
 
 
 @inner_helper
-def kind_in(particles, slot, tools):
+def kind_in(particles, slot, workspace):
     """The kind of the particle in a slot."""
-    if len(tools.kind) == 0:
+    if len(workspace.kind) == 0:
         return np.int64(0)
-    return np.int64(tools.kind[number_at(particles, slot)])
+    return np.int64(workspace.kind[number_at(particles, slot)])
 
 
 @inner_helper

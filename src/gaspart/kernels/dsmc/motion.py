@@ -18,7 +18,7 @@ _FURTHEST = 2.0**31  # periodic images are counted in 32 bits
 
 
 @inner_helper
-def wrap(particles, slot, axis, length, setting):
+def wrap(particles, slot, axis, length, context):
     """Bring a particle back into the container on a periodic axis. Notes one that is too far away to be
     counted."""
     x = particles.data[position_row(particles, axis), slot]
@@ -33,7 +33,7 @@ def wrap(particles, slot, axis, length, setting):
         if abs(total) < _FURTHEST:
             particles.images[axis, number_at(particles, slot)] = np.int32(total)
         else:
-            setting.tools.counts[setting.part, FAR] += 1
+            context.workspace.counts[context.part, FAR] += 1
 
 
 @inner_helper
@@ -49,10 +49,10 @@ def is_beyond(particles, slot, radius, space):
 
 
 @inner_kernel
-def fly_again(particles, slot, which, setting, gravity, faces, law):
+def redo_flight_with_faces(particles, slot, which, context, gravity, faces, law):
     """Make the step of a particle of a kind anew that has come beyond a wall."""
-    dt, flights = setting.tools.dt, setting.tools.flights[setting.part]
-    for k in range(len(setting.space.lengths)):
+    dt, flights = context.workspace.dt, context.workspace.flights[context.part]
+    for k in range(len(context.space.lengths)):
         x = particles.data[position_row(particles, k), slot]
         v = particles.data[velocity_row(particles, k), slot]
         if gravity is None:
@@ -61,33 +61,33 @@ def fly_again(particles, slot, which, setting, gravity, faces, law):
             v -= gravity[k] * dt
             x -= (v + 0.5 * gravity[k] * dt) * dt
         flights[0].position[k], flights[0].velocity[k] = x, v
-    flights[0].radius = setting.tools.radius[which]
-    fly_among_faces(number_at(particles, slot), which, setting, gravity, faces, law)
-    for k in range(len(setting.space.lengths)):
+    flights[0].radius = context.workspace.radius[which]
+    fly_among_faces(number_at(particles, slot), which, context, gravity, faces, law)
+    for k in range(len(context.space.lengths)):
         particles.data[position_row(particles, k), slot] = flights[0].position[k]
         particles.data[velocity_row(particles, k), slot] = flights[0].velocity[k]
 
 
 @inner_helper
-def bring_back_from_walls(particles, slots, setting, gravity, faces, law):
+def bring_back_from_walls(particles, slots, context, gravity, faces, law):
     """Make the step anew of the particles in some slots that have come beyond a wall. Returns their
     number."""
     number = 0
     for slot in range(slots[0], slots[1]):
-        which = kind_in(particles, slot, setting.tools)
-        if is_beyond(particles, slot, setting.tools.radius[which], setting.space):
-            fly_again(particles, slot, which, setting, gravity, faces, law)
+        which = kind_in(particles, slot, context.workspace)
+        if is_beyond(particles, slot, context.workspace.radius[which], context.space):
+            redo_flight_with_faces(particles, slot, which, context, gravity, faces, law)
             number += 1
     return number
 
 
 @inner_helper
-def wrap_all(particles, slots, axis, length, setting):
+def wrap_all(particles, slots, axis, length, context):
     """Bring the particles in some slots back into the container on a periodic axis."""
     row = position_row(particles, axis)
     for slot in range(slots[0], slots[1]):
         if not 0.0 <= particles.data[row, slot] < length:
-            wrap(particles, slot, axis, length, setting)
+            wrap(particles, slot, axis, length, context)
 
 
 @inner_helper
@@ -103,11 +103,11 @@ def advance_axis(particles, slots, axis, limits, dt, gravity):
 
 
 @inner_kernel
-def move(particles, slots, grid, setting, gravity, faces, law):
+def move(particles, slots, grid, context, gravity, faces, law):
     """Make the motion of one step for one thread's slots, from slots[0] to slots[1], and count them in their
     cells."""
-    space, dt = setting.space, setting.tools.dt
-    inset = space.margin * setting.tools.largest
+    space, dt = context.space, context.workspace.dt
+    inset = space.margin * context.workspace.largest
     for start in range(slots[0], slots[1], _BLOCK):
         block = start, min(start + _BLOCK, slots[1])
         hits, crossed = 0, (0, 0, 0)
@@ -120,9 +120,9 @@ def move(particles, slots, grid, setting, gravity, faces, law):
             else:
                 crossed, hits = (crossed[1], crossed[2], 0), hits + outside
         if hits > 0:
-            hits = bring_back_from_walls(particles, block, setting, gravity, faces, law)
+            hits = bring_back_from_walls(particles, block, context, gravity, faces, law)
         for k in range(len(space.lengths)):
             if space.periodic[k] and crossed[3 - len(space.lengths) + k] + hits > 0:
-                wrap_all(particles, block, k, space.lengths[k], setting)
+                wrap_all(particles, block, k, space.lengths[k], context)
         locate(particles, block[0], block[1], grid)
-    count(slots[0], slots[1], setting.part, grid)
+    count(slots[0], slots[1], context.part, grid)

@@ -37,74 +37,74 @@ def velocity_about(particles, slot, axis, stress):
 
 
 @inner_helper
-def energy_of(particles, slot, setting, stress, law):
+def energy_of(particles, slot, context, stress, law):
     """The kinetic energy of the particle in a slot, likewise."""
-    tools = setting.tools
-    kind = kind_in(particles, slot, tools)
+    workspace = context.workspace
+    kind = kind_in(particles, slot, workspace)
     square = 0.0
-    for k in range(len(setting.space.lengths)):
+    for k in range(len(context.space.lengths)):
         v = velocity_about(particles, slot, k, stress)
         square += v * v
-    energy = 0.5 * tools.mass[kind] * square
+    energy = 0.5 * workspace.mass[kind] * square
     if law is not None:
         spin, number = 0.0, number_at(particles, slot)
         for k in range(3):
             spin += law.spins[number, k] * law.spins[number, k]
         if spin > 0.0:  # the moment of inertia of smooth particles may be infinite
-            energy += 0.5 * tools.inertia[kind] * spin
+            energy += 0.5 * workspace.inertia[kind] * spin
     return energy
 
 
 @inner_helper
-def add_flight(particles, slot, setting, stress, law):
+def add_flight(particles, slot, context, stress, law):
     """Add what the particle in a slot carries in a step."""
-    d, tools, cell = len(setting.space.lengths), setting.tools, stress.cell[setting.part]
-    mass = tools.mass[kind_in(particles, slot, tools)]
-    energy = energy_of(particles, slot, setting, stress, law)
+    d, workspace, cell = len(context.space.lengths), context.workspace, stress.cell[context.part]
+    mass = workspace.mass[kind_in(particles, slot, workspace)]
+    energy = energy_of(particles, slot, context, stress, law)
     for k in range(d):
-        way = velocity_about(particles, slot, k, stress) * tools.dt
+        way = velocity_about(particles, slot, k, stress) * workspace.dt
         cell[2 * d * d + k] += energy * way
         for n in range(d):
             cell[d * k + n] += way * mass * velocity_about(particles, slot, n, stress)
 
 
 @inner_helper
-def finish_cell(setting, stress):
+def finish_cell(context, stress):
     """Move the sums of the present cell to those of its thread."""
-    cell, sums = stress.cell[setting.part], stress.sums[setting.part]
+    cell, sums = stress.cell[context.part], stress.sums[context.part]
     for n in range(len(cell)):
         add_exact(sums[n], cell[n])
         cell[n] = 0.0
 
 
 @inner_kernel
-def add_flights(particles, cells, grid, setting, stress, law):
+def add_flights(particles, cells, grid, context, stress, law):
     """Add what the particles of some cells, from cells[0] to cells[1], carry in a step."""
     for cell in range(cells[0], cells[1]):
         for slot in range(np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])):
-            add_flight(particles, slot, setting, stress, law)
-        finish_cell(setting, stress)
+            add_flight(particles, slot, context, stress, law)
+        finish_cell(context, stress)
 
 
 @inner_helper
-def note_pair(particles, pair, setting, stress, law):
+def note_pair(particles, pair, context, stress, law):
     """Keep velocities and energies of the particles in two slots, which are to collide."""
-    before, d = stress.before[setting.part], len(setting.space.lengths)
+    before, d = stress.before[context.part], len(context.space.lengths)
     for n in range(2):
         for k in range(d):
             before[n, k] = velocity_about(particles, pair[n], k, stress)
-        before[n, d] = energy_of(particles, pair[n], setting, stress, law)
+        before[n, d] = energy_of(particles, pair[n], context, stress, law)
 
 
 @inner_helper
-def add_contact(particles, pair, apart, setting, stress, law):
+def add_contact(particles, pair, apart, context, stress, law):
     """Add what has passed between the particles in two slots since `note_pair`. apart (3,): the vector from
     the second to the first."""
-    before, cell = stress.before[setting.part], stress.cell[setting.part]
-    d, tools = len(setting.space.lengths), setting.tools
-    mass = tools.mass[kind_in(particles, pair[0], tools)]
-    first = energy_of(particles, pair[0], setting, stress, law) - before[0, d]
-    second = energy_of(particles, pair[1], setting, stress, law) - before[1, d]
+    before, cell = stress.before[context.part], stress.cell[context.part]
+    d, workspace = len(context.space.lengths), context.workspace
+    mass = workspace.mass[kind_in(particles, pair[0], workspace)]
+    first = energy_of(particles, pair[0], context, stress, law) - before[0, d]
+    second = energy_of(particles, pair[1], context, stress, law) - before[1, d]
     for n in range(d):
         gained = mass * (velocity_about(particles, pair[0], n, stress) - before[0, n])
         cell[2 * d * d + n] += apart[n] * 0.5 * (first - second)

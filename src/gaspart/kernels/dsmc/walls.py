@@ -11,7 +11,7 @@ from math import floor, inf, sqrt
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
-from gaspart.kernels.dsmc.contact import Sums, count_loss, law_of, return_spin, take_spin
+from gaspart.kernels.dsmc.contact import Sums, count_loss, law_of, load_spin, store_spin
 from gaspart.kernels.dsmc.model import UNFINISHED, open_space
 from gaspart.kernels.model import HARD, NONE, THERMAL
 from gaspart.kernels.physics.ballistic import flown
@@ -114,33 +114,33 @@ def draw_spin(i, level, inertia, key, counter, spins):
 
 
 @inner_helper
-def add_shear(face, mass, setting, shear):
+def add_shear(face, mass, context, shear):
     """Add the momentum along a face of the particle in a thread's room to what the face was given. mass:
     negative where the particle takes it."""
     if shear is not None:
-        tools, part = setting.tools, setting.part
+        workspace, part = context.workspace, context.part
         for k in range(shear.shape[2]):
             if k != face // 2:
-                given = mass * tools.flights[part, 0].velocity[k]
+                given = mass * workspace.flights[part, 0].velocity[k]
                 add_exact(shear[part, face, k], given)
 
 
 @inner_helper
-def drag(face, mass, setting, velocity, shear):
+def drag(face, mass, context, velocity, shear):
     """Let the particle in a thread's room, which leaves a face, share its motion."""
     if velocity is not None:
         for k in range(velocity.shape[1]):
-            setting.tools.flights[setting.part, 0].velocity[k] += velocity[face, k]
-        add_shear(face, -mass, setting, shear)
+            context.workspace.flights[context.part, 0].velocity[k] += velocity[face, k]
+        add_shear(face, -mass, context, shear)
 
 
 @inner_kernel
-def leave_thermal(i, face, which, number, setting, faces, law):
+def leave_thermal(i, face, which, number, context, faces, law):
     """Give particle i, of a kind, at a thermal face, the velocity of one that leaves it: the draw with this
     number of its own. See `obstacles.thermal`."""
-    part, tools, key = setting.part, setting.tools, setting.tools.wall_key
-    flights, mass, inertia = tools.flights[part], tools.mass[which], tools.inertia[which]
-    d, axis, side = len(setting.space.lengths), face // 2, 1.0 if face % 2 else -1.0
+    part, workspace, key = context.part, context.workspace, context.workspace.wall_key
+    flights, mass, inertia = workspace.flights[part], workspace.mass[which], workspace.inertia[which]
+    d, axis, side = len(context.space.lengths), face // 2, 1.0 if face % 2 else -1.0
     level = faces.level[face]
     width, square, given = sqrt(level / mass), 0.0, 0.0
     for k in range(d):
@@ -149,63 +149,63 @@ def leave_thermal(i, face, which, number, setting, faces, law):
     impulse = mass * (side * flights[0].velocity[axis] + away)
     flights[0].velocity[axis] = -side * away
     if faces.kind[face] == THERMAL:
-        add_shear(face, mass, setting, faces.shear)
+        add_shear(face, mass, context, faces.shear)
         one, other, block = normal_pair(key, i, number, 1)
         flights[0].velocity[(axis + 1) % d] = width * one
         if d == 3:
             flights[0].velocity[(axis + 2) % d] = width * other
-        drag(face, mass, setting, faces.velocity, faces.shear)
+        drag(face, mass, context, faces.velocity, faces.shear)
         if law is not None:
             if law.tangential > -1.0:
                 components = 1 if d == 2 else 3
                 given = draw_spin(i, level, inertia, key, (components, number, block), law.spins)
     for k in range(d):
         square -= flights[0].velocity[k] * flights[0].velocity[k]
-    add_exact(tools.wall_impulse[part, face], impulse)
-    add_exact(tools.wall_heat[part, face], 0.5 * mass * square + given)
+    add_exact(workspace.wall_impulse[part, face], impulse)
+    add_exact(workspace.wall_heat[part, face], 0.5 * mass * square + given)
 
 
 @inner_kernel
-def bounce(i, face, which, setting, law):
+def bounce(i, face, which, context, law):
     """Reflect particle i, of a kind, in its place in a thread's room, at a hard face."""
-    part, tools, axis, side = setting.part, setting.tools, face // 2, 1.0 if face % 2 else -1.0
-    flights = setting.tools.flights[part]
+    part, workspace, axis, side = context.part, context.workspace, face // 2, 1.0 if face % 2 else -1.0
+    flights = context.workspace.flights[part]
     if law is None:
-        impulse = 2.0 * setting.tools.mass[which] * abs(flights[0].velocity[axis])
+        impulse = 2.0 * context.workspace.mass[which] * abs(flights[0].velocity[axis])
         flights[0].velocity[axis] = -flights[0].velocity[axis]
     else:
-        take_spin(i, 0, which, setting, law)
+        load_spin(i, 0, which, context, law)
         normal = side if axis == 0 else 0.0, side if axis == 1 else 0.0, side if axis == 2 else 0.0
-        sums = Sums(setting.tools.sums[part])
+        sums = Sums(context.workspace.sums[part])
         impulse = collide_wall_by_law(
-            flights, 0, normal, 0.0, open_space(setting.space.lengths), sums, law_of(setting, law)
+            flights, 0, normal, 0.0, open_space(context.space.lengths), sums, law_of(context, law)
         )
-        return_spin(i, 0, setting, law)
-        count_loss(setting)
-    add_exact(tools.wall_impulse[part, face], impulse)
+        store_spin(i, 0, context, law)
+        count_loss(context)
+    add_exact(workspace.wall_impulse[part, face], impulse)
 
 
 @inner_helper
-def bounce_often(face, times, speed, mass, setting):
+def bounce_often(face, times, speed, mass, context):
     """Count that many elastic bounces of a smooth particle at a face, at one speed."""
-    tools, part = setting.tools, setting.part
-    tools.wall_hits[part, face] += np.int64(times)
-    add_exact(tools.wall_impulse[part, face], 2.0 * mass * speed * times)
+    workspace, part = context.workspace, context.part
+    workspace.wall_hits[part, face] += np.int64(times)
+    add_exact(workspace.wall_impulse[part, face], 2.0 * mass * speed * times)
 
 
 @inner_helper
-def lean(face, axis, mass, left, setting, gravity):
+def lean(face, axis, mass, left, context, gravity):
     """Let a particle rest at a face for a time: the face carries its weight."""
-    setting.tools.flights[setting.part, 0].velocity[axis] = 0.0
-    add_exact(setting.tools.wall_impulse[setting.part, face], mass * abs(gravity[axis]) * left)
+    context.workspace.flights[context.part, 0].velocity[axis] = 0.0
+    add_exact(context.workspace.wall_impulse[context.part, face], mass * abs(gravity[axis]) * left)
 
 
 @inner_kernel
-def finish_axis(axis, left, which, setting, gravity):
+def finish_axis(axis, left, which, context, gravity):
     """Let a smooth, elastic particle in a thread's room fly along one axis, on which nothing depends, for a
     time. Between the first bounce and the last ones whole periods of its motion are made at once."""
-    space, tools = setting.space, setting.tools
-    flights, radius, mass = tools.flights[setting.part], tools.radius[which], tools.mass[which]
+    space, workspace = context.space, context.workspace
+    flights, radius, mass = workspace.flights[context.part], workspace.radius[which], workspace.mass[which]
     skipped = False
     while True:
         first, face, speed = inf, NONE, 0.0
@@ -219,7 +219,7 @@ def finish_axis(axis, left, which, setting, gravity):
             return
         left -= first
         put_at_face(face, -speed, flights, radius, space)
-        bounce_often(face, 1.0, speed, mass, setting)
+        bounce_often(face, 1.0, speed, mass, context)
         if skipped:
             continue
         y, u, a = along(axis, face % 2 == 0, flights, radius, space, gravity)
@@ -229,51 +229,51 @@ def finish_axis(axis, left, which, setting, gravity):
             period = 2.0 * speed / a  # the pull is towards this face, away from that one
         if gravity is not None:
             if not period > left * 2.0**-53:
-                lean(face, axis, mass, left, setting, gravity)
+                lean(face, axis, mass, left, context, gravity)
                 return
         number = floor(left / period)
         left = max(left - number * period, 0.0)
-        bounce_often(face, number, speed, mass, setting)
+        bounce_often(face, number, speed, mass, context)
         if across:
-            bounce_often(face ^ 1, number, w, mass, setting)
+            bounce_often(face ^ 1, number, w, mass, context)
         skipped = True
 
 
 @inner_helper
-def finish_axes(left, which, setting, gravity, resting):
+def finish_axes(left, which, context, gravity, resting):
     """The same along all axes."""
-    space = setting.space
+    space = context.space
     for k in range(len(space.lengths)):
         if space.periodic[k]:
-            fly_along(k, setting.tools.flights[setting.part], left, gravity)
+            fly_along(k, context.workspace.flights[context.part], left, gravity)
         elif not resting >> k & 1:
-            finish_axis(k, left, which, setting, gravity)
+            finish_axis(k, left, which, context, gravity)
 
 
 @inner_helper
-def comes_to_rest(face, speed, left, which, setting, gravity, law):
+def comes_to_rest(face, speed, left, which, context, gravity, law):
     """Whether a particle in a thread's room that comes to a hard face with a speed rests there: its bounces
     are too short, and would be shorter still. Counts what it loses and what the face carries."""
-    tools, axis = setting.tools, face // 2
+    workspace, axis = context.workspace, face // 2
     pull = gravity[axis] if face % 2 else -gravity[axis]  # towards the face
     shortest = 0.0
     if law is not None:
-        shortest = _REST * tools.dt
+        shortest = _REST * workspace.dt
     if not (pull > 0.0 and 2.0 * speed <= pull * shortest):
         return False
-    mass = tools.mass[which]
-    add_exact(tools.loss[setting.part], 0.5 * mass * speed * speed)
-    add_exact(tools.wall_impulse[setting.part, face], mass * speed)
-    lean(face, axis, mass, left, setting, gravity)
+    mass = workspace.mass[which]
+    add_exact(workspace.loss[context.part], 0.5 * mass * speed * speed)
+    add_exact(workspace.wall_impulse[context.part, face], mass * speed)
+    lean(face, axis, mass, left, context, gravity)
     return True
 
 
 @inner_kernel
-def fly_among_faces(i, which, setting, gravity, faces, law):
+def fly_among_faces(i, which, context, gravity, faces, law):
     """Let particle i, of a kind, in its place in a thread's room, fly for a step."""
-    space, tools, part = setting.space, setting.tools, setting.part
-    flights, radius, left = tools.flights[part], tools.radius[which], tools.dt
-    resting, clock = 0, np.int64(tools.clock[0])
+    space, workspace, part = context.space, context.workspace, context.part
+    flights, radius, left = workspace.flights[part], workspace.radius[which], workspace.dt
+    resting, clock = 0, np.int64(workspace.clock[0])
     for hit in range(_MOST):
         time, face, speed = next_face(flights, radius, space, gravity, resting)
         if not time <= left:
@@ -281,7 +281,7 @@ def fly_among_faces(i, which, setting, gravity, faces, law):
             return
         if faces is None and law is None:
             if hit >= _FEW:
-                finish_axes(left, which, setting, gravity, resting)
+                finish_axes(left, which, context, gravity, resting)
                 return
         fly(flights, time, space, gravity, resting)
         left -= time
@@ -290,14 +290,14 @@ def fly_among_faces(i, which, setting, gravity, faces, law):
         if faces is not None:
             hard = faces.kind[face] == HARD
         if gravity is not None:
-            if hard and comes_to_rest(face, speed, left, which, setting, gravity, law):
+            if hard and comes_to_rest(face, speed, left, which, context, gravity, law):
                 resting |= 1 << (face // 2)
                 continue
-        tools.wall_hits[part, face] += 1
+        workspace.wall_hits[part, face] += 1
         if hard:
-            bounce(i, face, which, setting, law)
+            bounce(i, face, which, context, law)
         if faces is not None:
             if not hard:
                 number = clock * _FEW + hit if hit < _FEW else -1 - (clock * _MOST + hit)
-                leave_thermal(i, face, which, number, setting, faces, law)
-    tools.counts[part, UNFINISHED] += 1
+                leave_thermal(i, face, which, number, context, faces, law)
+    workspace.counts[part, UNFINISHED] += 1

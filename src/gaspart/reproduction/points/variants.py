@@ -82,7 +82,7 @@ def compile_task(point: Point) -> str:
     if compiled_features(Scene.from_dict(scene)) != compiled_features(full):
         scene = full.to_dict()
     if engines := point.kind_of_job.engines(point):
-        engine = engine_to_dict(engines[0].for_few(full))
+        engine = engine_to_dict(engines[0].for_small_scene(full))
     asked = {"stress": "stress", "events": "pairs"}  # of the task, by a key of the point
     extra = {name: True for name, key in asked.items() if point.settings.get(key)}
     return json.dumps({"scene": scene, "engine": engine, **extra})

@@ -1,4 +1,4 @@
-"""What a checkpoint of a simulation belongs to, and whether it may be restored."""
+"""The identity of a checkpoint: which simulation it belongs to, and whether it may be restored."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
 
-def belonging(
+def checkpoint_identity(
     scene: Scene, engine: Engine, seed: int | tuple[int, ...], initial: State | None = None
 ) -> dict[str, np.ndarray]:
-    """What the results of a simulation depend on, as texts, by the keys of a checkpoint. initial: the state
-    at time 0, if it does not follow from the scene and the seed."""
-    settings = {key: x for key, x in engine_to_dict(engine).items() if key not in engine.same_bits}
+    """All that the results of a simulation depend on, as texts, by the keys of a checkpoint. initial: the
+    state at time 0, if it does not follow from the scene and the seed."""
+    settings = {key: x for key, x in engine_to_dict(engine).items() if key not in engine.neutral_settings}
     texts = {
         "version": __version__,
         "scene": hashlib.sha256(_text(scene.to_dict()).encode()).hexdigest(),
@@ -45,7 +45,7 @@ def _text(value: object) -> str:
     return json.dumps(value, sort_keys=True, default=int)  # a seed may be an integer of numpy
 
 
-def check_belonging(checkpoint: Any, wanted: Mapping[str, np.ndarray]) -> None:
+def check_identity(checkpoint: Any, wanted: Mapping[str, np.ndarray]) -> None:
     """Raise SceneError, which names the difference, unless a checkpoint belongs to what is `wanted`."""
     if not isinstance(checkpoint, Mapping) or not all(key in checkpoint for key in wanted):
         raise SceneError("checkpoint", checkpoint, "must be what Simulation.checkpoint has returned")
