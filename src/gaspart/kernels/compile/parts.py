@@ -146,6 +146,8 @@ class PartCompiler(KernelCompiler):
 class _PartContents(KernelContents):
     """What is in the file of a part: its translation, with those of the parts that it calls."""
 
+    suffix = "part"
+
     def check_cachable(self, data: Any) -> bool:
         """Whether other processes may use a result of the compiler: not where it calls a function of numba
         that this process had compiled before for others, under a number that those may have given too."""
