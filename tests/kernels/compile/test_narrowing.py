@@ -62,7 +62,7 @@ def hands_on_by_name(outer):
 @inner_kernel
 def renames(outer):
     same = outer
-    return same.rest[0]
+    return same.inner.used[0]
 
 
 @inner_kernel
@@ -109,6 +109,7 @@ def test_what_is_absent_stays_absent_and_functions_of_no_module_get_all():
 
 def test_a_call_passes_these_entries_with_their_values():
     given = Outer(Inner(np.array([2.0, 5.0]), 0.0), np.array([7.0]), np.array([11.0]))
-    assert called_by_python(given) == (2.0 + 5.0 + 11.0, 2.0, 7.0, 11.0, 2.0)
+    assert called_by_python(given) == (2.0 + 5.0 + 11.0, 2.0, 2.0, 11.0, 2.0)
+    assert called_by_python(given._replace(rest=None))[0] == 2.0 + 5.0
     _, _, types, _ = entry.get_call_template((numba.typeof(given),), {})
     assert types == (outer(inner(other=NONE), NONE, NONE),)

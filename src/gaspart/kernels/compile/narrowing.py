@@ -5,8 +5,8 @@ of a scene. Most functions use few of its entries: they are compiled for a tuple
 Then scenes that differ in these share them, and calls pass less.
 
 The entries are found in the source, with those that the functions use to which it hands them on. A branch on
-an argument that is None, or is not, is followed as numba does. An argument that is used in any other way than
-by its entries is used whole.
+whether an argument is None is left out where numba leaves it out: if it is None. An argument that is
+used in any other way than by its entries is used whole.
 """
 
 from __future__ import annotations
@@ -29,8 +29,11 @@ WHOLE: Use = {"*": {}}
 
 def narrowed(function: Callable, arguments: tuple) -> tuple:
     """The types of arguments for which a function is to be compiled instead of these."""
-    uses = _uses(function, arguments)
-    return tuple(_narrow(one, use) for one, use in zip(arguments, uses, strict=True))
+    key = _key(function, arguments)
+    if key not in _known_types:
+        uses = zip(arguments, _uses(function, arguments), strict=True)
+        _known_types[key] = tuple(_narrow(one, use) for one, use in uses)
+    return _known_types[key]
 
 
 def _narrow(given: Any, use: Use) -> Any:
@@ -43,14 +46,19 @@ def _narrow(given: Any, use: Use) -> Any:
 
 def _uses(function: Callable, arguments: tuple) -> tuple[Use, ...]:
     """What a function uses of each argument, by their types, `_UNKNOWN` where these are not known."""
-    code = function.__code__
-    key = code, tuple(_UNKNOWN if one is _UNKNOWN else one._code for one in arguments)
+    key = _key(function, arguments)
     if key not in _known_uses:
         _known_uses[key] = _read(function, arguments)
     return _known_uses[key]
 
 
-_known_uses: dict[tuple, tuple[Use, ...]] = {}  # by the numbers of types, whose hashes are slow
+def _key(function: Callable, arguments: tuple) -> tuple:
+    """The source of a function, and the numbers of the types, whose own hashes are slow."""
+    return function.__code__, tuple(_UNKNOWN if one is _UNKNOWN else one._code for one in arguments)
+
+
+_known_uses: dict[tuple, tuple[Use, ...]] = {}
+_known_types: dict[tuple, tuple] = {}
 
 
 def _read(function: Callable, arguments: tuple) -> tuple[Use, ...]:
@@ -82,7 +90,7 @@ def _definition(code: Any) -> tuple[ast.FunctionDef | None, set[str]]:
 def _functions(file: str) -> dict[int, ast.FunctionDef]:
     """The functions of a module, by the line where the code of each begins."""
     found = [one for one in ast.parse(Path(file).read_bytes()).body if isinstance(one, ast.FunctionDef)]
-    return {min(node.lineno for node in (one, *one.decorator_list)): one for one in found}
+    return {min([one.lineno, *(before.lineno for before in one.decorator_list)]): one for one in found}
 
 
 def _is_plain(arguments: ast.arguments) -> bool:
@@ -119,10 +127,8 @@ class _Reader(ast.NodeVisitor):
         """Read what numba compiles of a branch."""
         match one.test:
             case ast.Compare(ast.Name(name), [ast.Is() | ast.IsNot() as sign], [ast.Constant(None)]):
-                kind = self.arguments.get(name, _UNKNOWN)
-                if kind is not _UNKNOWN and not isinstance(kind, types.Optional):
-                    absent = isinstance(kind, types.NoneType)
-                    return self.block(one.body if absent == isinstance(sign, ast.Is) else one.orelse)
+                if isinstance(self.arguments.get(name), types.NoneType):
+                    return self.block(one.body if isinstance(sign, ast.Is) else one.orelse)
             case _:
                 self.visit(one.test)
         ends = self.block(one.body), self.block(one.orelse)
