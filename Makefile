@@ -4,6 +4,7 @@
 # make smoke      all figures, small: results/smoke/report.html
 # make docs       the documentation site, with executed notebooks: results/docs/html/index.html; after a complete
 #                 reproduction also docs/gallery.png, the picture of the README, and docs/figures, its small pictures
+# make wheel      dist/gaspart-...whl, for this version of Python, with compiled kernels for the scenes of `gaspart new`
 # make archive    all figures, and archive.zip, the file to deposit
 # make benchmark  the speed of the engines on this machine, which should run nothing else: results/tables/performance.csv
 # make referees   gaspart's runs judged by programs of others, which have an environment of their own, .venv-referees:
@@ -17,7 +18,7 @@
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
-.PHONY: all setup test check-all smoke archive benchmark referees coverage lint report docs clean distclean
+.PHONY: all setup test check-all smoke wheel archive benchmark referees coverage lint report docs clean distclean
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
@@ -70,6 +71,9 @@ smoke: setup
 	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml
 	$(VERDICTS) results/smoke/tables/claims.csv
 	@echo "report: results/smoke/report.html"
+
+wheel: setup
+	.venv/bin/python release/ship_kernels.py dist
 
 archive: all
 	.venv/bin/python -m gaspart archive results -o archive.zip --force

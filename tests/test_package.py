@@ -1,5 +1,9 @@
 """What is released: a source distribution with all of the project, and a wheel with all of the package."""
 
+import base64
+import csv
+import hashlib
+import importlib.util
 import shutil
 import subprocess
 import sys
@@ -9,7 +13,10 @@ import zipfile
 from email.parser import Parser
 from pathlib import Path
 
+import numba
 import pytest
+from packaging.tags import sys_tags
+from packaging.utils import parse_wheel_filename
 
 import gaspart as gp
 
@@ -70,6 +77,34 @@ def test_the_wheel_is_the_package(wheel):
     with zipfile.ZipFile(wheel) as file:
         names = {Path(name) for name in file.namelist() if ".dist-info/" not in name}
     assert names == {path.relative_to("src") for path in files_of_project() if path.parts[0] == "src"}
+
+
+def test_the_wheel_with_kernels_has_them_besides_and_is_for_this_python(wheel, tmp_path):
+    spec = importlib.util.spec_from_file_location("ship_kernels", ROOT / "release/ship_kernels.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    kernel = tmp_path / "cache/digest/physics/log_of.nbc"
+    kernel.parent.mkdir(parents=True)
+    kernel.write_bytes(b"its code")
+    kernel.with_suffix(".part").write_bytes(b"a translation, which is not shipped")
+    path = module.with_kernels(wheel, tmp_path / "cache", tmp_path)
+    name, version, (*build,), tags = parse_wheel_filename(path.name)
+    release = "".join(map(str, build))
+    assert (name, str(version), release) == ("gaspart", gp.__version__, numba.__version__)
+    assert tags < set(sys_tags())
+    with zipfile.ZipFile(wheel) as old, zipfile.ZipFile(path) as new:
+        added = set(new.namelist()) - set(old.namelist())
+        assert not set(old.namelist()) - set(new.namelist())
+        shipped = "gaspart/kernels/shipped/"
+        assert added == {f"{shipped}sha256.json", f"{shipped}digest/physics/log_of.nbc"}
+        (record,) = (one for one in new.namelist() if one.endswith("/RECORD"))
+        rows = {row[0]: row[1:] for row in csv.reader(new.read(record).decode().splitlines())}
+        assert set(rows) == set(new.namelist())
+        for one in set(rows) - {record}:
+            digest = base64.urlsafe_b64encode(hashlib.sha256(new.read(one)).digest()).rstrip(b"=").decode()
+            assert rows[one] == [f"sha256={digest}", str(len(new.read(one)))]
+        stated = new.read(record.replace("RECORD", "WHEEL")).decode()
+    assert f"Tag: {next(iter(tags))}\n" in stated and f"Build: {numba.__version__}\n" in stated
 
 
 def test_their_metadata_are_valid_and_those_of_the_project(made, wheel):

@@ -25,16 +25,16 @@ def cache_directory() -> Path:
 def usable_cache(version: str) -> Path | None:
     """The folder `version` of the cache, made if it is missing.
 
-    It is a temporary one, with a warning, for a user without a cache folder that can be written to. None,
-    also with a warning, where that cannot be written either, or $GASPART_CACHE cannot.
+    It is a temporary one, with a warning, for a user without a cache folder that this user, and no other, can
+    write to. None, also with a warning, where that cannot be written either, or $GASPART_CACHE cannot.
     """
     try:
         wanted: Path | None = cache_directory() / version
     except RuntimeError:
         wanted = None
-    if wanted and _is_writable(wanted):
+    why = _obstacle(wanted) if wanted else "there is no home for the kernel cache"
+    if not why:
         return wanted
-    why = f"cannot write the kernel cache {wanted}" if wanted else "there is no home for the kernel cache"
     found = None if os.environ.get("GASPART_CACHE") else _temporary(version)
     instead = f"using {found}" if found else "compiling anew in every process"
     warnings.warn(f"gaspart: {why}; {instead} ({_REMEDY})", stacklevel=3)
@@ -52,21 +52,30 @@ def report_unwritable(directory: Path, error: OSError) -> None:
         warnings.warn(f"gaspart: {why}; compiling anew in every process ({_REMEDY})", stacklevel=3)
 
 
-def _is_writable(directory: Path) -> bool:
+def _obstacle(directory: Path) -> str:
+    """Why kernels are not to be kept in a folder, which is made if it is missing; "" if they are."""
     try:
-        directory.mkdir(parents=True, exist_ok=True)
+        directory.parent.mkdir(parents=True, exist_ok=True)
+        directory.mkdir(mode=0o700, exist_ok=True)
+        private = _is_private(directory.stat())
     except OSError:
-        return False
-    return os.access(directory, os.W_OK)
+        private = True
+    if not private:
+        return f"others may write to the kernel cache {directory}"
+    return "" if os.access(directory, os.W_OK) else f"cannot write the kernel cache {directory}"
+
+
+def _is_private(found: os.stat_result) -> bool:
+    """Whether a folder is one that only this user may write to: no other places machine code in it."""
+    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid() and not found.st_mode & 0o022
 
 
 def _temporary(version: str) -> Path | None:
-    """A temporary folder that only this user may write to, so that no other places machine code in it."""
+    """A folder of this user in the one for temporary files, where others may have made it before."""
     try:
         own = Path(tempfile.gettempdir()) / f"gaspart-{os.getuid()}"
         own.mkdir(mode=0o700, exist_ok=True)
-        found = own.lstat()
+        private = _is_private(own.lstat())
     except OSError:
         return None
-    private = stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o022
-    return own / version if private and _is_writable(own / version) else None
+    return own / version if private and not _obstacle(own / version) else None

@@ -4,11 +4,13 @@ numba names them by the folder of the source, so that no two copies of a project
 an index, which processes that compile at the same time overwrite for one another: two kernels may then be
 given the same file. Here a file is named by what was compiled, and nothing else, and begins with a checksum:
 a damaged one is compiled and written again. A file that cannot be written costs time in other processes only.
+What this user has not compiled may have come with the package (`shipped`).
 """
 
 from __future__ import annotations
 
 import hashlib
+import os
 import pickle
 import zlib
 from collections.abc import Callable
@@ -18,6 +20,7 @@ from typing import Any, ClassVar
 from gaspart.files import scratch_beside
 from gaspart.kernels.compile.cache import report_unwritable
 from gaspart.kernels.compile.loading import load_numba
+from gaspart.kernels.compile.shipped import shipped_content, shipped_key
 
 caching: Any = load_numba().core.caching
 
@@ -27,6 +30,24 @@ _LENGTH = 4  # bytes of a checksum
 
 def _checksum(content: bytes) -> bytes:
     return zlib.crc32(content).to_bytes(_LENGTH, "little")
+
+
+def _code(content: bytes | None) -> bytes | None:
+    """What follows the checksum, if it agrees with that."""
+    if content is None or len(content) <= _LENGTH:
+        return None
+    kept, code = content[:_LENGTH], content[_LENGTH:]
+    return code if kept == _checksum(code) else None
+
+
+def _own_content(path: str) -> bytes | None:
+    """The content of a file that this user has written; None if there is none. What another has placed there
+    would run in this one's name."""
+    try:
+        with open(path, "rb") as file:
+            return file.read() if os.fstat(file.fileno()).st_uid == os.geteuid() else None
+    except OSError:
+        return None
 
 
 class KernelLocator(caching.UserProvidedCacheLocator):
@@ -41,6 +62,10 @@ class KernelLocator(caching.UserProvidedCacheLocator):
 class KernelFiles(caching.IndexDataCacheFile):
     """The files of one function, without an index."""
 
+    def __init__(self, folder: str, name: str, stamp: Any, suffix: str) -> None:
+        super().__init__(folder, name, stamp)
+        self._data_name_pattern = f"{name}.{{digest}}.{suffix}"
+
     def save(self, key: tuple, data: Any) -> None:
         """Write what was compiled for `key`, completely or not at all. May raise OSError."""
         path = Path(self._data_path(self._name(key)))
@@ -50,25 +75,32 @@ class KernelFiles(caching.IndexDataCacheFile):
             scratch.replace(path)
 
     def load(self, key: tuple) -> Any:
-        """What was compiled for `key`, or None if there is no file that is undamaged."""
-        try:
-            content = Path(self._data_path(self._name(key))).read_bytes()
-        except OSError:
+        """What was compiled for `key`, by this user or for the package; None if no file of it is whole."""
+        code = _code(_own_content(self._data_path(self._name(key))))
+        if code is None:
+            code = _code(self._shipped(key))
+        return None if code is None else pickle.loads(code)
+
+    def _shipped(self, key: tuple) -> bytes | None:
+        """The content of the file that came with the package: the folders are those of the cache."""
+        for_many = shipped_key(key)
+        if for_many is None:
             return None
-        kept, code = content[:_LENGTH], content[_LENGTH:]
-        return pickle.loads(code) if code and kept == _checksum(code) else None
+        folder = Path(self._cache_path)
+        return shipped_content(f"{folder.parent.name}/{folder.name}/{self._name(for_many)}")
 
     def _name(self, key: tuple) -> str:
         """key: types of arguments, processor, and digest of the bytecode. The stamp holds the options."""
         compiled = repr((self._version, self._source_stamp, key))
         digest = hashlib.sha256(compiled.encode()).hexdigest()
-        return str(self._data_name_pattern.replace("{number:d}", digest[:24]))
+        return str(self._data_name_pattern.format(digest=digest[:24]))
 
 
 class KernelContents(caching.CompileResultCacheImpl):
     """What is in the file of a kernel: machine code."""
 
     _locator_classes: ClassVar = [KernelLocator]
+    suffix = "nbc"
 
 
 class KernelCache(caching.FunctionCache):
@@ -80,7 +112,7 @@ class KernelCache(caching.FunctionCache):
         super().__init__(function)
         contents = self._impl
         stamp = contents.locator.get_source_stamp(), repr(sorted(options.items()))
-        self._cache_file = KernelFiles(self.cache_path, contents.filename_base, stamp)
+        self._cache_file = KernelFiles(self.cache_path, contents.filename_base, stamp, contents.suffix)
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled for a signature. A warning where that fails, no error."""

@@ -17,6 +17,7 @@ from typing import Any, ClassVar
 
 from gaspart.kernels.compile.files import KernelCache, KernelContents
 from gaspart.kernels.compile.loading import load_numba
+from gaspart.kernels.compile.narrowing import narrowed
 
 numba: Any = load_numba()
 core: Any = numba.core
@@ -61,6 +62,30 @@ class _WholeTuple(core.datamodel.models.TupleModel):
     def from_argument(self, builder: Any, value: Any) -> Any:
         """The value of what was passed."""
         return value if self._whole else super().from_argument(builder, value)
+
+
+@numba.extending.lower_cast(numba.types.NamedTuple, numba.types.NamedTuple)
+def _leave_out(context: Any, builder: Any, given: Any, narrow: Any, value: Any) -> Any:
+    """The entries of a named tuple that a function uses, see `narrowing`."""
+    none = context.get_dummy_value()
+    entries = core.cgutils.unpack_tuple(builder, value, len(given))
+    kept = [
+        none if kind == numba.types.none else context.cast(builder, entry, whole, kind)
+        for entry, whole, kind in zip(entries, given, narrow, strict=True)
+    ]
+    return context.make_tuple(builder, narrow, kept)
+
+
+def narrow_calls(part: Any) -> None:
+    """Let the callers of a function compile it for what it uses of their arguments."""
+
+    def get_call_template(arguments: tuple, keywords: dict) -> tuple:
+        signature, arguments = part._compiler.fold_argument_types(arguments, keywords)
+        used = narrowed(part.py_func, tuple(arguments))
+        template, *_ = type(part).get_call_template(part, used, {})
+        return template, signature, used, {}
+
+    part.get_call_template = get_call_template
 
 
 class _PartLibrary(core.codegen.JITCodeLibrary):
@@ -145,6 +170,8 @@ class PartCompiler(KernelCompiler):
 
 class _PartContents(KernelContents):
     """What is in the file of a part: its translation, with those of the parts that it calls."""
+
+    suffix = "part"
 
     def check_cachable(self, data: Any) -> bool:
         """Whether other processes may use a result of the compiler: not where it calls a function of numba

@@ -25,7 +25,7 @@ same bits: several times as long, and in every process again."""
 _known = numba.__version__.startswith(f"{KNOWN}.")
 if _known:
     from gaspart.kernels.compile.files import KernelCache
-    from gaspart.kernels.compile.parts import KernelCompiler, PartCache, PartCompiler
+    from gaspart.kernels.compile.parts import KernelCompiler, PartCache, PartCompiler, narrow_calls
 else:
     warnings.warn(
         f"gaspart: numba {numba.__version__} is not {KNOWN}: kernels compile more slowly, and are not kept",
@@ -66,6 +66,8 @@ def _compile(function: F, part: bool = False, **options: Any) -> F:
         finally:
             numba.config.CACHE_DIR = before
     if _known and not numba.config.DISABLE_JIT:
+        if part:
+            narrow_calls(compiled)
         compiled._compiler.compile = _without_interruption(compiled._compiler.compile)
     return compiled
 

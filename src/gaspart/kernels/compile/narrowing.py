@@ -1,0 +1,209 @@
+"""What a function that only kernels call uses of the named tuples that it is given.
+
+numba compiles a function again for each type of its arguments, and the type of a `Model` states all features
+of a scene. Most functions use few of its entries: they are compiled for a tuple in which the others are None.
+Then scenes that differ in these share them, and calls pass less.
+
+The entries are found in the source, with those that the functions use to which it hands them on. A branch on
+whether an argument is None is left out where numba leaves it out: if it is None. An argument that is
+used in any other way than by its entries is used whole.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from gaspart.kernels.compile.loading import load_numba
+
+numba: Any = load_numba()
+types: Any = numba.types
+
+_UNKNOWN = None  # the type of what is not an argument, nor an entry of one
+Use = dict  # by name of an entry, what of it is used; {} if no more than whether it is None
+WHOLE: Use = {"*": {}}
+
+
+def narrowed(function: Callable, arguments: tuple) -> tuple:
+    """The types of arguments for which a function is to be compiled instead of these."""
+    key = _key(function, arguments)
+    if key not in _known_types:
+        uses = zip(arguments, _uses(function, arguments), strict=True)
+        _known_types[key] = tuple(_narrow(one, use) for one, use in uses)
+    return _known_types[key]
+
+
+def _narrow(given: Any, use: Use) -> Any:
+    if not isinstance(given, types.NamedTuple) or "*" in use:
+        return given
+    entries = zip(given.fields, given.types, strict=True)
+    kept = [_narrow(kind, use[name]) if name in use else types.none for name, kind in entries]
+    return types.NamedTuple(kept, given.instance_class)
+
+
+def _uses(function: Callable, arguments: tuple) -> tuple[Use, ...]:
+    """What a function uses of each argument, by their types, `_UNKNOWN` where these are not known."""
+    key = _key(function, arguments)
+    if key not in _known_uses:
+        _known_uses[key] = _read(function, arguments)
+    return _known_uses[key]
+
+
+def _key(function: Callable, arguments: tuple) -> tuple:
+    """The source of a function, and the numbers of the types, whose own hashes are slow."""
+    return function.__code__, tuple(_UNKNOWN if one is _UNKNOWN else one._code for one in arguments)
+
+
+_known_uses: dict[tuple, tuple[Use, ...]] = {}
+_known_types: dict[tuple, tuple] = {}
+
+
+def _read(function: Callable, arguments: tuple) -> tuple[Use, ...]:
+    definition, assigned = _definition(function.__code__)
+    if definition is None or len(definition.args.args) != len(arguments):
+        return tuple(WHOLE for _ in arguments)
+    names = [one.arg for one in definition.args.args]
+    known = dict(zip(names, arguments, strict=True)) | dict.fromkeys(assigned, _UNKNOWN)
+    reader = _Reader(function.__globals__, known)
+    reader.block(definition.body)
+    return tuple(reader.uses[name] for name in names)
+
+
+@cache
+def _definition(code: Any) -> tuple[ast.FunctionDef | None, set[str]]:
+    """The source of a function of a module, None for any other, and the arguments that it assigns to."""
+    try:
+        found = _functions(code.co_filename).get(code.co_firstlineno)
+    except OSError:
+        found = None
+    if found is None or found.name != code.co_qualname or not _is_plain(found.args):
+        return None, set()
+    names = [node for node in ast.walk(found) if isinstance(node, ast.Name)]
+    own = {one.arg for one in found.args.args}
+    return found, {node.id for node in names if isinstance(node.ctx, ast.Store)} & own
+
+
+@cache
+def _functions(file: str) -> dict[int, ast.FunctionDef]:
+    """The functions of a module, by the line where the code of each begins."""
+    found = [one for one in ast.parse(Path(file).read_bytes()).body if isinstance(one, ast.FunctionDef)]
+    return {min([one.lineno, *(before.lineno for before in one.decorator_list)]): one for one in found}
+
+
+def _is_plain(arguments: ast.arguments) -> bool:
+    """Whether all arguments are by place and without a default, as numba's are by then."""
+    others = arguments.posonlyargs, arguments.kwonlyargs, arguments.defaults
+    return not any(others) and arguments.vararg is None and arguments.kwarg is None
+
+
+def _merge(one: Use, other: Use) -> None:
+    for name, use in other.items():
+        _merge(one.setdefault(name, {}), use)
+
+
+class _Reader(ast.NodeVisitor):
+    """Reads the body of a function, and notes what of its arguments is used."""
+
+    def __init__(self, names: dict[str, Any], arguments: dict[str, Any]) -> None:
+        self.names, self.arguments = names, arguments
+        self.uses: dict[str, Use] = {name: {} for name in arguments}
+
+    def block(self, statements: list[ast.stmt]) -> bool:
+        """Read statements. Whether they always end the function."""
+        for one in statements:
+            if isinstance(one, ast.If):
+                if self._branch(one):
+                    return True
+            else:
+                self.visit(one)
+                if isinstance(one, ast.Return | ast.Raise):
+                    return True
+        return False
+
+    def _branch(self, one: ast.If) -> bool:
+        """Read what numba compiles of a branch."""
+        match one.test:
+            case ast.Compare(ast.Name(name), [ast.Is() | ast.IsNot() as sign], [ast.Constant(None)]):
+                if isinstance(self.arguments.get(name), types.NoneType):
+                    return self.block(one.body if isinstance(sign, ast.Is) else one.orelse)
+            case _:
+                self.visit(one.test)
+        ends = self.block(one.body), self.block(one.orelse)
+        return all(ends)
+
+    def visit_Name(self, node: ast.Name) -> None:
+        """An argument that is used as it is."""
+        if node.id in self.uses:
+            _merge(self.uses[node.id], WHOLE)
+
+    def visit_Attribute(self, node: ast.Attribute) -> None:
+        """An entry, or one of an entry."""
+        place = self._place(node)
+        if place is None:
+            self.generic_visit(node)
+        else:
+            self._note(place, WHOLE)
+
+    def visit_For(self, node: ast.For) -> None:
+        """As any block."""
+        self.visit(node.target)
+        self.visit(node.iter)
+        self.block(node.body)
+        self.block(node.orelse)
+
+    def visit_While(self, node: ast.While) -> None:
+        """As any block."""
+        self.visit(node.test)
+        self.block(node.body)
+        self.block(node.orelse)
+
+    def visit_Call(self, node: ast.Call) -> None:
+        """What is handed on to a function of ours is used as it is there."""
+        called = self.names.get(node.func.id) if isinstance(node.func, ast.Name) else None
+        function = getattr(called, "py_func", None)
+        if function is None or node.keywords or any(isinstance(one, ast.Starred) for one in node.args):
+            self.generic_visit(node)
+            return
+        uses = _uses(function, tuple(map(self._type, node.args)))
+        for argument, use in zip(node.args, uses, strict=True):
+            place = self._place(argument)
+            if place is None:
+                self.visit(argument)
+            else:
+                self._note(place, use)
+
+    def _note(self, place: list[str], use: Use) -> None:
+        """Note a use of an argument, or an entry."""
+        at = self.uses[place[0]]
+        for name in place[1:]:
+            at = at.setdefault(name, {})
+        _merge(at, use)
+
+    def _place(self, node: ast.expr) -> list[str] | None:
+        """The name of an argument and the entries that lead from it; None for any other expression."""
+        match node:
+            case ast.Name(name) if name in self.uses:
+                return [name]
+            case ast.Attribute(value, name):
+                outer = self._place(value)
+                kind = self._type(value)
+                if outer is None or not isinstance(kind, types.NamedTuple) or name not in kind.fields:
+                    return None
+                return [*outer, name]
+        return None
+
+    def _type(self, node: ast.expr) -> Any:
+        """The type of an argument or an entry of one, or of None."""
+        match node:
+            case ast.Constant(None):
+                return types.none
+            case ast.Name(name):
+                return self.arguments.get(name, _UNKNOWN)
+            case ast.Attribute(value, name):
+                kind = self._type(value)
+                if isinstance(kind, types.NamedTuple) and name in kind.fields:
+                    return kind.types[kind.fields.index(name)]
+        return _UNKNOWN
