@@ -1,7 +1,7 @@
 """Where observables are defined: conditions of a scene, each of which raises SceneError with its reason.
 
 They are asked before a run is made and when it is measured, so that both refuse alike. A selection is what a
-caller has chosen: `species`, `particles`, `axis`, `per_axis`.
+caller has chosen: `species`, `particles`, `axis`, `at`, `lag`, `per_axis`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.driving import has_dragged_faces
 from gaspart.scene.faces import thermal_numbers
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.gas import plain_mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.stress import require_tallied
@@ -123,7 +123,7 @@ def thermal(scene: Scene, selection: Selection) -> None:
 def of_species(scene: Scene, selection: Selection) -> None:
     """All particles belong to species."""
     if scene.particles:
-        rule = "pairs are counted by species: there are single particles"
+        rule = "pairs are those of species: there are single particles"
         raise SceneError("particles", len(scene.particles), rule)
 
 
@@ -153,15 +153,6 @@ def grouped(scene: Scene, selection: Selection) -> None:
         return
     if not _in_species(scene, chosen["species"]):
         raise SceneError("species", chosen["species"], "none of them moves")
-
-
-def grouped_species(scene: Scene, selection: Selection) -> None:
-    """16 particles that move, of a selected species too."""
-    species = selection.get("species")
-    if species is None:
-        _enough(scene)
-    elif _in_species(scene, species) < GROUPS:
-        raise SceneError("species", species, f"an error needs {GROUPS} moving particles or more")
 
 
 def _enough(scene: Scene) -> None:
@@ -194,8 +185,8 @@ def free_axis(scene: Scene, selection: Selection) -> None:
 
 
 def no_lasting_discs(scene: Scene, selection: Selection) -> None:
-    """Spheres, or discs whose momentum does not last."""
-    if scene.dimension == 2 and any(scene.conserved_axes):
+    """Spheres, or discs whose momentum does not last, unless a lag is stated."""
+    if selection.get("lag") is None and scene.dimension == 2 and any(scene.conserved_axes):
         raise SceneError("container.lengths", scene.container.lengths, DISCS)
 
 
@@ -220,15 +211,23 @@ def a_neighbourhood(scene: Scene, selection: Selection) -> None:
         raise SceneError("count", scene.count, f"needs {least} particles or more")
 
 
-def plain(scene: Scene, selection: Selection) -> None:
-    """Equal smooth particles."""
-    plain_gas(scene)
+def smooth_sizes(scene: Scene, selection: Selection) -> None:
+    """Smooth and elastic particles, in a mixture in species of one size each."""
+    plain_mixture(scene)
+    in_species(scene, selection)
 
 
-def alike(scene: Scene, selection: Selection) -> None:
-    """Particles of one radius and one mass."""
-    if not scene.alike:
-        raise SceneError("species", len(scene.kinds), "the heat flux of a mixture contains diffusion")
+def in_species(scene: Scene, selection: Selection) -> None:
+    """Equal particles, or species of one size each."""
+    if scene.alike:
+        return
+    if scene.particles:
+        rule = "are of no species: this observable of a mixture is that of its species"
+        raise SceneError("particles", len(scene.particles), rule)
+    for n, kind in enumerate(scene.species):
+        if not kind.alike:
+            rule = "has many sizes: this observable of a mixture is that of species of one size"
+            raise SceneError(f"species[{n}].polydispersity", kind.polydispersity, rule)
 
 
 def has_axis(scene: Scene, selection: Selection) -> None:

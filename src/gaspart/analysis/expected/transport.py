@@ -46,8 +46,12 @@ def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
     return gas.temperature / gas.mass * np.exp(-rate * time), math.nan, f"{source}, exact initial decay"
 
 
-def diffusion(run: Run) -> Expected | None:
-    """D of spheres in a periodic cube; see `diffusion_in_cube`."""
+def diffusion(run: Run, ends: np.ndarray | None = None) -> Expected | None:
+    """D of spheres in a periodic cube; see `diffusion_in_cube`. ends (2,): lags between which it is half of
+    the slope of the mean-squared displacement along an axis."""
+    if ends is not None:
+        found = mean_squared_displacement(run, ends, axes=True)
+        return found and (0.5 * float(np.diff(found[0])[0] / np.diff(ends)[0]), *found[1:])
     gas, sides = run.moving_fluid, run.scene.container.lengths
     if gas is None or np.ptp(sides) > 1e-6 * sides[0]:
         return None
@@ -140,8 +144,16 @@ def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
 
 
 def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
-    """By fluctuations."""
-    return _transport(run, temperature, bulk.thermal_conductivity, "conductivity")
+    """By fluctuations; of points of several masses or sizes Chapman and Enskog's."""
+    mixture = run.mixture
+    if run.scene.alike or mixture is None or not temperature > 0.0:
+        return _transport(run, temperature, bulk.thermal_conductivity, "conductivity")
+    if equation_of(run) != BOLTZMANN or mixture.dimension == 2:
+        return None
+    value = theory.dilute_mixture_conductivity(
+        mixture.diameters, mixture.counts, temperature, masses=mixture.masses
+    )
+    return value, math.nan, f"{SOURCES[BOLTZMANN]}, first approximation"
 
 
 def shear_viscosity(run: Run, temperature: float) -> Expected | None:
