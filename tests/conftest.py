@@ -36,9 +36,8 @@ OF_SMOKE_RUN = ("test_smoke.py", "test_accessibility.py", "test_planning.py", "t
 # workflow compiles those that the others share with it: two processes that need a kernel at the same time
 # both compile it.
 WITHOUT_KERNELS = ("theory", "reproduction", "scene")
-COMPILING = tuple(
-    f"test_{name}.py" for name in ("measure", "digests", "rows", "sweep", "relaxation", "simulate")
-)
+COMPILING = ("approach", "digests", "measure", "own", "pressure", "relaxation", "rows", "simulate")
+COMPILING += ("source", "sweep", "variants")
 
 
 class ByFile(LoadScopeScheduling):
@@ -62,6 +61,11 @@ def pytest_sessionfinish(session):
         session.exitstatus = session.exitstatus or pytest.ExitCode.TESTS_FAILED
 
 
+def compiles(path):
+    """Whether tests of a file in `WITHOUT_KERNELS` compile one all the same."""
+    return path.stem.removeprefix("test_") in COMPILING or path.parent.name == "pictures"
+
+
 def pytest_xdist_make_scheduler(config, log):
     return ByFile(config, log)
 
@@ -74,6 +78,6 @@ def pytest_collection_modifyitems(items):
         package = item.path.relative_to(TESTS).parts[0] if item.path.is_relative_to(TESTS) else ""
         if package == "workflow":
             return 0 if item.path.name in OF_SMOKE_RUN else 3
-        return 1 if package in WITHOUT_KERNELS and item.path.name not in COMPILING else 2
+        return 1 if package in WITHOUT_KERNELS and not compiles(item.path) else 2
 
     items.sort(key=place)
