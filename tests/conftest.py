@@ -32,6 +32,8 @@ TESTS = Path(__file__).parent
 collect_ignore = ["referees"]
 # The files whose tests look at one run of the smoke workflow.
 OF_SMOKE_RUN = ("test_smoke.py", "test_accessibility.py", "test_planning.py", "test_archive.py")
+# The folder whose files look at the same data sets.
+SHARING = "reproduction/families/scaling/"
 # Packages whose tests compile hardly any kernel, but for those of some files. They run while the smoke
 # workflow compiles those that the others share with it: two processes that need a kernel at the same time
 # both compile it.
@@ -41,12 +43,14 @@ COMPILING += ("source", "sweep", "variants")
 
 
 class ByFile(LoadScopeScheduling):
-    """A file's tests go to one process, since they share compiled kernels, and all of those that look at the
-    smoke workflow to one, since they share a run of it."""
+    """A file's tests go to one process, since they share compiled kernels, all of those that look at the
+    smoke workflow to one, since they share a run of it, and those of a folder that share data sets."""
 
     def _split_scope(self, nodeid):
         path = nodeid.split("::")[0]
-        return "smoke" if path.endswith(OF_SMOKE_RUN) else path
+        if path.endswith(OF_SMOKE_RUN):
+            return "smoke"
+        return SHARING if SHARING in path else path
 
 
 def pytest_addoption(parser):

@@ -145,7 +145,7 @@ def test_a_curve_is_drawn_for_each_point_and_may_be_taken_at_one_place(simulated
     dataset = measured(simulated, observable="rdf")
     assert dataset["value"].dims == ("point", "along")
     (axis,) = draw(figure.observable, dataset).axes
-    drawn = lines(axis)[1]
+    drawn = lines(axis)[2]  # after the first curve and its theory
     assert np.array_equal(drawn.get_ydata(), dataset["value"][1], equal_nan=True)
     contact = measured(simulated, observable="rdf", place=1.0)
     nearest = np.nanargmin(np.abs(dataset["along_places"].values - 1.0), axis=1)

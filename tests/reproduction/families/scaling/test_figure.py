@@ -5,20 +5,18 @@ import math
 import numpy as np
 import pytest
 from reproduction.families.drawn import Points, draw, shows, varied
-from reproduction.families.scaling.data import points, settings
 
 from gaspart.reproduction.families.scaling import figure as scaling
-from gaspart.reproduction.families.scaling import measure as measured
 
 IDEAL = ("ideal", "ideal_low", "ideal_high")
 
 
 @pytest.fixture
-def measure(tmp_path):
+def measure(dataset):
     """Draws a figure of made-up costs. Returns its varied data set and its panels."""
 
     def drawn(figure, *kept):
-        ds = varied(getattr(measured, figure)(points(figure, tmp_path), settings(figure)), *kept)
+        ds = varied(dataset(figure), *kept)
         return ds, draw(getattr(scaling, figure), ds).axes
 
     return drawn
