@@ -51,3 +51,20 @@ def test_some_particles_of_one_kind_stand_for_all(tmp_path):
     found = A.profile(path, bins=5)
     assert float(found.estimate.mean()) * 400.0 == pytest.approx(50.0)
     assert float(found.theory[0]) == pytest.approx(50.0 / 400.0)
+
+
+def test_what_one_particle_brings_along_has_no_error():
+    """Its velocity is the same in all cells that it passes: nothing is known of the scatter of others."""
+    ends = (gp.Particle((x, 2.0, 2.0), (v, 0.0, 0.0), 0.5) for x, v in ((1.0, 0.5), (9.0, -0.25)))
+    scene = gp.Scene(gp.Container((10.0, 4.0, 4.0), "wall"), particles=list(ends))
+    simulation = gp.Simulation(scene, gp.EventDriven(), 1)
+    simulation.advance(until=4.0)
+    found = gp.analysis.velocity_profile(simulation, "x", bins=10, start=0.0)
+    passed = found.estimate.sel(component="x").notnull()
+    assert int(passed.sum()) > 4 and np.isnan(found.error.sel(component="x").values).all()
+    assert not (found["velocity_freedom"].sel(component="x").where(passed) > 0.0).any()
+    rest = gp.Scene(scene.container, [gp.Species(3, 0.5, speed=0.0)])
+    simulation = gp.Simulation(rest, gp.EventDriven(), 1)
+    simulation.advance(until=4.0)
+    density = gp.analysis.profile(simulation, "density", "x", bins=4, start=0.0)
+    assert (density.error.where(density.estimate > 0.0, 0.0) == 0.0).all()

@@ -1,7 +1,7 @@
 """Where observables are defined: conditions of a scene, each of which raises SceneError with its reason.
 
 They are asked before a run is made and when it is measured, so that both refuse alike. A selection is what a
-caller has chosen: `species`, `particles`, `axis`, `per_axis`.
+caller has chosen: `species`, `particles`, `axis`, `at`, `lag`, `per_axis`.
 """
 
 from __future__ import annotations
@@ -155,15 +155,6 @@ def grouped(scene: Scene, selection: Selection) -> None:
         raise SceneError("species", chosen["species"], "none of them moves")
 
 
-def grouped_species(scene: Scene, selection: Selection) -> None:
-    """16 particles that move, of a selected species too."""
-    species = selection.get("species")
-    if species is None:
-        _enough(scene)
-    elif _in_species(scene, species) < GROUPS:
-        raise SceneError("species", species, f"an error needs {GROUPS} moving particles or more")
-
-
 def _enough(scene: Scene) -> None:
     if _moving(scene) < GROUPS:
         raise SceneError("count", _moving(scene), f"an error needs {GROUPS} moving particles or more")
@@ -194,8 +185,8 @@ def free_axis(scene: Scene, selection: Selection) -> None:
 
 
 def no_lasting_discs(scene: Scene, selection: Selection) -> None:
-    """Spheres, or discs whose momentum does not last."""
-    if scene.dimension == 2 and any(scene.conserved_axes):
+    """Spheres, or discs whose momentum does not last, unless a lag is stated."""
+    if selection.get("lag") is None and scene.dimension == 2 and any(scene.conserved_axes):
         raise SceneError("container.lengths", scene.container.lengths, DISCS)
 
 

@@ -1,15 +1,18 @@
 """The diffusion coefficient, from the paths of particles.
 
-Its uncertainty is the scatter of groups of particles, which are taken as independent.
+Its uncertainty is the scatter of groups of particles, which are taken as independent, or, of fewer particles
+than groups, that of as many stretches of the run.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from gaspart.analysis.conditions import DISCS
+from gaspart.analysis.conditions import DISCS, GROUPS
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.motion import Groups, axes_of, groups_of, stride_of
 from gaspart.analysis.observable import Observable, observable
@@ -18,6 +21,7 @@ from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.scene.faces import mean_velocity
+from gaspart.scene.validation import number
 
 LINEAR_FROM = 12.0
 """Collisions per particle, from which on the mean-squared displacement grows evenly, if there is a D."""
@@ -26,35 +30,72 @@ _SIGNIFICANT = 4.0  # standard errors of 15 degrees of freedom: exceeded by chan
 
 
 def diffusion_coefficient(
-    source: Source, start: float | None = None, species: int | None = None, per_axis: bool = False
+    source: Source,
+    start: float | None = None,
+    species: int | None = None,
+    particles: Sequence[int] | None = None,
+    per_axis: bool = False,
+    lag: float | None = None,
 ) -> Observable:
     """D in length^2 / time, by the rise of the mean-squared displacement from 12 to 24 collisions a particle.
 
     Of a periodic container the mean over axes, a scalar; of one with walls, or `per_axis`, that along each
-    periodic axis, (axis,): across walls displacements are bounded, and there is none. Arguments and
-    condition of zero momentum as in `mean_squared_displacement`; a species needs 16 particles that move.
-    Theory: of spheres in a periodic cube, Erpenbeck and Wood's with the shift of Yeh and Hummer, half of
-    which is its uncertainty.
+    periodic axis, (axis,): across walls displacements are bounded, and there is none. species, particles, and
+    the condition of zero momentum: as in `mean_squared_displacement`; of fewer than 16 particles, such as one
+    tracer, each of 16 stretches of the run must be long enough.
 
-    Raises SceneError without a periodic axis; for discs whose momentum lasts longer than these collisions, so
-    that their squared displacement grows like t ln t; where the slope from 6 to 12 collisions is another one,
-    so that there is no D; and for runs that are too short, or have too few frames.
+    lag: the time at which half of the slope of the mean-squared displacement along an axis is taken instead,
+    from the frames before and after it. That is the integral of the velocity autocorrelation until then,
+    which exists where D does not: of discs, and between walls.
+
+    Theory: of spheres in a periodic cube, Erpenbeck and Wood's with the shift of Yeh and Hummer, half of
+    which is its uncertainty; at a lag that of the mean-squared displacement. Raises SceneError without a
+    periodic axis; for runs that are too short, or have too few frames; and, without a lag, for discs whose
+    momentum lasts longer than these collisions, so that their squared displacement grows like t ln t, and
+    where the slope from 6 to 12 collisions is another one, so that there is no D.
     """
     with measured(source, start) as run:
-        require_defined("D", run.scene, species=species)
-        chosen = selected(run, species, None)
-        stride = stride_of(run)
-        lags = lags_of_slopes(run, stride)
+        require_defined("D", run.scene, species=species, particles=particles, lag=lag)
+        chosen = selected(run, species, particles)
+        stride = stride_of(run, len(chosen))
+        if lag is not None:  # frames so near that the slope is that at the lag
+            stride = min(stride, max(1, int(number("lag", lag, "must be a time") / (4.0 * run.interval))))
+        parts = GROUPS if len(chosen) < GROUPS else 1
+        lags = lags_of_slopes(run, stride, parts) if lag is None else _lags_about(run, lag, stride, parts)
         lasting = _lasting_momentum(run, lags[1] * stride)
-        require_spheres(run, lasting)
-        groups = groups_of(run, about=lasting, chosen=chosen)
+        if lag is None:
+            require_spheres(run, lasting)
+        groups = groups_of(run, about=lasting, chosen=chosen, stride=stride)
         slopes = _slopes(groups, lags)[..., run.periodic]
         along = axes_of(run, run.periodic)
         if run.periodic.all() and not per_axis:
             slopes, along = slopes.mean(axis=2), {}
-        _require_constant(slopes, groups.sizes)
-        values, errors = means_of(slopes[:, 1], groups.sizes)
-        return observable("diffusion_coefficient", along, values, errors, **described("D", run))
+        if lag is None:
+            _require_constant(slopes, groups.sizes)
+        values, errors = means_of(slopes[:, -1], groups.sizes)
+        ends = None if lag is None else groups.interval * np.array(lags)
+        return observable("diffusion_coefficient", along, values, errors, **_about(run, ends))
+
+
+def _about(run: Run, ends: np.ndarray | None) -> dict[str, Any]:
+    """Units, label and theory, of the slope between the lags `ends` (2,) if they are given."""
+    about = described("D", run, ends)
+    if ends is not None:
+        about["long_name"] += f" at the lag {ends.mean():.4g}"
+    return about
+
+
+def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, int]:
+    """The numbers of frames before and after a lag. Raises SceneError for one that is shorter than the time
+    between frames, or longer than half of each of the equal parts of a run."""
+    interval = run.interval * stride
+    frames = len(run.time[::stride]) // parts
+    longest = (frames // 2 - 1) * interval
+    rule = f"must be between {interval:.4g}, the time between frames, and {longest:.4g}"
+    middle = round(lag / interval)
+    if not 1 <= middle < frames // 2:
+        raise SceneError("lag", lag, rule)
+    return middle - 1, middle + 1
 
 
 def require_spheres(run: Run, lasting: np.ndarray) -> None:
@@ -70,20 +111,20 @@ def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
     return first, middle, last
 
 
-def lags_of_slopes(run: Run, stride: int = 1) -> tuple[int, int, int]:
-    """The `linear_lags` of a run, of which every so many frames are taken, no two of them equal. Raises
-    SceneError for too few frames."""
-    interval = float(np.diff(run.time).mean()) * stride
+def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, int, int]:
+    """The `linear_lags` of a run, of which every so many frames are taken, no two of them equal; parts: that
+    a run has, in each of which they must be. Raises SceneError for too few frames."""
+    interval = run.interval * stride
     collisions = float(run.increments("collisions").sum())
     duration = float(run.time[-1] - run.time[0])
     rate = 2.0 * collisions / (run.moving.sum() * duration)
-    if rate * (duration + interval) < 4.0 * LINEAR_FROM:
-        rule = f"must cover {4.0 * LINEAR_FROM:g} collisions of a particle or more"
+    if rate * (duration / parts + interval) < 4.0 * LINEAR_FROM:
+        rule = f"must cover {parts * 4.0 * LINEAR_FROM:g} collisions of a particle or more"
         raise SceneError("duration", duration, rule)
     first, middle, last = linear_lags(rate, interval)
     middle = max(middle, first + 1)
     last = max(last, middle + 1)
-    if len(run.time) < 2 * last * stride:
+    if len(run.time) // parts < 2 * last * stride:
         short = 0.5 * LINEAR_FROM
         rule = f"is too long: frames {short / rate:.3g} apart, the time of {short:g} collisions, suffice"
         raise SceneError("sample_interval", interval, rule)
@@ -102,7 +143,10 @@ def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
 def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
     """(G, stretches, d) of the squared displacements between consecutive lags, over two."""
     squares = np.array(
-        [[((path[lag:] - path[:-lag]) ** 2).mean(axis=(0, 1)) for lag in lags] for path in groups.paths]
+        [
+            [((path[lag:] - path[: len(path) - lag]) ** 2).mean(axis=(0, 1)) for lag in lags]
+            for path in groups.paths
+        ]
     )
     return 0.5 * np.diff(squares, axis=1) / (groups.interval * np.diff(lags))[:, None]
 

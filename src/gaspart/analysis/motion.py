@@ -25,7 +25,7 @@ from gaspart.keys.values import count_of
 from gaspart.scene.faces import mean_velocity
 
 MOST_FRAMES = 1000
-"""That are correlated; of a longer run, every second or third ..."""
+"""That are correlated of each group; of a longer run, every second or third ..."""
 _SQUARES, _PRODUCTS = "squared_displacement_sum", "velocity_product_sum"
 _FARTHEST = 0.45  # of a side: the longest way between frames by which a particle is followed
 
@@ -149,22 +149,27 @@ def _lags(groups: Groups, lags: int | None) -> int:
 
 
 def groups_of(
-    run: Run, paths: bool = True, about: np.ndarray | None = None, chosen: np.ndarray | None = None
+    run: Run,
+    paths: bool = True,
+    about: np.ndarray | None = None,
+    chosen: np.ndarray | None = None,
+    stride: int | None = None,
 ) -> Groups:
     """The chosen ones of the moving particles in groups, or, of fewer than `GROUPS`, as many stretches of the
-    run, about the centre of mass along the axes `about` (d,), by default those along which its velocity is
+    run, of every so many frames (by default `stride_of`), about the centre of mass along the axes `about` (d,), by default those along which its velocity is
     conserved.
 
     There its square for a particle of mass m is 1 - m / M of that without this condition, M the mass of all.
     Between faces that slide motion is about their mean velocity (`faces.mean_velocity`).
     """
-    moving, stride = run.moving, stride_of(run)
+    moving = run.moving
     steps = np.diff(run.time)
     if np.ptp(steps) > 1e-6 * steps.mean():
         raise SceneError("time", "frames at uneven times", "a correlation needs even ones")
     about = run.conserved if about is None else about
     masses = run.masses[moving]
     chosen = np.arange(len(masses)) if chosen is None else chosen
+    stride = stride_of(run, len(chosen)) if stride is None else stride
     others = masses.sum() - masses[chosen]
     if about.any() and not (others > 0.0).all():
         raise SceneError("count", len(masses), "a single particle keeps its velocity")
@@ -200,9 +205,10 @@ def _alike(species: np.ndarray) -> list[np.ndarray]:
     return [order[first::GROUPS] for first in range(GROUPS)]
 
 
-def stride_of(run: Run) -> int:
-    """The number of frames of which one is taken."""
-    return -(-len(run.time) // MOST_FRAMES)
+def stride_of(run: Run, count: int = GROUPS) -> int:
+    """The number of frames of which one is taken, of so many particles: of fewer than `GROUPS` each stretch
+    of the run is a group."""
+    return -(-len(run.time) // (MOST_FRAMES * (GROUPS if count < GROUPS else 1)))
 
 
 def unwrapped(run: Run) -> np.ndarray:

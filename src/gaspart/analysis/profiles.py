@@ -34,7 +34,8 @@ _ROUNDING = 1e-12  # relative scatter of what does not change
 @dataclass(frozen=True)
 class Means:
     """Values in cells, their standard errors, and the degrees of freedom of these, all of one shape. NaN: a
-    value of an empty cell; an error of fewer than two degrees of freedom."""
+    value of an empty cell; an error of fewer than two degrees of freedom, or of what does not change in a
+    cell, such as the velocity where one particle passes (0 where nothing moves, or all cells have one value)."""
 
     values: np.ndarray
     errors: np.ndarray
@@ -52,19 +53,20 @@ def with_freedom(result: Observable, found: Means) -> Observable:
     return result
 
 
-def ratio(above: np.ndarray, below: np.ndarray) -> Means:
-    """sum A / sum B of series (K, ...) of K consecutive blocks, at least 16."""
+def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
+    """sum A / sum B of series (K, ...) of K consecutive blocks, at least 16. still: whether nothing moves."""
     total = below.sum(axis=0)
     values = np.divide(above.sum(axis=0), total, out=np.full(total.shape, np.nan), where=total > 0.0)
     errors, filled = np.full(total.shape, np.nan), (below > 0.0).sum(axis=0)
     freedoms = np.where(total > 0.0, filled - 1.0, np.nan)
     with np.errstate(invalid="ignore"):
         rest = (above - values * below) / np.where(total > 0.0, total, np.nan) * len(below)
+    exact = still or bool((np.abs(values - values.flat[0]) <= _ROUNDING * np.abs(values)).all())
     for cell in np.argwhere(filled > _LEAST_FREEDOM):
         at = tuple(cell)
         series = rest[(slice(None), *at)]
         if np.ptp(series) <= _ROUNDING * abs(values[at]):
-            errors[at] = 0.0
+            errors[at], freedoms[at] = (0.0, freedoms[at]) if exact else (np.nan, 0.0)
             continue
         found = correlated_mean(series, LEAST_FRAMES).estimate
         freedoms[at] = min(found.freedom, freedoms[at])
@@ -103,6 +105,11 @@ class Cells:
         """(T, n) the cell of each particle in each frame."""
         return self.grid.cells(self.run.positions[:, self.members][..., self.axes], inside=True)
 
+    @property
+    def _still(self) -> bool:
+        """Whether none of the particles moves."""
+        return not self.run.velocities[:, self.members].any()
+
     def sums(self, weights: np.ndarray | None = None) -> np.ndarray:
         """(K, *cells) sums over the particles, and over the frames of each block, of weights (T, n), or their
         number."""
@@ -137,12 +144,12 @@ class Cells:
 
     def density(self, weights: np.ndarray | None = None) -> Means:
         """Particles, or weights (T, n) of them, per volume within the container."""
-        return ratio(self.sums(weights), self.room())
+        return ratio(self.sums(weights), self.room(), self._still)
 
     def velocity(self) -> Means:
         """(d, *cells) mean velocity of the particles."""
         count, velocities = self.sums(), self.run.velocities[:, self.members]
-        parts = [ratio(self.sums(velocities[..., k]), count) for k in range(self.run.dimension)]
+        parts = [ratio(self.sums(velocities[..., k]), count, self._still) for k in range(self.run.dimension)]
         return Means(*(np.stack([getattr(one, name) for one in parts]) for name in vars(parts[0])))
 
     def temperature(self, local: bool) -> Means:
@@ -159,4 +166,4 @@ class Cells:
         masses = self.run.masses[self.run.moving]
         chosen = np.searchsorted(np.flatnonzero(self.run.moving), self.members)
         energies, freedoms = motion.energies(masses), motion.freedoms()
-        return ratio(self.sums(energies[:, chosen]), self.sums(freedoms[:, chosen]))
+        return ratio(self.sums(energies[:, chosen]), self.sums(freedoms[:, chosen]), self._still)

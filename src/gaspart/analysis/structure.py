@@ -80,7 +80,8 @@ def profile(
     mass where that is conserved (see `gaspart.analysis.flow`). axis: "x", "y" or "z", by default the last
     one; species: of one alone, by its number in the scene. Errors are those of correlated series, of each bin
     for itself; the variable with the suffix _freedom has their degrees of freedom. They are NaN where these
-    are fewer than two, of a run that is too short for the correlation there, and 0 where nothing moves.
+    are fewer than two, of a run that is too short for the correlation there, and where the value of a bin
+    does not change (0 if nothing moves, or all bins have one value).
     Theory: the density of equal particles under gravity along this axis, by hydrostatics with the fluid's
     equation of state; a uniform temperature in equilibrium.
     Raises SceneError for an unknown property or axis, a species that does not move, and for too few frames.

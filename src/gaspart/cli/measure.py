@@ -40,6 +40,7 @@ _EXAMPLES = """examples:
   gaspart measure run.nc msd -o msd.csv --start 10
   gaspart measure run-1.nc run-2.nc run-3.nc D      replicas: their mean, with the scatter of the runs
   gaspart measure run.nc D --per-axis
+  gaspart measure run.nc D --particles 0 --lag 2    of one tracer, at a lag
   gaspart measure run.nc density --axis x
   gaspart measure run.nc velocity --axis x --species 0 --start 10 --end 20
   gaspart measure run.nc field --of temperature --axes xz --cells 20,10 -o field.png"""
@@ -76,6 +77,8 @@ def add_measure(parser: Parser) -> None:
     add("--cells", type=several(int), metavar="N[,N...]", help=text)
     text = "through the plane at this place, by default in the middle: "
     add("--at", type=real(), metavar="X", help=text + ", ".join(selecting("at")))
+    text = "at or until this lag, a time: "
+    add("--lag", type=real(), metavar="T", help=text + ", ".join(selecting("lag")))
     add("-o", "--output", metavar="FILE", help="all rows of one observable as .csv, or a plot as .png")
     add("--force", action="store_true", help="replace a table or a picture")
     usage = parser.format_usage().partition(": ")[2]

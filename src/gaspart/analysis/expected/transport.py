@@ -46,8 +46,12 @@ def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
     return gas.temperature / gas.mass * np.exp(-rate * time), math.nan, f"{source}, exact initial decay"
 
 
-def diffusion(run: Run) -> Expected | None:
-    """D of spheres in a periodic cube; see `diffusion_in_cube`."""
+def diffusion(run: Run, ends: np.ndarray | None = None) -> Expected | None:
+    """D of spheres in a periodic cube; see `diffusion_in_cube`. ends (2,): lags between which it is half of
+    the slope of the mean-squared displacement along an axis."""
+    if ends is not None:
+        found = mean_squared_displacement(run, ends, axes=True)
+        return found and (0.5 * float(np.diff(found[0])[0] / np.diff(ends)[0]), *found[1:])
     gas, sides = run.moving_fluid, run.scene.container.lengths
     if gas is None or np.ptp(sides) > 1e-6 * sides[0]:
         return None
