@@ -79,7 +79,7 @@ def test_insertion_where_particles_may_fit_is_insertion_everywhere(dimension):
     simulation = gp.Simulation(SCENES[dimension], gp.EventDriven(), 1)
     simulation.advance(duration=2.0)
     lengths, positions = np.array(SCENES[dimension].container.lengths), simulation.state.positions
-    found = insertions(positions[None], lengths, 1.0, 20_000)
+    found = insertions(positions[None], lengths, [(slice(None), 1.0)], 20_000)
     everywhere = np.random.default_rng(5).random((200_000, dimension)) * lengths
     nearest, _ = cKDTree(positions % lengths, boxsize=lengths).query(everywhere)
     free = float((nearest > 1.0).mean())

@@ -13,7 +13,6 @@ from gaspart.analysis.mutual import mutual_diffusion as mutual_diffusion
 from gaspart.analysis.observable import Observable as Observable
 from gaspart.analysis.opening import particle_flux as particle_flux
 from gaspart.analysis.pairs import rdf as rdf
-from gaspart.analysis.pairs import structure_factor as structure_factor
 from gaspart.analysis.pressure import collision_rate as collision_rate
 from gaspart.analysis.pressure import compressibility_factor as compressibility_factor
 from gaspart.analysis.pressure import wall_pressure as wall_pressure
@@ -21,6 +20,8 @@ from gaspart.analysis.species import by_species as by_species
 from gaspart.analysis.structure import order_parameter as order_parameter
 from gaspart.analysis.structure import profile as profile
 from gaspart.analysis.structure import speed_distribution as speed_distribution
+from gaspart.analysis.structure_factors import partial_structure_factors as partial_structure_factors
+from gaspart.analysis.structure_factors import structure_factor as structure_factor
 from gaspart.analysis.transport import bulk_viscosity as bulk_viscosity
 from gaspart.analysis.transport import pressure_tensor as pressure_tensor
 from gaspart.analysis.transport import shear_viscosity as shear_viscosity

@@ -13,7 +13,7 @@ from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.driving import has_dragged_faces
 from gaspart.scene.faces import thermal_numbers
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.gas import plain_mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.stress import require_tallied
@@ -123,7 +123,7 @@ def thermal(scene: Scene, selection: Selection) -> None:
 def of_species(scene: Scene, selection: Selection) -> None:
     """All particles belong to species."""
     if scene.particles:
-        rule = "pairs are counted by species: there are single particles"
+        rule = "pairs are those of species: there are single particles"
         raise SceneError("particles", len(scene.particles), rule)
 
 
@@ -211,9 +211,18 @@ def a_neighbourhood(scene: Scene, selection: Selection) -> None:
         raise SceneError("count", scene.count, f"needs {least} particles or more")
 
 
-def plain(scene: Scene, selection: Selection) -> None:
-    """Equal smooth particles."""
-    plain_gas(scene)
+def smooth_sizes(scene: Scene, selection: Selection) -> None:
+    """Smooth and elastic particles, in a mixture in species of one size each."""
+    plain_mixture(scene)
+    if scene.alike:
+        return
+    if scene.particles:
+        rule = "are of no species: the chemical potential of a mixture is that of each species"
+        raise SceneError("particles", len(scene.particles), rule)
+    for n, kind in enumerate(scene.species):
+        if not kind.alike:
+            rule = "has many sizes: a chemical potential is that of one"
+            raise SceneError(f"species[{n}].polydispersity", kind.polydispersity, rule)
 
 
 def alike(scene: Scene, selection: Selection) -> None:

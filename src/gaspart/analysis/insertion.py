@@ -5,9 +5,10 @@ The chance that a particle at a random place in a fluid of N overlaps none is
 :math:`\mu_\mathrm{excess}/k_B T = -\ln P_N` (Widom, J. Chem. Phys. 39, 2808 (1963)).
 
 In a dense fluid hardly any place is free, and of random places nearly all fail. Most of the container is
-known to be covered: a cell all of which is nearer than a diameter to one particle. Cells are divided while
-they are few, those that are covered are left out, and places are drawn in what remains. With the share of
-the container that it has as their weight, this is the same average, exactly.
+known to be covered: a cell all of which is nearer than a diameter to one particle, in a mixture than the sum
+of their radii. Cells are divided while they are few, those that are covered are left out, and places are
+drawn in what remains. With the share of the container that it has as their weight, this is the same average,
+exactly.
 """
 
 from __future__ import annotations
@@ -15,17 +16,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from gaspart.analysis.expected.described import described
-from gaspart.analysis.observable import Observable, scalar
+from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES
-from gaspart.analysis.run import Source, measured
+from gaspart.analysis.profiles import Means, with_freedom
+from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
-from gaspart.scene.gas import plain_gas
 
 PLACES = 512
 """Places that are tried in each frame, by default."""
@@ -59,10 +62,14 @@ class Insertions:
         return float(self.share.mean() / (self.places * len(self.share)))
 
 
+Hosts: TypeAlias = Sequence[tuple[np.ndarray | slice, float]]
+"""Groups of the particles in the fluid: their numbers, and how near a place may be to none of them."""
+
+
 def insertions(
     frames: np.ndarray,
     lengths: Sequence[float] | np.ndarray,
-    diameter: float,
+    hosts: Hosts,
     places: int,
     seed: int | Sequence[int] = 0,
 ) -> Insertions:
@@ -71,27 +78,39 @@ def insertions(
     size = np.asarray(lengths, dtype=float)
     share, successes = np.zeros(len(frames)), np.zeros(len(frames), dtype=int)
     for n, positions in enumerate(frames):
-        share[n], successes[n] = _try(positions % size, size, diameter, places, generator)
+        groups = [(positions[members] % size, distance) for members, distance in hosts]
+        share[n], successes[n] = _try(groups, size, places, generator)
     return Insertions(share, successes, places)
 
 
 def _try(
-    positions: np.ndarray, lengths: np.ndarray, diameter: float, places: int, generator: np.random.Generator
+    groups: list[tuple[np.ndarray, float]], lengths: np.ndarray, places: int, generator: np.random.Generator
 ) -> tuple[float, int]:
-    """The part of the container that cells do not show to be covered, and how many places there are free."""
+    """The part of the container that cells do not show to be covered, and how many places there are free.
+    groups: positions, and how near a place may not be."""
     from scipy.spatial import cKDTree
 
-    tree = cKDTree(positions, boxsize=lengths)
-    cells, sides = _remaining(tree, lengths, diameter)
+    trees = [(cKDTree(positions, boxsize=lengths), distance) for positions, distance in groups]
+    cells, sides = _remaining(trees, lengths)
     if not len(cells):
         return 0.0, 0
     chosen = cells[generator.integers(0, len(cells), size=places)]
     trials = chosen + sides * (generator.random(chosen.shape) - 0.5)
-    nearest, _ = tree.query(trials % lengths, distance_upper_bound=diameter)
-    return len(cells) * float(np.prod(sides / lengths)), int(np.isinf(nearest).sum())
+    free = _apart(trees, trials % lengths, 0.0)
+    return len(cells) * float(np.prod(sides / lengths)), int(free.sum())
 
 
-def _remaining(tree: object, lengths: np.ndarray, diameter: float) -> tuple[np.ndarray, np.ndarray]:
+def _apart(trees: list[tuple[Any, float]], places: np.ndarray, less: float) -> np.ndarray:
+    """(M,) which places (M, d) are nearer to no particle than its distance less a length."""
+    found = np.ones(len(places), dtype=bool)
+    for tree, distance in trees:
+        if distance > less:
+            nearest, _ = tree.query(places, distance_upper_bound=distance - less)
+            found &= np.isinf(nearest)
+    return found
+
+
+def _remaining(trees: list[tuple[Any, float]], lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Centres (M, d) and sides (d,) of the cells that no one particle covers."""
     dimension = len(lengths)
     width = (np.prod(lengths) / _CELLS) ** (1.0 / dimension)
@@ -102,12 +121,7 @@ def _remaining(tree: object, lengths: np.ndarray, diameter: float) -> tuple[np.n
     corners = np.array(list(product((-0.25, 0.25), repeat=dimension)))
     for division in range(_DIVISIONS + 1):
         before = len(cells)
-        reach = diameter - 0.5 * float(
-            np.linalg.norm(sides)
-        )  # nearer to its centre, all of a cell is covered
-        if reach > 0.0:
-            nearest, _ = tree.query(cells, distance_upper_bound=reach)  # type: ignore[attr-defined]
-            cells = cells[np.isinf(nearest)]
+        cells = cells[_apart(trees, cells, 0.5 * float(np.linalg.norm(sides)))]  # covered to its corners
         gained = division == 0 or len(cells) < _WORTH * before
         if division == _DIVISIONS or not gained or len(cells) * len(corners) > _MOST_CELLS:
             break
@@ -117,45 +131,84 @@ def _remaining(tree: object, lengths: np.ndarray, diameter: float) -> tuple[np.n
 
 
 def chemical_potential(source: Source, places: int = PLACES, start: float | None = None) -> Observable:
-    """Chemical potential of a periodic fluid beyond that of an ideal gas, over k_B T, by insertion.
+    """Chemical potential of a periodic fluid beyond that of an ideal gas, over k_B T, by insertion: a scalar,
+    of a mixture that of each species, (species,).
 
     source: a trajectory, by its path or open, or a simulation; places: random places that are tried in each
     of up to 2048 frames, drawn where a particle may fit; start: the time from which frames count. Also the
     `probability` that a random place is free, with its error; `successes`, the number of places that were,
     and `frames_with_success`, the number of frames that have any; `resolution`, the probability that one
     success would have been. The error is that of the mean over frames, to first order: it is not to be
-    trusted if few frames have a success. Theory: by the equation of state, for this number of particles.
-    Raises SceneError for anything but equal smooth particles in a periodic container, for too few frames, and
-    if no place was free.
+    trusted if few frames have a success. Theory: by the equation of state, for these numbers of particles.
+    Raises SceneError for anything but smooth elastic particles in a periodic container, for mixtures with
+    single particles or a polydisperse species, for too few frames, and if no place was free.
     """
     places = count_of("places", places, least=1)
     with measured(source, start) as run:
         require_defined("chemical_potential", run.scene)
-        gas = plain_gas(run.scene)
         if run.followed:
             raise SceneError("follow", run.data.sizes["atom"], f"needs all {run.count} particles in the file")
         if len(run.time) <= STRETCHES:
             raise SceneError("frames", len(run.time), f"an error needs {STRETCHES + 1} or more")
-        stride = -(-len(run.time) // MOST_FRAMES)
-        found = insertions(run.positions[::stride], run.scene.container.lengths, gas.diameter, places)
-        chance = float(found.probability.mean())
-        if chance == 0.0:
-            rule = f"of {places} places in each of {len(found.share)} frames none was free: a fluid too dense"
-            raise SceneError("packing_fraction", gas.packing_fraction, rule)
-        time = run.time[::stride]
+        frames = slice(None, None, -(-len(run.time) // MOST_FRAMES))
+        time = run.time[frames]
         edges = np.append(time, 2.0 * time[-1] - time[-2])
-        series = -np.log(chance) - (found.probability / chance - 1.0)  # to first order
-        result = scalar("chemical_potential", series, edges, **described("chemical_potential", run))
-        return result.assign(_counts(found, chance, float(result.error)))
+        about = described("chemical_potential", run)
+        tried = [_inserted(run, frames, hosts, places) for hosts in _hosts(run)]
+        if run.scene.alike:
+            series, counts = tried[0]
+            return scalar("chemical_potential", series, edges, **about).assign(_variables((), counts))
+        return _of_species(run, tried, about)
 
 
-def _counts(found: Insertions, chance: float, relative: float) -> dict[str, tuple]:
-    """The variables that state how well insertion worked."""
-    numbers = {
-        "probability": (chance, "chance that a random place is free"),
-        "probability_error": (chance * relative, "standard uncertainty"),
-        "successes": (found.successes.sum(), "places that were free"),
-        "frames_with_success": (np.count_nonzero(found.successes), "frames with a free place"),
-        "resolution": (found.resolution, "probability that one success would have been"),
+def _hosts(run: Run) -> list[Hosts]:
+    """For a particle like all, or of each species, how near it may be to none of the others."""
+    radii = [kind.radius for kind in run.scene.kinds if kind.count]
+    if run.scene.alike:
+        return [[(slice(None), 2.0 * radii[0])]]
+    numbers = [np.flatnonzero(run.species == kind) for kind in np.unique(run.species)]
+    return [[(each, own + radius) for each, radius in zip(numbers, radii, strict=True)] for own in radii]
+
+
+def _inserted(run: Run, frames: slice, hosts: Hosts, places: int) -> tuple[np.ndarray, dict[str, float]]:
+    """The series (T,) of the chemical potential, and how well insertion worked."""
+    found = insertions(run.positions[frames], run.scene.container.lengths, hosts, places)
+    chance = float(found.probability.mean())
+    if chance == 0.0:
+        rule = f"of {places} places in each of {len(found.share)} frames none was free: a fluid too dense"
+        raise SceneError("packing_fraction", run.scene.packing_fraction, rule)
+    series = -np.log(chance) - (found.probability / chance - 1.0)  # to first order
+    error = correlated_mean(series, LEAST_INTERVALS).estimate.error
+    counts = {
+        "probability": chance,
+        "probability_error": chance * error,
+        "successes": found.successes.sum(),
+        "frames_with_success": np.count_nonzero(found.successes),
+        "resolution": found.resolution,
     }
-    return {name: ((), value, {"units": "1", "long_name": text}) for name, (value, text) in numbers.items()}
+    return series, counts
+
+
+def _of_species(run: Run, tried: list[tuple[np.ndarray, dict[str, float]]], about: dict) -> Observable:
+    """The result of a mixture."""
+    means = [correlated_mean(series, LEAST_INTERVALS).estimate for series, _ in tried]
+    values, errors, freedoms = np.array([[one.value, one.error, one.freedom] for one in means]).T
+    along = {"species": (np.unique(run.species), {"long_name": "number of the species"})}
+    result = observable("chemical_potential", along, values, errors, **about)
+    result = with_freedom(result, Means(values, errors, freedoms))
+    counts = {name: np.array([one[name] for _, one in tried]) for name in tried[0][1]}
+    return result.assign(_variables(("species",), counts))
+
+
+_MEANINGS = {
+    "probability": "chance that a random place is free",
+    "probability_error": "standard uncertainty",
+    "successes": "places that were free",
+    "frames_with_success": "frames with a free place",
+    "resolution": "probability that one success would have been",
+}
+
+
+def _variables(dims: tuple[str, ...], counts: dict[str, Any]) -> dict[str, tuple]:
+    """The variables that state how well insertion worked."""
+    return {name: (dims, counts[name], {"units": "1", "long_name": _MEANINGS[name]}) for name in counts}

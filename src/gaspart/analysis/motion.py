@@ -156,8 +156,8 @@ def groups_of(
     stride: int | None = None,
 ) -> Groups:
     """The chosen ones of the moving particles in groups, or, of fewer than `GROUPS`, as many stretches of the
-    run, of every so many frames (by default `stride_of`), about the centre of mass along the axes `about` (d,), by default those along which its velocity is
-    conserved.
+    run, of every so many frames (by default `stride_of`), about the centre of mass along the axes `about`
+    (d,), by default those along which its velocity is conserved.
 
     There its square for a particle of mass m is 1 - m / M of that without this condition, M the mass of all.
     Between faces that slide motion is about their mean velocity (`faces.mean_velocity`).

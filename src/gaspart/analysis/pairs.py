@@ -1,4 +1,4 @@
-"""Pairs of particles: the radial distribution function and the structure factor.
+"""Pairs of particles: the radial distribution function.
 
 Uncertainties are the scatter of consecutive stretches of the run.
 """
@@ -12,19 +12,12 @@ from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import means_of
-from gaspart.analysis.waves import factors, in_shells, shells_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
 
 STRETCHES = 16
 MOST_FRAMES = 320
 """Frames, evenly spaced, that are searched for pairs of particles."""
-_HIGHEST = 20.0
-"""Wave number times the diameter up to which S(k) is measured: the first three maxima."""
-_WAVES = 24
-"""Wave vectors of each bin of S(k) that are used, evenly chosen among those that the container admits."""
-_WORK = 2**31
-"""Terms of all sums over particles, above which fewer frames are used."""
 
 
 def rdf(
@@ -59,43 +52,6 @@ def rdf(
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
         about = described("rdf", run, distance, end / bins)
         return observable("rdf", along, values, errors, **about)
-
-
-def structure_factor(
-    source: Source, bins: int = 60, highest: float | None = None, start: float | None = None
-) -> Observable:
-    """Static structure factor S(k) = <|sum exp(i k.r)|^2> / N of a periodic scene, (wave_number,).
-
-    Exact sums, at wave vectors that the container admits: k = 2 pi (n_x / L_x, ...), without 0, where S is
-    N, of any number. They are averaged in `bins` equal intervals of |k| up to `highest` (by default 20 over
-    the largest diameter), with up to 24 of the vectors of each; an interval without any is left out, and the
-    coordinate is their mean |k|. S(k) of a fluid tends to its reduced compressibility k_B T d rho / dP at
-    small k, and to 1 at large ones. Mean over up to 320 frames, fewer of many particles. Theory: of equal
-    spheres Verlet and Weis's, an approximation. Raises SceneError for walls, followed
-    particles, too few frames, and a wave number below that of the longest wave.
-    """
-    bins = count_of("bins", bins, least=2)
-    with measured(source, start) as run:
-        require_defined("structure_factor", run.scene)
-        stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
-        if run.followed:
-            raise SceneError("follow", stored, f"needs all {run.count} particles in the file")
-        diameter, least = 2.0 * run.scene.largest_radius, 2.0 * np.pi / max(lengths)
-        rule = f"must be above that of the longest wave, {least:.4g}"
-        end = _HIGHEST / diameter if highest is None else highest
-        end = number("highest", end, rule, above=least)
-        waves, shell, k = shells_of(lengths, end, bins, _WAVES)
-        frames = chosen_frames(run, run.positions)
-        room = max(STRETCHES, _WORK // (stored * len(waves)))
-        frames = frames[:: -(-len(frames) // room)]
-        found = np.array([
-            in_shells(np.mean([factors(frame, lengths, waves) for frame in part], axis=0), shell)
-            for part in np.array_split(frames, STRETCHES)
-        ])  # fmt: skip
-        values, errors = means_of(found)
-        along = {"wave_number": (k, {"units": "1 / length", "long_name": "wave number"})}
-        about = described("structure_factor", run, k)
-        return observable("structure_factor", along, values, errors, **about)
 
 
 def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:

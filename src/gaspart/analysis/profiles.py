@@ -35,7 +35,7 @@ _ROUNDING = 1e-12  # relative scatter of what does not change
 class Means:
     """Values in cells, their standard errors, and the degrees of freedom of these, all of one shape. NaN: a
     value of an empty cell; an error of fewer than two degrees of freedom, or of what does not change in a
-    cell, such as the velocity where one particle passes (0 where nothing moves, or all cells have one value)."""
+    cell, as the velocity where one particle passes: it is 0 if nothing moves, or all cells have one value."""
 
     values: np.ndarray
     errors: np.ndarray

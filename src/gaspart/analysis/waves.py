@@ -1,4 +1,4 @@
-"""Density waves of a periodic container: the wave vectors that it admits, and |sum exp(i k.r)|^2 / N."""
+"""Density waves of a periodic container: the wave vectors that it admits, and their amplitudes."""
 
 from __future__ import annotations
 
@@ -60,7 +60,12 @@ def in_shells(values: np.ndarray, shell: np.ndarray) -> np.ndarray:
 
 
 def factors(positions: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray) -> np.ndarray:
-    """(M,) |sum exp(i k.r)|^2 / N at the wave vectors k = 2 pi n / L, n being `waves` (M, d).
+    """(M,) |sum exp(i k.r)|^2 / N of positions (N, d); see `amplitudes`."""
+    return np.abs(amplitudes(positions, lengths, waves)) ** 2 / len(positions)
+
+
+def amplitudes(positions: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray) -> np.ndarray:
+    """(M,) sum exp(i k.r), complex, at the wave vectors k = 2 pi n / L, n being `waves` (M, d).
 
     positions (N, d). The exponential is a product of one factor an axis, from tables over the integers; that
     of the axes after the first is made once for all vectors that share it.
@@ -77,7 +82,7 @@ def factors(positions: np.ndarray, lengths: Sequence[float] | np.ndarray, waves:
     for number in np.unique(waves[:, 0]):
         here = np.flatnonzero(waves[:, 0] == number)
         total[here] = inner[place.ravel()[here]] @ first[number]
-    return np.abs(total) ** 2 / len(positions)
+    return total
 
 
 def _phases(places: np.ndarray, length: float, most: int) -> np.ndarray:

@@ -91,15 +91,29 @@ def mixture_of(scene: Scene) -> Mixture | None:
 
 def plain_gas(scene: Scene) -> Gas:
     """`Scene.gas`. Raises SceneError, with what it has besides, for a scene that is none."""
-    from gaspart.scene.features import FEATURES, features
-
     if scene.gas is not None:
         return scene.gas
     rule = "a gas of equal, smooth and elastic particles alone is needed"
+    _refuse_others(scene, rule, {"centres_to_walls"})
+    raise SceneError("species", len(scene.kinds), f"{rule}: their radii or masses differ")
+
+
+def plain_mixture(scene: Scene) -> Mixture:
+    """`Scene.mixture`. Raises SceneError, with what it has besides, for a scene that is none."""
+    if scene.mixture is None:
+        rule = "smooth and elastic particles alone are needed"
+        _refuse_others(scene, rule, {"polydispersity", "centres_to_walls"})
+    assert scene.mixture is not None
+    return scene.mixture
+
+
+def _refuse_others(scene: Scene, rule: str, allowed: set[str]) -> None:
+    """Raise SceneError for an empty scene, and one with other features than these."""
+    from gaspart.scene.features import FEATURES, features
+
     if not scene.count:
         raise SceneError("count", 0, f"{rule}: the scene is empty")
-    present = features(scene) - {"centres_to_walls"}
+    present = features(scene) - allowed
     for name in FEATURES:
         if name in present:
             raise FEATURES[name].refuse(scene, f"{rule}, without {FEATURES[name].meaning}")
-    raise SceneError("species", len(scene.kinds), f"{rule}: their radii or masses differ")

@@ -14,7 +14,7 @@ sizes (z = 1), up to the uncertainty of the pure fluid's reference.
 
 import math
 from collections.abc import Sequence
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -29,12 +29,12 @@ Sizes: TypeAlias = Sequence[float] | np.ndarray
 """(S,) positive numbers."""
 
 
-def _coefficients(theory: str, eta: float, dimension: int, pure: float | None) -> tuple[float, ...]:
+def contact_coefficients(theory: str, eta: Numbers, dimension: int, pure: Numbers | None) -> tuple[Any, ...]:
     """Of the powers of z in the contact values; pure: that of equal particles."""
     point = 1.0 / (1.0 - eta)
     if theory == "boublik":
         return point, 1.5 * eta * point**2, 0.5 * eta**2 * point**3
-    pure = float(contact_value(eta, dimension)) if pure is None else pure
+    pure = contact_value(eta, dimension)[()] if pure is None else pure
     if theory == "linear":
         return point, pure - point
     wall = 1.0 + 2.0 ** (dimension - 1) * eta * pure  # of a fluid of equal particles at a hard wall: its Z
@@ -42,7 +42,7 @@ def _coefficients(theory: str, eta: float, dimension: int, pure: float | None) -
     return point, pure - point - square, square
 
 
-def _checked(
+def checked_mixture(
     theory: str, packing_fraction: float, dimension: int, diameters: Sizes, fractions: Sizes | None
 ) -> tuple[float, np.ndarray, np.ndarray]:
     """The packing fraction, diameters (S,) and normalised fractions (S,). Raises SceneError."""
@@ -94,16 +94,23 @@ def mixture_compressibility_factor(
     Raises SceneError for an argument out of range; packing fractions end where the pure fluid's reference
     does.
     """
-    eta, sizes, parts = _checked(theory, packing_fraction, dimension, diameters, fractions)
+    eta, sizes, parts = checked_mixture(theory, packing_fraction, dimension, diameters, fractions)
     sizes = sizes / sizes.max()
-    moment = [_moment(parts, sizes, power) for power in range(dimension + 1)]
-    ratio = moment[dimension - 1] / moment[dimension]
-    total = 0.0
-    for power, coefficient in enumerate(_coefficients(theory, eta, dimension, pure)):
+    moments = [_moment(parts, sizes, power) for power in range(dimension + 1)]
+    total = virial_sum(contact_coefficients(theory, eta, dimension, pure), moments)
+    return 1.0 + 2.0 ** (dimension - 1) * eta * total / moments[dimension]
+
+
+def virial_sum(coefficients: Sequence[float], moments: Sequence[float]) -> float:
+    """The mean over pairs of sigma_ij^d g_ij, with g_ij the polynomial in z_ij of these coefficients, from
+    the moments <sigma^n> of the diameters, n from 0 to d."""
+    dimension = len(moments) - 1
+    ratio, total = moments[dimension - 1] / moments[dimension], 0.0
+    for power, coefficient in enumerate(coefficients):
         rest = dimension - power  # <sigma_i^k sigma_j^k sigma_ij^(d-k)>, by the binomial theorem
-        terms = (math.comb(rest, n) * moment[power + n] * moment[dimension - n] for n in range(rest + 1))
+        terms = (math.comb(rest, n) * moments[power + n] * moments[dimension - n] for n in range(rest + 1))
         total += coefficient * ratio**power * sum(terms) / 2.0**rest
-    return 1.0 + 2.0 ** (dimension - 1) * eta * total / moment[dimension]
+    return total
 
 
 def mixture_contact_values(
@@ -122,11 +129,11 @@ def mixture_contact_values(
     (1999). "santos": a parabola through both and through the exact contact value at a hard wall, z = 2, by
     the same authors, J. Chem. Phys. 117, 5785 (2002). Arguments as in `mixture_compressibility_factor`.
     """
-    eta, sizes, parts = _checked(theory, packing_fraction, dimension, diameters, fractions)
+    eta, sizes, parts = checked_mixture(theory, packing_fraction, dimension, diameters, fractions)
     sizes = sizes / sizes.max()
     ratio = _moment(parts, sizes, dimension - 1) / _moment(parts, sizes, dimension)
     z = 2.0 * np.outer(sizes, sizes) / np.add.outer(sizes, sizes) * ratio
-    return np.polynomial.polynomial.polyval(z, _coefficients(theory, eta, dimension, pure))
+    return np.polynomial.polynomial.polyval(z, contact_coefficients(theory, eta, dimension, pure))
 
 
 @checked
@@ -149,7 +156,7 @@ def mixture_collision_rates(
     """
     if contact is None:
         contact = mixture_contact_values(packing_fraction, dimension, diameters, fractions, theory)
-    _, sizes, parts = _checked(theory, packing_fraction, dimension, diameters, fractions)
+    _, sizes, parts = checked_mixture(theory, packing_fraction, dimension, diameters, fractions)
     each = _numbers("masses", np.atleast_1d(masses))
     if not (each > 0.0).all():
         raise SceneError("masses", float(each.min()), "must be positive")
@@ -188,6 +195,6 @@ def enskog_mutual_diffusion(
     )
     if len(rates) != 2:
         raise SceneError("diameters", len(rates), "mutual diffusion is that of two species")
-    _, _, parts = _checked(theory, packing_fraction, dimension, diameters, fractions)
+    _, _, parts = checked_mixture(theory, packing_fraction, dimension, diameters, fractions)
     inverse = np.broadcast_to(1.0 / _numbers("masses", np.atleast_1d(masses)), parts.shape).sum()
     return float(0.25 * dimension * temperature * inverse * parts[1] / rates[0, 1])

@@ -17,7 +17,7 @@ def pairs_of(scene: Scene) -> list[tuple[int, int]]:
     """The pairs of species by their numbers, the lower one first. Raises SceneError for single particles."""
     if scene.particles:
         raise SceneError(
-            "particles", len(scene.particles), "pairs are counted by species: there are single particles"
+            "particles", len(scene.particles), "pairs are those of species: there are single particles"
         )
     return list(combinations_with_replacement(range(len(scene.species)), 2))
 

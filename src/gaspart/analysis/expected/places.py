@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from gaspart.analysis import bulk
 from gaspart.analysis.bulk import BOLTZMANN, ENSKOG
 from gaspart.analysis.expected.run import Expected, equation_of, partners, shift_of
 from gaspart.analysis.run import Run
+from gaspart.trajectory.pairs import pairs_of
 
 
 def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expected | None:
@@ -47,25 +47,60 @@ def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
     return law, np.nan, "Verlet and Weis"
 
 
-def chemical_potential(run: Run) -> Expected | None:
-    """By insertion into N particles: by the equation of state, or, exactly, into N points, none of which may
-    be nearer than a diameter to the place."""
-    equation, gas = equation_of(run), run.fluid
-    if equation == ENSKOG or gas is None:
-        return None
-    eta, d, count = gas.packing_fraction, gas.dimension, gas.count
+def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | None:
+    """(pair, wave_number) of spheres of one size in each species; of points 1 of equal species, and 0."""
+    equation, mixture, species = equation_of(run), run.mixture, run.scene.species
+    pairs = pairs_of(run.scene)
+    same = np.array([[float(a == b)] for a, b in pairs]) + 0.0 * wave_number
     if equation == BOLTZMANN:
-        chance = 1.0 - 2.0**d * eta / count
-        if not chance > 0.0 or 2.0 * gas.diameter > min(run.scene.container.lengths):
-            return None
-        return -count * math.log(chance), 0.0, "insertion among independent places"
-    value = theory.excess_chemical_potential(eta, d)
-    value += theory.insertion_finite_size_correction(eta, d, count)
-    return (
-        float(value),
-        float(theory.chemical_potential_uncertainty(eta, d)),
-        "Gibbs and Duhem, of this number",
-    )
+        return _of_points(run, same)
+    if equation == ENSKOG or mixture is None or mixture.dimension == 2:
+        return None
+    if not all(kind.alike and kind.count for kind in species):
+        return None
+    counts = np.array([kind.count for kind in species])
+    if run.scene.alike:
+        whole = structure_factor(run, wave_number)
+        assert whole is not None
+        parts = np.sqrt(counts / counts.sum())
+        return same + np.array([[parts[a] * parts[b]] for a, b in pairs]) * (whole[0] - 1.0), *whole[1:]
+    diameters = [2.0 * kind.radius for kind in species]
+    found = theory.percus_yevick_partial_factors(wave_number, mixture.packing_fraction, diameters, counts)
+    return np.array([found[:, a, b] for a, b in pairs]), np.nan, "Percus and Yevick, Lebowitz"
+
+
+def chemical_potential(run: Run) -> Expected | None:
+    """By insertion into a number of particles: by the equation of state, or, exactly, into points, none of
+    which may be nearer than the sum of the radii to the place. A scalar of equal particles, otherwise
+    (species,)."""
+    equation, mixture = equation_of(run), run.mixture
+    if equation == ENSKOG or mixture is None:
+        return None
+    eta, d, diameters, counts = mixture.sizes[0], mixture.dimension, mixture.diameters, mixture.counts
+    if equation == BOLTZMANN:
+        found = _into_points(run, np.array(diameters), np.array(counts))
+        return None if found is None else (found, 0.0, "insertion among independent places")
+    if run.scene.alike:
+        value = theory.excess_chemical_potential(eta, d)
+        value += theory.insertion_finite_size_correction(eta, d, run.count)
+        error = float(theory.chemical_potential_uncertainty(eta, d))
+        return float(value), error, "Gibbs and Duhem, of this number"
+    sizes, which = np.unique(diameters, return_inverse=True)
+    numbers = np.bincount(which, counts)
+    value = theory.mixture_chemical_potentials(eta, d, sizes, numbers)
+    value += theory.mixture_insertion_correction(eta, d, sizes, numbers)
+    return value[which], np.nan, "equation of state of Santos, Yuste and Lopez de Haro, of these numbers"
+
+
+def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | None:
+    """That of independent places, in a container in which no image counts twice."""
+    between = 0.5 * np.add.outer(diameters, diameters)
+    covered = np.array([theory.particle_volume(run.dimension, 2.0 * one) for one in between.ravel()])
+    chance = 1.0 - covered.reshape(between.shape) / run.scene.container.volume
+    if not (chance > 0.0).all() or 2.0 * diameters.max() > min(run.scene.container.lengths):
+        return None
+    found = -np.log(chance) @ counts
+    return float(found[0]) if run.scene.alike else found
 
 
 def temperature(run: Run) -> Expected | None:

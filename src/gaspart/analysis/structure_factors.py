@@ -1,0 +1,105 @@
+"""Static structure factors, of all particles and of each pair of species.
+
+Uncertainties are the scatter of consecutive stretches of the run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from gaspart.analysis.expected.described import described
+from gaspart.analysis.observable import Observable, observable
+from gaspart.analysis.observables import require_defined
+from gaspart.analysis.pairs import STRETCHES, chosen_frames
+from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.statistics import means_of
+from gaspart.analysis.waves import amplitudes, factors, in_shells, shells_of
+from gaspart.errors import SceneError
+from gaspart.scene.validation import count_of, number
+from gaspart.trajectory.pairs import pair_names, pairs_of
+
+_HIGHEST = 20.0
+"""Wave number times the diameter up to which S(k) is measured: the first three maxima."""
+_WAVES = 24
+"""Wave vectors of each bin of S(k) that are used, evenly chosen among those that the container admits."""
+_WORK = 2**31
+"""Terms of all sums over particles, above which fewer frames are used."""
+
+
+def structure_factor(
+    source: Source, bins: int = 60, highest: float | None = None, start: float | None = None
+) -> Observable:
+    """Static structure factor S(k) = <|sum exp(i k.r)|^2> / N of a periodic scene, (wave_number,).
+
+    Exact sums, at wave vectors that the container admits: k = 2 pi (n_x / L_x, ...), without 0, where S is
+    N, of any number. They are averaged in `bins` equal intervals of |k| up to `highest` (by default 20 over
+    the largest diameter), with up to 24 of the vectors of each; an interval without any is left out, and the
+    coordinate is their mean |k|. S(k) of a fluid tends to its reduced compressibility k_B T d rho / dP at
+    small k, and to 1 at large ones. Mean over up to 320 frames, fewer of many particles. Theory: of equal
+    spheres Verlet and Weis's, an approximation. Raises SceneError for walls, followed
+    particles, too few frames, and a wave number below that of the longest wave.
+    """
+    with measured(source, start) as run:
+        require_defined("structure_factor", run.scene)
+        lengths = run.scene.container.lengths
+        found, along = _measured(run, bins, highest, lambda frame, waves: factors(frame, lengths, waves))
+        about = described("structure_factor", run, along["wave_number"][0])
+        return observable("structure_factor", along, *means_of(found), **about)
+
+
+def partial_structure_factors(
+    source: Source, bins: int = 60, highest: float | None = None, start: float | None = None
+) -> Observable:
+    """Partial structure factors of a periodic mixture, (pair, wave_number), by Ashcroft and Langreth (Phys.
+    Rev. 156, 685 (1967)):
+
+        S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b),    rho_a(k) = sum over species a of exp(i k.r).
+
+    1 of equal and 0 of other species at large k, and of an ideal mixture; with the fractions x the sum over
+    all a and b of sqrt(x_a x_b) S_ab is the `structure_factor`, exactly. Arguments, wave vectors, errors and
+    what is refused as there; also SceneError for single particles, which are of no species. Theory: of
+    spheres of one size Verlet and Weis's, of a mixture Percus and Yevick's, both approximations.
+    """
+    with measured(source, start) as run:
+        require_defined("partial_structure_factors", run.scene)
+        members = [np.flatnonzero(run.species == kind) for kind in range(len(run.scene.species))]
+        lengths, pairs = run.scene.container.lengths, pairs_of(run.scene)
+
+        def of_pairs(frame: np.ndarray, waves: np.ndarray) -> np.ndarray:
+            each = [amplitudes(frame[one], lengths, waves) / max(1.0, len(one)) ** 0.5 for one in members]
+            return np.array([(each[a] * each[b].conj()).real for a, b in pairs])
+
+        found, along = _measured(run, bins, highest, of_pairs)
+        names = np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"}
+        about = described("partial_structure_factors", run, along["wave_number"][0])
+        return observable("partial_structure_factors", {"pair": names, **along}, *means_of(found), **about)
+
+
+def _measured(
+    run: Run,
+    bins: int,
+    highest: float | None,
+    products: Callable[[np.ndarray, np.ndarray], np.ndarray],
+) -> tuple[np.ndarray, dict[str, Any]]:
+    """(16, ..., wave_number) means over stretches of the run of `products` (..., M), of positions and M wave
+    vectors, in intervals of |k|, and the coordinate. Raises SceneError; see `structure_factor`."""
+    bins = count_of("bins", bins, least=2)
+    stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
+    if run.followed:
+        raise SceneError("follow", stored, f"needs all {run.count} particles in the file")
+    diameter, least = 2.0 * run.scene.largest_radius, 2.0 * np.pi / max(lengths)
+    rule = f"must be above that of the longest wave, {least:.4g}"
+    end = _HIGHEST / diameter if highest is None else highest
+    end = number("highest", end, rule, above=least)
+    waves, shell, k = shells_of(lengths, end, bins, _WAVES)
+    frames = chosen_frames(run, run.positions)
+    room = max(STRETCHES, _WORK // (stored * len(waves)))
+    frames = frames[:: -(-len(frames) // room)]
+    found = [
+        np.apply_along_axis(in_shells, -1, np.mean([products(frame, waves) for frame in part], axis=0), shell)
+        for part in np.array_split(frames, STRETCHES)
+    ]
+    return np.array(found), {"wave_number": (k, {"units": "1 / length", "long_name": "wave number"})}
