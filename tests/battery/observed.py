@@ -16,10 +16,16 @@ ROUNDED = 5e-6
 """Relative difference of two measurements that is one of the rounding of frames."""
 CELLS = 4
 """Of a field, along each of its two axes."""
-COSTLY, ENOUGH = {"structure_factor": {"bins": 12}, "chemical_potential": {"places": 16}}, 18
+COSTLY = {name: {"bins": 12} for name in ("structure_factor", "partial_structure_factors")}
+COSTLY["chemical_potential"], ENOUGH = {"places": 16}, 18
 """Observables of which so many frames are looked at, from the first one on, and less in each."""
 ACCUMULATED = ("msd", "vacf")
 """What a run with correlations of the motion has accumulated."""
+
+
+AT_LAGS = ("D",)
+"""Observables of which the lag is a form of their own, here that of `LAG` frames."""
+LAG = 4
 
 
 @dataclass(frozen=True)
@@ -50,6 +56,8 @@ SAMPLED = {
     ("chemical_potential", "simulation"): _PLACES,
     ("structure_factor", "mirrored"): _WAVES,
     ("structure_factor", "exchanged"): _WAVES,
+    ("partial_structure_factors", "mirrored"): _WAVES,
+    ("partial_structure_factors", "exchanged"): _WAVES,
 }
 """Those that hold within errors only, and why."""
 SINGLE = {"rdf": 1e-2, "order": 1e-4}
@@ -65,13 +73,14 @@ def traits_of(name):
 
 def plain_name(name):
     """The name of an observable without that of a form of it."""
-    return name.removeprefix("accumulated ").removesuffix(" per axis")
+    return name.removeprefix("accumulated ").removesuffix(" per axis").removesuffix(" at a lag")
 
 
 def names():
     """All observables: those with a name, their forms of other files or axes, and functions without one."""
     found = list(OBSERVABLES)
     found += [f"{name} per axis" for name in selecting("per_axis")]
+    found += [f"{name} at a lag" for name in AT_LAGS]
     found += [f"accumulated {name}" for name in ACCUMULATED]
     return [*found, "by_species", *(f"field {of}" for of in QUANTITIES)]
 
@@ -92,6 +101,8 @@ def measured(name, data, axes, start=None):
         return gp.analysis.field(data, name.split()[1], "".join(AXES[k] for k in across), CELLS, start)
     plain = plain_name(name)
     selection = {"per_axis": True} if name.endswith("per axis") else {}
+    if name.endswith("at a lag"):
+        selection = {"lag": LAG * float(np.diff(data["time"].values[:2])[0])}
     if plain in selecting("axis"):
         selection = {"axis": AXES[along]}
     if plain not in COSTLY:

@@ -11,6 +11,7 @@ from battery import table
 from battery.kinds_of_runs import KINDS, engines, runs
 from battery.observed import MEANS, SAMPLED, SINGLE, WITHOUT_NAME, names
 
+from gaspart.analysis.observables import having
 from gaspart.engines import ENGINES
 from gaspart.scene.features import FEATURES, features
 
@@ -66,7 +67,7 @@ def test_every_observable_is_tested_by_every_symmetry_somewhere():
     }
     never = set(product(names(), table.SYMMETRIES)) - tested
     split = {
-        (name, "one species") for name in ("pair_rates", "contact_values", "mutual_diffusion", "by_species")
+        (name, "one species") for name in (*having(merged="split"), *having(merged="lost"), "by_species")
     }
     kept = [name for name in names() if name.startswith("accumulated") or name in table.FLUXES]
     short = {("mutual_diffusion", "parts")}  # of so short a run there is none

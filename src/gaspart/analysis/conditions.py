@@ -214,21 +214,20 @@ def a_neighbourhood(scene: Scene, selection: Selection) -> None:
 def smooth_sizes(scene: Scene, selection: Selection) -> None:
     """Smooth and elastic particles, in a mixture in species of one size each."""
     plain_mixture(scene)
+    in_species(scene, selection)
+
+
+def in_species(scene: Scene, selection: Selection) -> None:
+    """Equal particles, or species of one size each."""
     if scene.alike:
         return
     if scene.particles:
-        rule = "are of no species: the chemical potential of a mixture is that of each species"
+        rule = "are of no species: this observable of a mixture is that of its species"
         raise SceneError("particles", len(scene.particles), rule)
     for n, kind in enumerate(scene.species):
         if not kind.alike:
-            rule = "has many sizes: a chemical potential is that of one"
+            rule = "has many sizes: this observable of a mixture is that of species of one size"
             raise SceneError(f"species[{n}].polydispersity", kind.polydispersity, rule)
-
-
-def alike(scene: Scene, selection: Selection) -> None:
-    """Particles of one radius and one mass."""
-    if not scene.alike:
-        raise SceneError("species", len(scene.kinds), "the heat flux of a mixture contains diffusion")
 
 
 def has_axis(scene: Scene, selection: Selection) -> None:

@@ -105,8 +105,9 @@ def _apart(trees: list[tuple[Any, float]], places: np.ndarray, less: float) -> n
     found = np.ones(len(places), dtype=bool)
     for tree, distance in trees:
         if distance > less:
-            nearest, _ = tree.query(places, distance_upper_bound=distance - less)
-            found &= np.isinf(nearest)
+            left = np.flatnonzero(found)
+            nearest, _ = tree.query(places[left], distance_upper_bound=distance - less)
+            found[left] = np.isinf(nearest)
     return found
 
 

@@ -338,10 +338,10 @@ OBSERVABLES: dict[str, Named] = {
     "thermal_conductivity": Named(
         title="thermal conductivity",
         symbol="κ",
-        definition="conductivity of heat",
+        definition="conductivity of heat, of a mixture without diffusion",
         units="1 / (length^(d-2) time)",
         function="thermal_conductivity",
-        conditions=(where.unsheared, where.alike, where.tallied),
+        conditions=(where.unsheared, where.in_species, where.tallied),
         theory="transport.thermal_conductivity",
         bulk="thermal_conductivity",
         source="Enskog's theory, with g(sigma) from: {state}",

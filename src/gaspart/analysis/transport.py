@@ -20,6 +20,7 @@ import math
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.conduction import conductivity_without_diffusion
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import KEPT, require_defined
@@ -66,13 +67,19 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
 
 
 def thermal_conductivity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
-    """The conductivity of heat of particles that are all alike, 1 / (length^(d-2) time), with k_B = 1.
+    """The conductivity of heat, 1 / (length^(d-2) time), with k_B = 1.
 
-    Arguments, theory and errors as of `shear_viscosity`; SceneError also for a mixture, whose heat flux
-    contains that of diffusion.
+    Arguments, theory and errors as of `shear_viscosity`. Of a mixture it is that without diffusion (see
+    `conduction`), from the fluxes between frames, whose interval may not be longer than the lag, without
+    the curves; SceneError also for particles of many sizes, and single ones in a mixture.
     """
     with measured(source, start) as run:
-        return _coefficient(run, "thermal_conductivity", "heat", lag)
+        if run.scene.alike:
+            return _coefficient(run, "thermal_conductivity", "heat", lag)
+        require_defined("thermal_conductivity", run.scene)
+        settings = _stored(run)
+        lags = _lags_until(settings, lag)
+        return conductivity_without_diffusion(run, lags * settings.interval)
 
 
 def pressure_tensor(source: Source, start: float | None = None) -> Observable:

@@ -87,6 +87,7 @@ from gaspart.theory.insertion import insertion_saturation_uncertainty as inserti
 from gaspart.theory.mixture_potential import mixture_chemical_potentials as mixture_chemical_potentials
 from gaspart.theory.mixture_potential import mixture_insertion_correction as mixture_insertion_correction
 from gaspart.theory.mixture_structure import percus_yevick_partial_factors as percus_yevick_partial_factors
+from gaspart.theory.mixture_transport import dilute_mixture_conductivity as dilute_mixture_conductivity
 from gaspart.theory.mixtures import MIXTURE_THEORIES as MIXTURE_THEORIES
 from gaspart.theory.mixtures import enskog_mutual_diffusion as enskog_mutual_diffusion
 from gaspart.theory.mixtures import mixture_collision_rates as mixture_collision_rates

@@ -144,8 +144,16 @@ def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
 
 
 def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
-    """By fluctuations."""
-    return _transport(run, temperature, bulk.thermal_conductivity, "conductivity")
+    """By fluctuations; of points of several masses or sizes Chapman and Enskog's."""
+    mixture = run.mixture
+    if run.scene.alike or mixture is None or not temperature > 0.0:
+        return _transport(run, temperature, bulk.thermal_conductivity, "conductivity")
+    if equation_of(run) != BOLTZMANN or mixture.dimension == 2:
+        return None
+    value = theory.dilute_mixture_conductivity(
+        mixture.diameters, mixture.counts, temperature, masses=mixture.masses
+    )
+    return value, math.nan, f"{SOURCES[BOLTZMANN]}, first approximation"
 
 
 def shear_viscosity(run: Run, temperature: float) -> Expected | None:
