@@ -20,8 +20,8 @@ from gaspart.analysis.observables import require_defined
 from gaspart.analysis.run import Run, Source, measured, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
+from gaspart.keys.values import number
 from gaspart.scene.faces import mean_velocity
-from gaspart.scene.validation import number
 
 LINEAR_FROM = 12.0
 """Collisions per particle, from which on the mean-squared displacement grows evenly, if there is a D."""

@@ -18,7 +18,7 @@ from gaspart.analysis.run import Run, Source, measured
 from gaspart.analysis.statistics import means_of
 from gaspart.analysis.waves import amplitudes, factors, in_shells, shells_of
 from gaspart.errors import SceneError
-from gaspart.scene.validation import count_of, number
+from gaspart.keys.values import count_of, number
 from gaspart.trajectory.pairs import pair_names, pairs_of
 
 _HIGHEST = 20.0
