@@ -201,8 +201,7 @@ def _result(describe: Any, family: str, part: str, function: str, arguments: lis
 
 
 def _config(path: str) -> dict:
-    from gaspart.reproduction.config import read_numbers
-    from gaspart.reproduction.config_files import merged_with_default
+    from gaspart.reproduction.config_files import merged_with_default, read_numbers
 
     config, files = merged_with_default(Path(path))
     read_numbers(config, files)

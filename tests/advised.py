@@ -21,7 +21,6 @@ import numpy as np
 import uneven
 
 import gaspart as gp
-from gaspart.accuracy.advice import advise, is_tabulated
 from gaspart.accuracy.pilot import speed_of
 from gaspart.accuracy.plan import plan
 from gaspart.accuracy.steady import keeps_energy
@@ -224,34 +223,18 @@ def _of_longer(observable, data):
 
 def _advice(gas, observable, accuracy):
     """The advised run, and its cost by speeds measured again over that of the cheapest candidate."""
-    if is_tabulated(gas, observable):
-        found = advise(gas, observable, accuracy)
-        costs = {"ratio": _table_ratio(gas, found, observable), "predicted": 0.0}
-        stated = {"stated": found.setting.half_width, "promised": found.within_budget}
-        return found.recipe, costs | stated | {"replicas": found.replicas, "longer": LONGER}
     made = plan(gas, observable, accuracy, pilot_seconds=PILOT_SECONDS)
     near = [one for one in made.options if one.half_width <= accuracy * 1.001]
     near = [one for one in near if one.seconds < 4.0 * made.best.seconds] or [made.best]
-    again = [
-        _cost(gas, one.candidate.engine, observable, one.duration) if len(near) > 1 else 1.0 for one in near
-    ]
+    again = [_cost(gas, one.engine, observable, one.duration) if len(near) > 1 else 1.0 for one in near]
     ratio = again[near.index(made.best)] / min(again)
     stated = {"stated": made.best.half_width, "promised": made.affordable}
     longer = float(np.clip(MOST_SECONDS / made.best.seconds, 3.0, LONGER))
-    costs = {"ratio": ratio, "predicted": made.best.duration, "replicas": 1, "longer": longer}
+    costs = {"ratio": ratio, "predicted": made.best.duration, "replicas": made.replicas, "longer": longer}
     if observable == "temperature" and made.places[0] < made.places[1]:
         pilot = max((one for one in made.pilots if one.measured), key=lambda one: one.component.places)
         costs["places"] = np.isfinite(measure(observable, pilot.path).estimate.values)
     return made.recipe, costs | stated
-
-
-def _table_ratio(gas, found, observable):
-    """The same of advice from the table: its settings' collisions by the speed of their engines here."""
-    rate = float(gp.theory.collision_rate(**found.gas.parameters))
-    settings = [found.setting, *found.others]
-    each = gas.count * 0.5 * rate
-    costs = [_cost(gas, one.engine, observable, one.contacts / each) for one in settings]
-    return costs[0] / min(costs)
 
 
 def _cost(gas, engine, observable, duration):

@@ -32,22 +32,25 @@ TESTS = Path(__file__).parent
 collect_ignore = ["referees"]
 # The files whose tests look at one run of the smoke workflow.
 OF_SMOKE_RUN = ("test_smoke.py", "test_accessibility.py", "test_planning.py", "test_archive.py")
+# The folder whose files look at the same data sets.
+SHARING = "reproduction/families/scaling/"
 # Packages whose tests compile hardly any kernel, but for those of some files. They run while the smoke
 # workflow compiles those that the others share with it: two processes that need a kernel at the same time
 # both compile it.
 WITHOUT_KERNELS = ("theory", "reproduction", "scene")
-COMPILING = tuple(
-    f"test_{name}.py" for name in ("measure", "digests", "rows", "sweep", "relaxation", "simulate")
-)
+COMPILING = ("approach", "digests", "measure", "own", "pressure", "relaxation", "rows", "simulate")
+COMPILING += ("source", "sweep", "variants")
 
 
 class ByFile(LoadScopeScheduling):
-    """A file's tests go to one process, since they share compiled kernels, and all of those that look at the
-    smoke workflow to one, since they share a run of it."""
+    """A file's tests go to one process, since they share compiled kernels, all of those that look at the
+    smoke workflow to one, since they share a run of it, and those of a folder that share data sets."""
 
     def _split_scope(self, nodeid):
         path = nodeid.split("::")[0]
-        return "smoke" if path.endswith(OF_SMOKE_RUN) else path
+        if path.endswith(OF_SMOKE_RUN):
+            return "smoke"
+        return SHARING if SHARING in path else path
 
 
 def pytest_addoption(parser):
@@ -62,6 +65,11 @@ def pytest_sessionfinish(session):
         session.exitstatus = session.exitstatus or pytest.ExitCode.TESTS_FAILED
 
 
+def compiles(path):
+    """Whether tests of a file in `WITHOUT_KERNELS` compile one all the same."""
+    return path.stem.removeprefix("test_") in COMPILING or path.parent.name == "pictures"
+
+
 def pytest_xdist_make_scheduler(config, log):
     return ByFile(config, log)
 
@@ -74,6 +82,6 @@ def pytest_collection_modifyitems(items):
         package = item.path.relative_to(TESTS).parts[0] if item.path.is_relative_to(TESTS) else ""
         if package == "workflow":
             return 0 if item.path.name in OF_SMOKE_RUN else 3
-        return 1 if package in WITHOUT_KERNELS and item.path.name not in COMPILING else 2
+        return 1 if package in WITHOUT_KERNELS and not compiles(item.path) else 2
 
     items.sort(key=place)

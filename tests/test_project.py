@@ -59,23 +59,6 @@ def test_what_a_message_says_to_install_is_an_extra():
         assert names == {provided[module]}, (module, extra)
 
 
-def targets():
-    """The targets of the Makefile."""
-    return set(re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
-
-
-def workflow(name):
-    """The jobs of a workflow of CI."""
-    return yaml.safe_load((ROOT / f".github/workflows/{name}.yml").read_text(encoding="utf-8"))["jobs"]
-
-
-def test_ci_runs_targets_that_the_makefile_has():
-    matrix = workflow("ci")["make"]["strategy"]["matrix"]["target"]
-    assert {"lint", "test", "smoke", "docs"} == set(matrix) <= targets()
-    weekly = [step["run"] for step in workflow("referees")["referees"]["steps"] if "run" in step]
-    assert "make referees" in weekly and "referees" in targets()
-
-
 def test_the_packages_of_the_referees_are_locked():
     folder = ROOT / "tests/referees"
     lines = (folder / "environment.in").read_text(encoding="utf-8").splitlines()

@@ -36,17 +36,6 @@ def test_every_stub_belongs_to_a_package_that_loads_what_it_states():
             _ = package.Scenes
 
 
-def test_an_editor_sees_the_public_names():
-    jedi = pytest.importorskip("jedi")
-
-    def completions(text):
-        return {one.name for one in jedi.Script(f"import gaspart as gp\n{text}").complete()}
-
-    assert set(gp.__all__) <= completions("gp.")
-    assert set(gp.analysis.__all__) <= completions("gp.analysis.")
-    assert {"from_file", "packing_fraction"} <= completions("gp.Scene.")
-
-
 MISTAKES = """import gaspart as gp
 gas = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.5, temperature=1.0)])
 gp.run(gas, gp.EventDriven(), 1, 2.0, 0.5, "a.nc")

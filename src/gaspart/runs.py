@@ -9,9 +9,16 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Self
 
-from gaspart.accuracy.reached import Examiner, Reached
+from gaspart.accuracy.reached import AccuracyStatus, Examiner
 from gaspart.accuracy.steady import require_steady
-from gaspart.analysis.observables import OBSERVABLES, having, require_defined, require_kept, require_modelled
+from gaspart.analysis.observables import (
+    OBSERVABLES,
+    having,
+    require_modelled,
+    require_run,
+    require_steady_value,
+    walls_of,
+)
 from gaspart.engines import Engine
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import is_same_file, output_path
@@ -31,10 +38,11 @@ from gaspart.trajectory.until import Requirement, Until
 class Accuracy(Requirement):
     """The accuracy that a run is to reach: standard error / |value| of an observable.
 
-    observable: Z, D, collision_rate, pressure or shear_viscosity, as `gaspart measure` names them; accuracy:
-    relative, of one standard error that includes correlations; start: the time from which frames count, by
-    default a quarter of the run; face: of the pressure, the wall (`x low`), by default each of them. Raises
-    SceneError for other values.
+    observable: Z, D, collision_rate, pressure, heat_flux, wall_shear, velocity or shear_viscosity, as
+    `gaspart measure` names them; accuracy: relative, of one standard error that includes correlations; of
+    those with components that vanish, and of a profile, relative to their root mean square; start: the time
+    from which frames count, by default a quarter of the run; face: of one of the walls (`x low`), by default
+    each of them. Raises SceneError for other values.
     """
 
     def __post_init__(self) -> None:
@@ -43,7 +51,7 @@ class Accuracy(Requirement):
             rule = unknown_word(self.observable, able, "observable")
             raise SceneError("until.observable", self.observable, rule)
         super().__post_init__()
-        if self.face is not None and OBSERVABLES[self.observable].along != ("face",):
+        if self.face is not None and "face" not in OBSERVABLES[self.observable].along:
             raise SceneError("until.face", self.face, f"has no meaning for {self.observable}")
 
     @classmethod
@@ -70,7 +78,7 @@ def run(
     initial: State | str | Path | None = None,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
-    examined: Callable[[list[Reached]], None] | None = None,
+    examined: Callable[[list[AccuracyStatus]], None] | None = None,
     overwrite: bool = False,
     keep_checkpoint: bool = False,
 ) -> Path:
@@ -161,7 +169,7 @@ def resume(
     path: str | Path,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
-    examined: Callable[[list[Reached]], None] | None = None,
+    examined: Callable[[list[AccuracyStatus]], None] | None = None,
     *,
     duration: float | None = None,
     keep_checkpoint: bool = False,
@@ -193,23 +201,16 @@ def require_measurable(
 ) -> None:
     """Raise SceneError for an observable that a scene does not have, however long the run, of which a run by
     an engine says nothing, or for which this run does not keep what it needs."""
-    from gaspart.analysis.needs import require_of  # which loads xarray
-
-    walls, declared = scene.container.walls, OBSERVABLES[asked.observable]
+    walls = walls_of(asked.observable, scene)
     kept = ("fluxes",) if correlations is not None and correlations.stress else ()
-    counted = declared.along == ("face",) or declared.needs == "fluxes"
     try:
-        require_defined(asked.observable, scene)
-        require_kept(asked.observable, kept)
+        require_run(asked.observable, scene, kept, follow)
+        require_steady_value(asked.observable, scene)
         require_modelled(asked.observable, scene, engine)
-        if follow is None or follow >= scene.count or counted:
-            require_of(asked.observable, scene, correlations=correlations, displacements=True, follow=follow)
     except SceneError as error:
         raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
     if asked.face not in (None, *walls):
         raise SceneError("until", asked.name, f"the walls are {', '.join(walls)}")
-    if follow is not None and follow < scene.count and not counted:
-        raise SceneError("until", asked.name, "needs all particles in the file, without follow")
 
 
 def require_end(asked: Requirement, scene: Scene, at_most: float | None, given: bool) -> None:
@@ -222,7 +223,7 @@ def require_end(asked: Requirement, scene: Scene, at_most: float | None, given: 
     driven = scene.gravity or scene.thermostat or any(face.moves for face in scene.faces.values())
     if not moving and not driven:
         raise SceneError("until", asked.name, "never becomes known: nothing moves")
-    if scene.count == 1 and OBSERVABLES[asked.observable].along != ("face",):
+    if scene.count == 1 and "face" not in OBSERVABLES[asked.observable].along:
         raise SceneError("until", asked.name, "never becomes known: a single particle meets no other")
     if at_most is None:
         try:

@@ -314,7 +314,7 @@ class Simulation:
         if state.gravity is not None:  # what a fall through the container can change
             masses = state.masses[np.isfinite(state.masses)]
             scale += float(masses.sum() * (abs(state.gravity) @ state.lengths))
-        precision = getattr(self.engine, "precision", "float64")
+        precision = self.engine.precision
         exchanged = self._dynamics.exchanged + abs(state.potential_energy)  # a flow falls without end
         allowed = ENERGY_DRIFT[precision] * scale + EXCHANGE_ERROR[precision] * exchanged
         if drift > allowed:

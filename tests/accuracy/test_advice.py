@@ -8,7 +8,9 @@ import pytest
 import gaspart as gp
 from gaspart import theory
 from gaspart.accuracy import speed, table
-from gaspart.accuracy.advice import EQUILIBRATION, QUANTILE, advise
+from gaspart.accuracy.noise import QUANTILE
+from gaspart.accuracy.plan import tabulated
+from gaspart.accuracy.table import EQUILIBRATION
 from gaspart.analysis.measuring import measure
 from gaspart.cli.advise import _lines
 from gaspart.engines import DSMC
@@ -31,7 +33,7 @@ def between_walls(boundary):
 
 
 def advice(fraction, accuracy, observable="Z", budget=None, speed_of=speed.as_measured, **more):
-    return advise(gas(fraction, **more), observable, accuracy, budget, speed_of)
+    return tabulated(gas(fraction, **more), observable, accuracy, budget, speed_of)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -40,44 +42,42 @@ def advice(fraction, accuracy, observable="Z", budget=None, speed_of=speed.as_me
 def test_bias_and_noise_make_up_the_wanted_accuracy(dimension, observable, accuracy):
     found = advice(0.2, accuracy, observable, dimension=dimension)
     noise = table.noise(dimension, 0.2, observable)
-    best = found.setting
-    assert best.bias + QUANTILE * math.sqrt(noise / best.contacts) <= accuracy * (1.0 + 1e-9)
-    assert found.replicas * found.collisions_per_particle * found.gas.count == pytest.approx(
-        2.0 * best.contacts
-    )
-    assert all(best.seconds <= other.seconds for other in found.others)
+    best = found.best
+    contacts = 0.5 * found.replicas * found.collisions_per_particle * found.gas.count
+    assert best.bias + QUANTILE * math.sqrt(noise / contacts) <= accuracy * (1.0 + 1e-9)
+    assert all(best.seconds <= other.seconds for other in found.options[1:])
 
 
 def test_a_ten_thousandth_takes_the_exact_engine():
-    assert advice(0.01, 1e-4).setting.engine.name == "event"
-    assert advice(0.3, 1e-4).setting.engine.name == "event"
+    assert advice(0.01, 1e-4).best.engine.name == "event"
+    assert advice(0.3, 1e-4).best.engine.name == "event"
 
 
 def test_a_fast_time_stepped_engine_is_taken():
     fast = lambda dimension, engine, precision, count: 1e-3 if engine == "step" else 1.0  # noqa: E731
     found = advice(0.3, 1e-2, speed_of=fast)
-    assert found.setting.engine.name == "step" and found.setting.bias < 1e-2
-    assert found.others[0].engine.name == "event"
+    assert found.best.engine.name == "step" and found.best.bias < 1e-2
+    assert found.options[1:][0].engine.name == "event"
 
 
 def test_dilute_spheres_take_the_model_that_is_accurate_enough():
     """Boltzmann's equation lacks the contact value, 1 + 5/2 of the packing fraction, and Z - 1."""
     rough, fine = (advice(0.003, accuracy, "collision_rate", count=4000) for accuracy in (0.03, 1e-4))
-    assert rough.setting.engine.model == "boltzmann" and fine.setting.engine.name == "event"
-    assert rough.setting.bias == pytest.approx(2.5 * 0.003, rel=0.02)
-    by_name = {one.name: one for one in rough.others}
-    assert by_name["event"].seconds > 5.0 * rough.setting.seconds
+    assert rough.best.engine.model == "boltzmann" and fine.best.engine.name == "event"
+    assert rough.best.bias == pytest.approx(2.5 * 0.003, rel=0.02)
+    by_name = {one.engine.timed_as: one for one in rough.options[1:]}
+    assert by_name["event"].seconds > 5.0 * rough.best.seconds
     pressure = advice(0.003, 0.03, count=4000)  # Z of Boltzmann's equation is 1 without a run
-    assert pressure.setting.engine.model == "enskog"
-    assert "dsmc" not in {one.name for one in pressure.others}
-    assert advice(0.003, 0.03, "D", count=4000).setting.engine.name == "dsmc"
+    assert pressure.best.engine.model == "enskog"
+    assert "is 1 of particles without extent" in pressure.refused["dsmc"]
+    assert advice(0.003, 0.03, "D", count=4000).best.engine.name == "dsmc"
     steps = [
-        advice(0.003, accuracy, observable, count=4000).setting.engine.time_step
+        advice(0.003, accuracy, observable, count=4000).best.engine.time_step
         for observable, accuracy in (("collision_rate", 0.03), ("D", 0.05), ("D", 0.015))
     ]
     own = DSMC().resolved(gas(0.003, count=4000)).time_step
     assert steps[0] == 4.0 * own and steps[0] > steps[1] > steps[2]  # they change D, not the rate
-    assert advice(0.1, 0.03, "collision_rate").setting.engine.name != "dsmc"
+    assert advice(0.1, 0.03, "collision_rate").best.engine.name != "dsmc"
 
 
 def test_long_steps_of_dsmc_are_explained():
@@ -92,13 +92,13 @@ def test_long_steps_of_dsmc_are_explained():
 def test_dilute_discs_take_the_model_that_is_accurate_enough():
     """Of discs the contact value is 1 + 1.56 of the packing fraction; Z of Boltzmann's equation is 1."""
     rough, fine = (advice(0.01, accuracy, "collision_rate", dimension=2) for accuracy in (0.1, 0.005))
-    assert rough.setting.name == "dsmc" and fine.setting.name == "event"
-    assert rough.setting.bias == pytest.approx(1.0 - 1.0 / float(theory.contact_value(0.01, 2)))
-    assert rough.setting.bias == pytest.approx(1.564 * 0.01, rel=0.02)
-    by_name = {one.name: one for one in rough.others}
-    assert by_name["event"].seconds > 4.0 * rough.setting.seconds
-    assert advice(0.01, 0.1, dimension=2).setting.name == "event"
-    assert advice(0.1, 0.1, "collision_rate", dimension=2).setting.name == "event"
+    assert rough.best.engine.timed_as == "dsmc" and fine.best.engine.timed_as == "event"
+    assert rough.best.bias == pytest.approx(1.0 - 1.0 / float(theory.contact_value(0.01, 2)))
+    assert rough.best.bias == pytest.approx(1.564 * 0.01, rel=0.02)
+    by_name = {one.engine.timed_as: one for one in rough.options[1:]}
+    assert by_name["event"].seconds > 4.0 * rough.best.seconds
+    assert advice(0.01, 0.1, dimension=2).best.engine.timed_as == "event"
+    assert advice(0.1, 0.1, "collision_rate", dimension=2).best.engine.timed_as == "event"
 
 
 @pytest.mark.parametrize(
@@ -108,7 +108,7 @@ def test_dilute_discs_take_the_model_that_is_accurate_enough():
 def test_an_advised_run_of_dsmc_is_as_accurate_as_promised(tmp_path, observable, fraction, dimension):
     scene = gas(fraction, count=2000, dimension=dimension)
     scene = replace(scene, species=(replace(scene.species[0], exact_temperature=True),))
-    found = advise(scene, observable, 0.02, None, speed.as_measured)
+    found = tabulated(scene, observable, 0.02, None, speed.as_measured)
     recipe = found.recipe
     assert recipe.engine.name == "dsmc"
     path = gp.run(scene, recipe.engine, 1, recipe.duration, recipe.sample_interval, tmp_path / "run.nc")
@@ -118,36 +118,36 @@ def test_an_advised_run_of_dsmc_is_as_accurate_as_promised(tmp_path, observable,
 
 def test_a_budget_that_does_not_suffice_gives_the_best_within_it():
     wanted = advice(0.2, 1e-4)
-    short = advice(0.2, 1e-4, budget=0.25 * wanted.setting.seconds)
-    assert not short.within_budget and wanted.within_budget
-    assert short.setting.seconds <= 0.2501 * wanted.setting.seconds
-    assert 1e-4 < short.setting.half_width < 3e-4
+    short = advice(0.2, 1e-4, budget=0.25 * wanted.best.seconds)
+    assert not short.affordable and wanted.affordable
+    assert short.best.seconds <= 0.2501 * wanted.best.seconds
+    assert 1e-4 < short.best.half_width < 3e-4
 
 
 def test_time_steps_scale_with_the_scene():
     fast = lambda dimension, engine, precision, count: 1e-3 if engine == "step" else 1.0  # noqa: E731
-    slow = advise(gas(0.3), "Z", 1e-2, None, fast)
+    slow = tabulated(gas(0.3), "Z", 1e-2, None, fast)
     hot = Scene(
         Container(tuple(2.0 * length for length in gas(0.3).container.lengths), boundary="periodic"),
         species=(Species(1000, 1.0, temperature=16.0, arrangement="lattice"),),
     )
-    assert advise(hot, "Z", 1e-2, None, fast).setting.engine.time_step == pytest.approx(
-        0.5 * slow.setting.engine.time_step
+    assert tabulated(hot, "Z", 1e-2, None, fast).best.engine.time_step == pytest.approx(
+        0.5 * slow.best.engine.time_step
     )
 
 
 def test_equilibration_and_finite_size_are_reported():
     found = advice(0.3, 1e-3, count=100)
-    assert found.finite_size < 0.0 and found.bulk_count > 100
-    assert found.setting.seconds > 0.5 * 100 * EQUILIBRATION * table.seconds(3, 0.3, "event")
+    assert found.finite_size[0] < 0.0 and found.finite_size[1] > 100
+    assert found.best.seconds > 0.5 * 100 * EQUILIBRATION * table.seconds(3, 0.3, "event")
 
 
 @pytest.mark.parametrize(("exact", "scatter"), [(False, 0.5 * math.sqrt(2.0 / 3000.0)), (True, 0.0)])
 def test_drawn_velocities_add_a_scatter_that_is_stated(exact, scatter):
     scene = gas(0.2)
     particles = replace(scene.species[0], exact_temperature=exact)
-    found = advise(replace(scene, species=(particles,)), "D", 1e-2, None, speed.as_measured)
-    assert found.scatter == pytest.approx(scatter)
+    found = tabulated(replace(scene, species=(particles,)), "D", 1e-2, None, speed.as_measured)
+    assert found.scatter.value == pytest.approx(scatter)
     assert any("exact_temperature: true" in line for line in _lines(found, "gas.yaml")) != exact
 
 
@@ -171,4 +171,4 @@ def test_drawn_velocities_add_a_scatter_that_is_stated(exact, scatter):
 )
 def test_unmeasured_cases_are_refused(scene, observable, accuracy, key):
     with pytest.raises(SceneError, match=key):
-        advise(scene, observable, accuracy, None, speed.as_measured)
+        tabulated(scene, observable, accuracy, None, speed.as_measured)

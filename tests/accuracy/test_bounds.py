@@ -8,11 +8,11 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.accuracy.bounds import boltzmann_error, cell_error, enskog_error, require_resolved
-from gaspart.accuracy.candidates import candidates
+from gaspart.accuracy.candidates import asked_of, candidates
 from gaspart.accuracy.column import pulled
 from gaspart.accuracy.conditions import even_conditions, known_conditions, measured_conditions
 from gaspart.accuracy.target import Target
+from gaspart.engines.dsmc.accuracy import boltzmann_error, cell_error, enskog_error, require_resolved
 from gaspart.state.initial import initial_state
 
 SLIT = ("periodic", "periodic", "wall")
@@ -38,6 +38,10 @@ def dense_floor():
 
 def conditions_of(scene):
     return known_conditions(scene, initial_state(scene, 0))
+
+
+def asked(conditions, observable):
+    return asked_of(Target(conditions.scene, observable), 0.1, conditions)
 
 
 def averages(scene, engine, collisions, seeds=4):
@@ -84,7 +88,7 @@ def test_two_spheres_collide_as_often_as_their_bound_says():
     collisions = int(simulation.tally.collisions)
     excess = collisions / simulation.tally.time / points - 1.0
     error = (1.0 + excess) / math.sqrt(collisions)
-    assert boltzmann_error(even_conditions(scene, 1.0), "collision_rate") == pytest.approx(
+    assert boltzmann_error(asked(even_conditions(scene, 1.0), "collision_rate")) == pytest.approx(
         excess, abs=3.0 * error
     )
     assert error < 0.1 * excess
@@ -96,7 +100,7 @@ def test_points_between_walls_collide_too_often(fraction, width):
     width."""
     scene = slit(200, fraction, width)
     difference, error = compared(scene, gp.DSMC(), 400)
-    bound = boltzmann_error(conditions_of(scene), "collision_rate")
+    bound = boltzmann_error(asked(conditions_of(scene), "collision_rate"))
     assert float(theory.contact_value(1.5 * fraction, 3)) - 1.0 < difference[0] - 3.0 * error[0]
     assert difference[0] - 3.0 * error[0] < bound < 2.0 * difference[0] and error[0] < 0.03
 
@@ -110,7 +114,7 @@ def test_the_enskog_model_in_a_narrow_slit(fraction):
     cells = engine.resolved(scene).cells_per_side
     difference, error = compared(scene, engine, 100)
     found = conditions_of(scene)
-    bounds = [enskog_error(found, name, cells) for name in ("collision_rate", "pressure")]
+    bounds = [enskog_error(asked(found, name), cells) for name in ("collision_rate", "pressure")]
     assert (np.abs(difference) - 3.0 * error < bounds).all()
     assert (np.abs(difference) > 0.01 + 3.0 * error).any()  # which the bound of an even gas was
     assert bounds[0] < 0.4
@@ -172,7 +176,8 @@ def test_steps_that_are_longer_than_a_free_time_are_refused():
         require_resolved(replace(own, cells_per_side=2), found)
     even = even_conditions(gas(2000, 0.01), 1.0)
     require_resolved(replace(own, cells_per_side=1, time_step=3.0 * free), even)
-    assert cell_error(own, even, "collision_rate") == 0.0 < cell_error(own, found, "collision_rate")
+    assert cell_error(own, asked(even, "collision_rate")) == 0.0
+    assert cell_error(own, asked(found, "collision_rate")) > 0.0
 
 
 def test_the_errors_of_points_under_gravity_are_those_of_their_runs():
@@ -191,7 +196,7 @@ def test_the_errors_of_points_under_gravity_are_those_of_their_runs():
         values.append((np.mean(parts, axis=0), np.std(parts, axis=0, ddof=1) / 4.0))
     (exact, by_chance), (drawn, its) = values
     difference, error = drawn / exact - 1.0, np.hypot(by_chance, its) / exact
-    bounds = [boltzmann_error(found, name) for name in ("collision_rate", "temperature")]
+    bounds = [boltzmann_error(asked(found, name)) for name in ("collision_rate", "temperature")]
     assert (np.abs(difference) < bounds + 3.0 * error).all()
     assert max(bounds) < 0.3 and (error < 0.03).all()
 
@@ -201,7 +206,7 @@ def test_observables_that_points_do_not_have_are_refused():
     target = Target(scene, "bulk_viscosity")
     able, refused = candidates(target, 0.1, target.conditions)
     assert "of particles without extent" in refused["dsmc"]
-    assert [one.name for one in able] == ["event", "dsmc enskog"]
+    assert [one.engine.timed_as for one in able] == ["event", "dsmc enskog"]
     target = Target(scene, "Z")
     assert "is 1 of particles" in candidates(target, 0.1, target.conditions)[1]["dsmc"]
 

@@ -85,7 +85,7 @@ def test_a_run_until_accurate_has_the_errors_of_its_pilot(run):
     worst = known[reached.component]
     assert reached.value == worst.value and reached.error >= worst.estimate.error
     pilot = Pilot(gp.EventDriven(), 1.0, component=worst)
-    assert pilot.reaches(worst.time) == pytest.approx(
+    assert pilot.component.reaches(worst.time) == pytest.approx(
         worst.accuracy * math.sqrt(worst.freedom / _quantile(worst.freedom))
     )
 

@@ -9,19 +9,20 @@ import pytest
 import gaspart as gp
 from gaspart.accuracy import pilot, plan
 from gaspart.accuracy import target as target_module
-from gaspart.accuracy.advice import is_tabulated
-from gaspart.accuracy.candidates import Candidate, candidates, suited
+from gaspart.accuracy.candidates import candidates, suited
 from gaspart.accuracy.column import pulled
 from gaspart.accuracy.estimates import Component
-from gaspart.accuracy.models import cell_loss
+from gaspart.accuracy.option import Option
 from gaspart.accuracy.pilot import Pilot
 from gaspart.accuracy.scatter import start_scatter
+from gaspart.accuracy.tabulated import is_tabulated
 from gaspart.accuracy.target import Target
 from gaspart.accuracy.trials import Trials, raised_bias
 from gaspart.analysis.measuring import measure
 from gaspart.cli import main
-from gaspart.cli.advise import _plan_lines
+from gaspart.cli.advise import _lines
 from gaspart.engines import EventDriven
+from gaspart.engines.asked import Candidate
 from gaspart.engines.dsmc.defaults import CELL_LOSS
 from gaspart.state import initial
 
@@ -44,7 +45,7 @@ def own_cache(tmp_path, monkeypatch):
 
 
 def test_the_advised_run_reaches_the_accuracy(tmp_path):
-    made = plan.plan(BOX, "pressure", 0.05, pilot_seconds=0.4)
+    made = plan.piloted(BOX, "pressure", 0.05, pilot_seconds=0.4)
     assert made.affordable and made.best.half_width <= 0.05 * (1.0 + 1e-9)
     path = gp.run(
         BOX, made.recipe.engine, 3, sample_interval=made.recipe.sample_interval,
@@ -52,13 +53,13 @@ def test_the_advised_run_reaches_the_accuracy(tmp_path):
     )  # fmt: skip
     (reached,) = gp.reached_accuracy(path)
     assert reached.met and 1.96 * reached.accuracy <= 0.05
-    assert plan.plan(BOX, "pressure", 0.05, pilot_seconds=0.4).pilots[0].seconds == 0.0  # kept from before
+    assert plan.piloted(BOX, "pressure", 0.05, pilot_seconds=0.4).pilots[0].seconds == 0.0  # kept from before
 
 
 @pytest.mark.parametrize("observable", ["msd", "vacf"])
 def test_lags_are_those_of_correlations(tmp_path, observable):
     """Whatever the length of the run, so that a longer one is more accurate."""
-    coarse, fine = (plan.plan(BOX, observable, x, pilot_seconds=0.4).recipe for x in (0.05, 0.005))
+    coarse, fine = (plan.piloted(BOX, observable, x, pilot_seconds=0.4).recipe for x in (0.05, 0.005))
     assert fine.correlations.lags == coarse.correlations.lags and fine.duration > 8.0 * coarse.duration
     assert fine.displacements == (observable == "msd")
     path = gp.run(
@@ -76,7 +77,7 @@ def test_paths_are_followed_however_far_frames_are_apart(tmp_path, observable):
     """Some of these particles cross the container between frames."""
     kinds = [gp.Species(32, radius, temperature=1.0, exact_temperature=True) for radius in (0.5, 0.4)]
     scene = gp.Scene(gp.Container((20.0, 20.0, 20.0), "periodic"), kinds)
-    recipe = plan.plan(scene, observable, 0.5, pilot_seconds=0.4).recipe
+    recipe = plan.piloted(scene, observable, 0.5, pilot_seconds=0.4).recipe
     paths = [tmp_path / "with.nc", tmp_path / "without.nc"]
     for path, kept in zip(paths, (recipe.displacements, False), strict=True):
         interval = recipe.sample_interval
@@ -119,20 +120,20 @@ def bed(amplitude):
 
 def test_the_pressure_on_one_wall(tmp_path):
     """Of a wall that nothing hits there is no relative accuracy."""
-    made = plan.plan(bed(0.3), "pressure:y low", 0.05, pilot_seconds=0.4)
+    made = plan.piloted(bed(0.3), "pressure:y low", 0.05, pilot_seconds=0.4)
     assert made.target.name == "pressure:y low" and made.affordable
     assert made.value == pytest.approx(30.0 / 12.0, rel=0.05)  # the weight of the discs
     (asked,) = made.recipe.until.accuracies
     assert asked.name == "pressure:y low"
     with pytest.raises(gp.SceneError, match="does not change in the pilot run.* or state a wall"):
-        plan.plan(bed(0.3), "pressure", 0.05, pilot_seconds=0.4)
+        plan.piloted(bed(0.3), "pressure", 0.05, pilot_seconds=0.4)
 
 
 def test_an_engine_that_cannot_start_is_no_candidate():
     """Of a few large particles among many small ones DSMC draws no partners."""
     large = gp.Particle((6.0, 6.0), (0.0, 0.0), radius=2.0, mass=16.0)
     scene = replace(BOX, particles=(large,))
-    made = plan.plan(scene, "pressure", 0.1, pilot_seconds=0.4)
+    made = plan.piloted(scene, "pressure", 0.1, pilot_seconds=0.4)
     assert made.best.candidate.engine.name in ("event", "step")
     assert {"dsmc", "dsmc enskog"} == set(made.refused) and "much larger" in made.refused["dsmc"]
 
@@ -142,7 +143,7 @@ def test_pilots_of_diffusion_and_structure_are_their_own():
     kinds = [gp.Species(32, radius, temperature=1.0, exact_temperature=True) for radius in (0.5, 0.4)]
     scene = gp.Scene(gp.Container((8.0, 8.0, 8.0), "periodic"), kinds)
     for observable in ("Z", "D", "rdf"):
-        (found, *_) = plan.plan(scene, observable, 0.1, pilot_seconds=0.4).pilots
+        (found, *_) = plan.piloted(scene, observable, 0.1, pilot_seconds=0.4).pilots
         assert found.measured > 0.0 and found.seconds > 0.0
 
 
@@ -157,18 +158,18 @@ def test_particles_that_are_compressed_are_made_once(monkeypatch):
         return whole(*arguments)
 
     monkeypatch.setattr(initial, "compressed", compressed)
-    plan.plan(scene, "rdf", 0.2, pilot_seconds=0.4)
+    plan.piloted(scene, "rdf", 0.2, pilot_seconds=0.4)
     assert len(made) == 1
 
 
 def test_a_sheared_gas_has_a_steady_state():
-    made = plan.plan(SHEARED, "shear_viscosity", 0.1, pilot_seconds=0.4)
+    made = plan.piloted(SHEARED, "shear_viscosity", 0.1, pilot_seconds=0.4)
     assert made.affordable and made.recipe.correlations.stress
     assert made.best.candidate.engine.name == "event" and len(made.refused) == 3
 
 
 def test_dilute_gases_are_advised_to_draw_partners():
-    made = plan.plan(DILUTE, "collision_rate", 0.02, pilot_seconds=0.4)
+    made = plan.piloted(DILUTE, "collision_rate", 0.02, pilot_seconds=0.4)
     assert made.best.candidate.engine.name == "dsmc"
     by_name = {option.candidate.engine.name: option for option in made.options}
     assert by_name["event"].seconds > 5.0 * made.best.seconds
@@ -191,15 +192,15 @@ def test_bounds_come_from_theory():
     assert refused == {}
     dense = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(43, 0.5, temperature=1.0)])
     _, refused = candidates_of(dense, "pressure")
-    lost = cell_loss(gp.DSMC(model="enskog", cells_per_side=2), BOX)
+    lost = gp.DSMC(model="enskog", cells_per_side=2).bias(BOX, "rates")
     assert lost == pytest.approx(CELL_LOSS * 4 / BOX.count)
-    assert cell_loss(gp.DSMC(model="enskog", cells_per_side=1), BOX) == 0.0
+    assert gp.DSMC(model="enskog", cells_per_side=1).bias(BOX, "rates") == 0.0
     assert list(refused) == ["dsmc enskog"] and "known up to 0.4" in refused["dsmc enskog"]
     able, refused = candidates_of(DILUTE, "rdf")
     assert {one.engine.name for one in able} == {"event", "step"} and len(refused) == 2
     walled = gp.Scene(BOX.container, BOX.species, walls=[gp.Wall((4.0, 4.0), (6.0, 6.0))])
     able, refused = suited(Target(walled, "pressure"))
-    assert able == ["event"] and len(refused) == 3
+    assert [one.name for one in able] == ["event"] and len(refused) == 3
 
 
 def candidates_of(scene, observable):
@@ -227,35 +228,39 @@ def test_pilots_that_differ_raise_the_bound():
     assert trials.differing == (apart,) and trials.reference is exact
     options = plan._options(trials, None)
     assert options[0].candidate.engine == event and options[1].bias == pytest.approx(raised)
-    made = plan.Plan(trials.target, 0.02, tuple(options), {}, 2.0, (exact, apart), True, trials.differing)
-    (line,) = [one for one in _plan_lines(made, "gas.yaml") if one.startswith("pilots differ")]
+    made = plan.Plan(trials.target, 0.02, tuple(options), {}, 2.0, 1, (exact, apart), trials.differing)
+    (line,) = [one for one in _lines(made, "gas.yaml") if one.startswith("pilots differ")]
     assert "DSMC: 2.2 against 2 by the event-driven engine" in line
 
 
 def test_cost_follows_from_noise_and_bias():
     """Of an accuracy a and a bias b: noise / ((a - b) / 1.96)^2, and its equilibration."""
-    pilot_run = Pilot(EventDriven(), 2.0, component=known(1.0, 0.1, 9.0, freedom=math.inf))
-    option = plan._option(Candidate(EventDriven()), 2.0, 0.01, pilot_run, 0.03)
+
+    def option(bias, least=0.0, most=math.inf):
+        noise = known(1.0, 0.1, 9.0, freedom=math.inf)
+        return Option(Candidate(EventDriven()), bias, noise, 2.0, 0.03, least, most)
+
+    plain = option(0.01)
     measured = 0.09 * (1.96 / 0.02) ** 2
-    assert option.duration == pytest.approx(measured / 0.75)
-    assert option.seconds == pytest.approx(2.0 * option.duration)
-    assert plan._option(Candidate(EventDriven()), 2.0, 0.05, pilot_run, 0.03).seconds == math.inf
-    less = plan._option(Candidate(EventDriven()), 2.0, 0.01, pilot_run, 0.03, (0.0, option.duration / 4.0))
-    assert less.half_width == pytest.approx(0.01 + 2.0 * 0.02)
-    more = plan._option(
-        Candidate(EventDriven()), 2.0, 0.01, pilot_run, 0.03, (4.0 * option.duration, math.inf)
-    )
-    assert more.half_width == pytest.approx(0.01 + 0.5 * 0.02)
+    assert plain.duration == pytest.approx(measured / 0.75)
+    assert plain.seconds == pytest.approx(2.0 * plain.duration)
+    assert plain.cost(0.03) == pytest.approx(plain.seconds)
+    assert plain.cost(0.02) == pytest.approx(4.0 * plain.seconds)
+    assert option(0.05).seconds == math.inf
+    assert option(0.01, most=plain.duration / 4.0).half_width == pytest.approx(0.01 + 2.0 * 0.02)
+    assert option(0.01, least=4.0 * plain.duration).half_width == pytest.approx(0.01 + 0.5 * 0.02)
+    settled = replace(plain, settling=measured)
+    assert settled.duration == pytest.approx(2.0 * measured)  # longer than a quarter of the run
 
 
 def test_what_is_stored_falls_faster_than_noise():
     """error^2 = S / t + C / t^2: the length for an error is the root of a quadratic."""
-    pilot_run = Pilot(EventDriven(), 1.0, component=Component(2.0, 2.0, 10.0, 0.5, 30.0, math.inf))
-    assert pilot_run.accuracy == pytest.approx(0.5 * math.sqrt(0.05 + 0.3))
-    length = pilot_run.length(0.01)
+    found = Component(2.0, 2.0, 10.0, 0.5, 30.0, math.inf)
+    assert found.accuracy == pytest.approx(0.5 * math.sqrt(0.05 + 0.3))
+    length = found.length(0.01)
     assert 0.5 / length + 30.0 / length**2 == pytest.approx(0.02**2)
-    assert pilot_run.reaches(length) == pytest.approx(0.01)
-    assert length < 0.05 * 100.0 * pilot_run.accuracy**2 / 0.01**2
+    assert found.reaches(length) == pytest.approx(0.01)
+    assert length < 0.05 * 100.0 * found.accuracy**2 / 0.01**2
 
 
 @pytest.mark.parametrize(
@@ -282,7 +287,7 @@ def test_what_is_stored_falls_faster_than_noise():
 )
 def test_what_has_no_advice_is_refused_in_one_line(scene, observable, line):
     with pytest.raises(gp.SceneError, match=line):
-        plan.plan(scene, observable, 0.1, pilot_seconds=0.1)
+        plan.piloted(scene, observable, 0.1, pilot_seconds=0.1)
 
 
 def test_the_command_line_prints_the_command(tmp_path, monkeypatch, capsys):
@@ -313,7 +318,7 @@ def test_a_column_with_a_dense_floor():
     kind = gp.Species(200, 0.5, temperature=1.0, exact_temperature=True, region=region)
     box = gp.Container((14.0, 14.0, 300.0), ("periodic", "periodic", "wall"))
     scene = gp.Scene(box, [kind], gravity=(0.0, 0.0, -0.25))
-    made = plan.plan(scene, "collision_rate", 0.1, pilot_seconds=1.0)
+    made = plan.piloted(scene, "collision_rate", 0.1, pilot_seconds=1.0)
     assert {"dsmc", "dsmc enskog"} == set(made.refused)
     assert made.best.candidate.engine in [one.engine for one in made.pilots]
     exact = made.pilots[0].value
@@ -324,7 +329,7 @@ def test_a_column_with_a_dense_floor():
 
 def test_what_is_advised_has_a_pilot():
     for scene, observable in ((BOX, "pressure"), (DILUTE, "collision_rate"), (bed(0.3), "temperature")):
-        made = plan.plan(scene, observable, 0.2, pilot_seconds=0.4)
+        made = plan.piloted(scene, observable, 0.2, pilot_seconds=0.4)
         assert made.best.candidate.engine in [one.engine for one in made.pilots]
 
 
@@ -337,7 +342,7 @@ def test_a_plain_gas_between_walls_has_one_pilot_or_two(monkeypatch):
         return whole(target, engine, seconds, *more)
 
     monkeypatch.setattr("gaspart.accuracy.trials.run_pilot", counted)
-    plan.plan(BOX, "pressure", 0.05, pilot_seconds=0.4)
+    plan.piloted(BOX, "pressure", 0.05, pilot_seconds=0.4)
     assert len(made) <= 2 and sum(made) <= 0.4
 
 
@@ -385,4 +390,4 @@ def test_what_cannot_be_measured_is_not_advised():
     many = replace(few, species=[replace(kind, count=100)])
     assert is_tabulated(many, "D") and not is_tabulated(few, "D")
     with pytest.raises(gp.SceneError, match="an error needs 16 moving particles or more"):
-        plan.plan(few, "D", 0.1, pilot_seconds=0.2)
+        plan.piloted(few, "D", 0.1, pilot_seconds=0.2)

@@ -50,4 +50,4 @@ def test_single_precision_saves_some_time():
 def test_the_advice_states_it(observable, tmp_path, capsys):
     GAS.to_file(tmp_path / "gas.yaml")
     assert main(["advise", str(tmp_path / "gas.yaml"), "--observable", observable]) == 0
-    assert "pays for          its collisions alone\n" in capsys.readouterr().out
+    assert "extra cost        none beside its collisions\n" in capsys.readouterr().out

@@ -9,7 +9,9 @@ import pytest
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.accuracy.advice import EQUILIBRATION, QUANTILE, advise
+from gaspart.accuracy.noise import QUANTILE
+from gaspart.accuracy.plan import tabulated
+from gaspart.accuracy.table import EQUILIBRATION
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene.container import Container
@@ -94,21 +96,26 @@ def test_the_advised_accuracy_is_reached():
     missed, expensive = [], []
     for number in range(SCENES):
         gas, observable, accuracy = scene(number)
-        found = advise(gas, observable, accuracy)
+        found = tabulated(gas, observable, accuracy)
         rate = float(theory.collision_rate(**found.gas.parameters))
         values = [
             run(
-                gas, found.setting.engine, observable, found.duration, 2.0 * EQUILIBRATION / rate, (number, k)
+                gas,
+                found.best.engine,
+                observable,
+                found.collisions_per_particle / rate,
+                2.0 * EQUILIBRATION / rate,
+                (number, k),
             )
             for k in range(found.replicas)
         ]
         error = np.mean([value for value, _ in values]) / truth(gas, observable) - 1.0
         cost = np.mean([taken for _, taken in values]) * (
-            found.setting.contacts / (0.5 * gas.count) + EQUILIBRATION
+            found.replicas * found.collisions_per_particle + EQUILIBRATION
         )
         least = searched(gas, observable, accuracy, found.gas.diameter / found.gas.thermal_speed, rate)
         missed += [number] if abs(error) > accuracy else []
         expensive += [(number, cost / rate / least)]
-        print(number, found.setting.engine, observable, accuracy, error / accuracy, cost / rate / least)
+        print(number, found.best.engine, observable, accuracy, error / accuracy, cost / rate / least)
     assert len(missed) <= ALLOWED, missed
     assert sum(ratio > MOST_EXPENSIVE for _, ratio in expensive) <= ALLOWED, expensive

@@ -9,7 +9,7 @@ from scipy.signal import lfilter
 
 import gaspart as gp
 from gaspart.accuracy import reached
-from gaspart.accuracy.reached import Examiner, Reached, confirmed
+from gaspart.accuracy.reached import AccuracyStatus, Examiner, confirmed
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.analysis.statistics.blocks import ORDER
@@ -62,7 +62,7 @@ def ended(known, accuracy, correct):
     for row, count in zip(known, COUNTS, strict=True):
         now, samples = Estimate(*row), count - count // 4
         one = confirmed(now, before, length / samples) if correct else now
-        reached = Reached(asked, "", one.value, one.error, one.freedom, before is not None)
+        reached = AccuracyStatus(asked, "", one.value, one.error, one.freedom, before is not None)
         if reached.met if correct else reached.accuracy <= accuracy:
             return one.value, reached.interval, samples
         before, length = now, samples
@@ -264,7 +264,7 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
         ({"until": None}, "duration = None: must be given, or until"),
         ({"until": None, "duration": 8.0, "sample_interval": None}, "sample_interval = None: must be given"),
         ({"path": None}, "path = None: must be given"),
-        ({"follow": 8}, "until = 'Z': needs all particles in the file"),
+        ({"follow": 8}, "until = 'Z': follow: needs all"),
         ({"scene": WALLS}, "until = 'Z': container.boundary: Z needs a periodic container; between walls"),
         (
             {"scene": WALLS, "until": gp.Accuracy("D", 0.1)},

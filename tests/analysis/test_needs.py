@@ -4,8 +4,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.analysis.measuring import measure
-from gaspart.analysis.needs import require_of
-from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT
+from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT, require_run
 
 BOX = gp.Container((6.0, 6.0, 6.0), boundary="periodic")
 SLIT = gp.Container((8.0, 8.0), boundary=("periodic", "wall"))
@@ -25,16 +24,25 @@ KEPT = {
     "pairs": {"pairs": True},
     "stress": {"correlations": gp.Correlations(0.25, 4, stress=True)},
     "velocities": {"correlations": gp.Correlations(0.25, 4), "displacements": True},
+    "some": {"follow": 17},
+    "some pairs": {"follow": 17, "pairs": True},
+    "some stress": {"follow": 17, "correlations": gp.Correlations(0.25, 4, stress=True)},
 }
 
 
-NO_STRESS = ("slit", "obstacles", "sizes")
-"""Scenes of which the engine tallies none."""
+STORED = {"pairs": ["pairs"], "stress": ["fluxes"], "some pairs": ["pairs"], "some stress": ["fluxes"]}
+NOT_KEPT = {
+    "stress": ("slit", "obstacles", "sizes"),
+    "some": ("one", "few"),
+    "some pairs": ("one", "few"),
+    "some stress": ("one", "few", "slit", "obstacles", "sizes"),
+}
+"""Scenes of which the engine tallies no stress, and which have too few particles."""
 
 
 @pytest.mark.parametrize(
     ("name", "kept"),
-    [(name, kept) for name in SCENES for kept in KEPT if kept != "stress" or name not in NO_STRESS],
+    [(name, kept) for name in SCENES for kept in KEPT if name not in NOT_KEPT.get(kept, ())],
 )
 def test_it_is_what_a_run_is_refused(tmp_path, name, kept):
     """A run of 40 frames, of which some observables need more."""
@@ -47,7 +55,7 @@ def test_it_is_what_a_run_is_refused(tmp_path, name, kept):
         except gp.SceneError as error:
             found = error
         try:
-            require_of(observable, scene, **settings)
+            require_run(observable, scene, STORED.get(kept, ()), settings.get("follow"))
         except gp.SceneError as error:
             before = error
         if before is None:

@@ -5,7 +5,7 @@ import shlex
 import pytest
 
 import gaspart as gp
-from gaspart.accuracy.reached import Reached
+from gaspart.accuracy.reached import AccuracyStatus
 from gaspart.cli import main, run
 from gaspart.trajectory.partial import partial_path
 
@@ -87,11 +87,11 @@ def test_what_is_refused_in_one_line(folder, capsys, options, complaint):
 
 
 def test_the_line_of_progress_states_the_error_that_is_worst_beside_the_required_one():
-    z = Reached(gp.Accuracy("Z", 1e-3), "", 2.0, 4e-3, 20.0, True)
-    rate = Reached(gp.Accuracy("collision_rate", 1e-2), "", 3.0, 0.05, 20.0, True)
+    z = AccuracyStatus(gp.Accuracy("Z", 1e-3), "", 2.0, 4e-3, 20.0, True)
+    rate = AccuracyStatus(gp.Accuracy("collision_rate", 1e-2), "", 3.0, 0.05, 20.0, True)
     status = run._Status()
     assert status.remark() == ""
-    status.update([Reached(gp.Accuracy("D", 0.1), rule="frames: few")])
+    status.update([AccuracyStatus(gp.Accuracy("D", 0.1), rule="frames: few")])
     assert status.remark() == ""
     status.update([rate, z])
     assert status.remark() == "  Z: error 0.002, at most 0.0025, required 0.001"

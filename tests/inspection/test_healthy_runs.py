@@ -144,7 +144,7 @@ def test_a_part_is_not_judged_as_the_whole(tmp_path):
     assert found["overlaps"].passed
     for name in ("energy", "momentum", "speed law", "kurtosis of speeds", "pressure Z"):
         assert found[name].passed is None and found[name].text == "the file has some of the particles only"
-    with pytest.raises(gp.SceneError, match="follow = 60: neighbours are among all 200 particles"):
+    with pytest.raises(gp.SceneError, match="follow = 60: needs all 200 particles"):
         gp.analysis.order_parameter(path)
     whole = gp.run(scene, EVENT, 1, 10.0, 0.1, tmp_path / "whole.nc")
     density = gp.analysis.profile(path, bins=2).estimate.mean()

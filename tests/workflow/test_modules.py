@@ -1,70 +1,18 @@
-"""The structure of the package: what each stage is made of, and that imports lead in one direction."""
+"""What each stage of the workflow is made of. In which direction imports lead, pyproject.toml states."""
 
 import ast
 import re
 import subprocess
 import sys
 from functools import cache
-from graphlib import TopologicalSorter
 from pathlib import Path
 
-import grimp
 import pytest
 
 from gaspart.reproduction.families.registry import titles
 from gaspart.reproduction.points.modules import PACKAGE, closure, imported
 
 ROOT = Path(__file__).parents[2]
-LAYERS = [  # a module imports only from the packages above its own
-    {"public"},
-    {"errors"},
-    {"interruption"},
-    {"files"},
-    {"yaml_text"},
-    {"keys"},
-    {"scene"},
-    {"kernels"},
-    {"state"},
-    {"engines"},
-    {"simulation"},
-    {"trajectory"},
-    {"theory"},
-    {"analysis"},
-    {"inspection"},
-    {"accuracy"},
-    {"runs"},
-    {"rendering"},
-    {"cli"},
-    {"reproduction"},
-]
-
-
-@cache
-def graph():
-    """All imports, function-local ones too, without those for type hints only."""
-    return grimp.build_graph("gaspart", exclude_type_checking_imports=True, cache_dir=None)
-
-
-def test_a_package_imports_only_from_those_above_it():
-    layers = [grimp.Layer(*layer) for layer in reversed(LAYERS)]
-    illegal = graph().find_illegal_dependencies_for_layers(layers, containers={"gaspart"})
-    assert not {(one.importer, one.imported) for one in illegal}
-    known = {"gaspart.__main__"} | {f"gaspart.{name}" for layer in LAYERS for name in layer}
-    assert graph().find_children("gaspart") == known
-
-
-def test_no_imports_lead_in_a_circle():
-    modules = graph().modules
-    edges = {name: graph().find_modules_directly_imported_by(name) for name in modules}
-    list(TopologicalSorter(edges).static_order())  # raises CycleError, which names them
-
-
-def test_all_compiled_code_is_in_kernels():
-    users = graph().find_modules_that_directly_import("gaspart.kernels.compile.policy")
-    outside = {name for name in users if not name.startswith("gaspart.kernels.")}
-    for name in outside:  # what is left may read the digest or the compiler's settings, and compile nothing
-        text = PACKAGE.joinpath(*name.split(".")[1:]).with_suffix(".py").read_text(encoding="utf-8")
-        assert not re.search(r"^@\w*(kernel|helper)$", text, re.MULTILINE), name
 
 
 class _Runs(ast.NodeTransformer):

@@ -1,9 +1,9 @@
-"""A model of the cost of accuracy: errors of time steps, noise of run lengths, and processor time.
+"""Accuracy and its cost: errors of engines, noise of run lengths, processor time, and the cheapest run.
 
-`data/accuracy.csv` holds the measurements (written by `gaspart.accuracy.fit`); `table` reads it, `speed`
-measures this machine against it, `advice` chooses engine and settings from it. For scenes and observables
-that it does not cover `plan` chooses among `candidates` from runs of `pilot`. `gaspart.runs` runs
-until observables are accurate, by the rule in `reached`.
+`plan` chooses among an `Option` for each engine. Where `data/accuracy.csv` holds measurements (written by
+`gaspart.accuracy.fit`, read by `table`), `tabulated` makes them, scaled to this machine by `speed`; of
+everything else `trials` makes them from runs of `pilot`. `gaspart.runs` runs until observables are accurate,
+by the rule in `reached`.
 """
 
 PILOT_SECONDS = 20.0

@@ -152,3 +152,24 @@ def pulled(scene: Scene) -> Pulled | None:
         scene.dimension, k, g < 0.0, abs(g), float(sides[k]), float(np.delete(sides, k).prod()),
         np.array(masses), np.array(counts, dtype=float), 2.0 * kinds[0].radius,
     )  # fmt: skip
+
+
+def between(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
+    """By how much an observable of a column of points differs from that of particles, relatively; top: of the
+    pressure, whether it is that at the top, None for any wall."""
+    differences = {
+        "collision_rate": abs(ideal.collisions / real.collisions - 1.0),
+        "temperature": abs(ideal.temperature / real.temperature - 1.0),
+        "density": _of_profiles(real, ideal),
+    }
+    if observable == "pressure" and top is not None:
+        exact = real.pressure(top)
+        return abs(ideal.pressure(top) / exact - 1.0) if exact > 0.0 else math.inf
+    return differences.get(observable, max(differences.values()))
+
+
+def _of_profiles(real: Column, ideal: Column) -> float:
+    """Root mean square of the difference of two densities over that of the first."""
+    exact = real.numbers.sum(axis=0)
+    other = np.interp(real.heights, ideal.heights, ideal.numbers.sum(axis=0), right=0.0)
+    return float(np.sqrt(((other - exact) ** 2).sum() / (exact**2).sum()))

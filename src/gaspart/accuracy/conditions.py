@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from gaspart.accuracy.column import Column, Pulled, pulled
+from gaspart import theory
+from gaspart.accuracy.column import Column, Pulled, between, pulled
 from gaspart.accuracy.steady import face_temperatures
 from gaspart.analysis.run import measured
 from gaspart.engines.dsmc.rates import accessible, contact_values
@@ -137,6 +138,25 @@ class Conditions:
         if self.axis is not None and math.isfinite(sides[self.axis]):
             sides[self.axis] = min(sides[self.axis], self.scale)
         return float((2.0 * self.scene.largest_radius / np.maximum(sides, 1e-300)).sum())
+
+    @cached_property
+    def memory(self) -> float:
+        """|D / Enskog's - 1| of spheres, by which correlated collisions change transport; of discs, whose
+        coefficients grow with the size of the system, the same at this packing fraction, an estimate."""
+        densest = min(float(self.filled.max()), theory.ERPENBECK_WOOD_HIGHEST)
+        return abs(float(theory.erpenbeck_wood_ratio(densest)) - 1.0) if densest > 0.0 else 0.0
+
+    def of_points(self, observable: str, face: str | None) -> float | None:
+        """By how much an observable of points differs from that of particles, relatively; face: of the
+        pressure; None where theory does not know the column."""
+        return between(*self.columns, observable, self._top(face)) if self.columns else None
+
+    def _top(self, face: str | None) -> bool | None:
+        """Whether a face of the container is at the top of a column, None of any that is not across it."""
+        scene, axis = self.scene, self.axis
+        if face is None or axis is None or face[0] != "xyz"[axis] or scene.gravity is None:
+            return None
+        return (scene.gravity[axis] < 0.0) == face.endswith("high")
 
 
 def known_conditions(scene: Scene, start: State) -> Conditions | None:

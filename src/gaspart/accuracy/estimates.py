@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,6 +32,16 @@ LEAST_FREEDOM = 15.0
 scatter of 16 groups or blocks."""
 _SAME = 1e-12
 """Relative scatter of what does not change."""
+_DOUBT = 0.1
+"""Probability with which the true error exceeds its bound."""
+
+
+def bound(freedom: float) -> float:
+    """The upper bound of an error with so many degrees of freedom, over the error: from the quantile of
+    chi-square."""
+    from scipy.special import chdtri
+
+    return 1.0 if math.isinf(freedom) else math.sqrt(freedom / float(chdtri(freedom, 1.0 - _DOUBT)))
 
 
 @dataclass(frozen=True)
@@ -62,6 +73,21 @@ class Component:
         """The standard error of a run with so long a measured part."""
         return math.sqrt(self.spectrum / time + self.stored / time**2)
 
+    def length(self, accuracy: float) -> float:
+        """The measured time with which the upper bound of the error is so small, as of a run `until`
+        accurate; inf if none is."""
+        if not self.accuracy < math.inf or not accuracy > 0.0:
+            return math.inf
+        left = accuracy * self.scale / bound(self.freedom)
+        part = 0.5 * self.spectrum / left**2
+        return part + math.sqrt(part**2 + self.stored / left**2)
+
+    def reaches(self, time: float) -> float:
+        """The inverse: that bound after a measured time, relative."""
+        if not self.accuracy < math.inf or not time > 0.0:
+            return math.inf
+        return self.error(time) / self.scale * bound(self.freedom)
+
 
 def components(data: xr.Dataset, observable: str, start: float | None = None) -> dict[str, Component]:
     """An observable of `gaspart measure` of a trajectory, by component, "" for a scalar or a curve, whose
@@ -70,32 +96,46 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     from gaspart.analysis.run import measured
 
     with measured(data, start, sheared=True) as run:
-        if OBSERVABLES[observable].along == ("face",):
+        if observable == "pressure":
             return _pressures(run)
         time = float(run.time[-1] - run.time[0])
-    found = measure(observable, data, start)
-    value, error = np.asarray(found.estimate, dtype=float), np.asarray(found.error, dtype=float)
-    freedom = float(found.attrs.get("freedom", LEAST_FREEDOM))
-    names, places = _names(found), (1, 1)
-    if names == [""]:  # a scalar, or a curve
-        known = np.isfinite(value) & np.isfinite(error)
+    declared, found = OBSERVABLES[observable], measure(observable, data, start)
+    parts = [np.asarray(of, dtype=float) for of in (found.estimate, found.error, _freedom(found))]
+    value, error, freedom = np.broadcast_arrays(*parts)
+    known, names, places = np.isfinite(value) & np.isfinite(error), [""], (1, 1)
+    if declared.form == "names":
+        names = [name for name, one in zip(_names(found), np.isfinite(value).flat, strict=True) if one]
+        value, error, freedom = (of[np.isfinite(value)] for of in (value, error, freedom))
+    elif value.ndim:
         places = int(known.sum()), known.size
-        value, error = (np.array(_norm(of[known])) if of.ndim else of for of in (value, error))
+        value, error = np.array(_norm(value[known])), np.array(_norm(error[known]))
+        freedom = np.array(LEAST_FREEDOM)
     scales = np.abs(np.ravel(value))
-    if OBSERVABLES[observable].relative_to == "norm":  # some components vanish on average
-        scales[:] = _norm(value)
-    parts = zip(names, np.ravel(value), scales, np.ravel(error) ** 2 * time, strict=True)
+    if declared.relative_to == "norm":  # some components vanish on average
+        scales = np.full_like(scales, _norm(value))
+    columns = zip(names, np.ravel(value), scales, np.ravel(error) ** 2 * time, np.ravel(freedom), strict=True)
     return {
-        name: Component(float(one), float(scale), time, float(spectrum), freedom=freedom, places=places)
-        for name, one, scale, spectrum in parts
+        name: Component(float(one), float(scale), time, float(spectrum), freedom=float(free), places=places)
+        for name, one, scale, spectrum, free in columns
     }
 
 
+def of_face(name: str, face: str | None) -> bool:
+    """Whether a component is of a face of the container, any if that is None."""
+    return face is None or name == face or name.startswith(f"{face} ")
+
+
+def _freedom(found: Observable) -> np.ndarray | float:
+    """Degrees of freedom of the error, of each value where these are known."""
+    each = found.get(f"{found.attrs['quantity']}_freedom")
+    return float(found.attrs.get("freedom", LEAST_FREEDOM)) if each is None else np.asarray(each)
+
+
 def _names(found: Observable) -> list[str]:
-    """Of the components of an observable."""
-    if not found.estimate.ndim or found[found.estimate.dims[-1]].dtype.kind not in "US":
-        return [""]
-    return [str(name) for name in found[found.estimate.dims[-1]].values]
+    """Of the components of an observable, by the names along each of its dimensions."""
+    return [
+        " ".join(words) for words in product(*(found[dim].values.astype(str) for dim in found.estimate.dims))
+    ]
 
 
 def _norm(values: np.ndarray) -> float:

@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gaspart.accuracy.table import COLUMNS, MODELS, PRECISIONS
+from gaspart.accuracy.table import COLUMNS, PRECISIONS
+from gaspart.engines import DSMC
 from gaspart.trajectory import provenance
 
 
@@ -78,7 +79,7 @@ def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
 
 def _models(accuracy: xr.Dataset) -> Iterator[dict]:
     """Times of the models of the DSMC engine, with its own step and longer ones."""
-    names = {model: name for name, model in MODELS.items()}
+    names = {engine.equation: engine.timed_as for engine in DSMC.offered()}
     for n in range(accuracy.sizes["dsmc"]):
         run = accuracy.isel(dsmc=n)
         gas = run.dsmc_dimension, run.dsmc_packing_fraction

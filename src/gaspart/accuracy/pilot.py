@@ -15,12 +15,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.accuracy.estimates import Component, components
-from gaspart.accuracy.reached import bound
+from gaspart.accuracy.estimates import Component, components, of_face
 from gaspart.accuracy.target import SEED, Target
 from gaspart.analysis.observables import KEPT, TOO_SHORT
 from gaspart.analysis.run import EQUILIBRATION, measured
-from gaspart.engines import Engine, EventDriven, engine_to_dict
+from gaspart.engines import Engine, engine_to_dict, reference_engine
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
@@ -92,21 +91,6 @@ class Pilot:
         """Its relative standard error."""
         return self.component.accuracy if self.component else math.inf
 
-    def length(self, accuracy: float) -> float:
-        """The measured time with which the upper bound of the error is so small, as of a run `until`
-        accurate; inf if none is."""
-        if not self.component or not self.accuracy < math.inf or not accuracy > 0.0:
-            return math.inf
-        room = accuracy * self.component.scale / bound(self.component.freedom)
-        part = 0.5 * self.component.spectrum / room**2
-        return part + math.sqrt(part**2 + self.component.stored / room**2)
-
-    def reaches(self, time: float) -> float:
-        """The inverse: that bound after a measured time, relative."""
-        if not self.component or not self.accuracy < math.inf:
-            return math.inf
-        return self.component.error(time) / self.component.scale * bound(self.component.freedom)
-
 
 def speed_of(target: Target, engine: Engine) -> float:
     """Processor seconds per unit of a scene's time, from a run of a fraction of a second after its kernels
@@ -164,7 +148,7 @@ def require_defined(target: Target) -> None:
         return
     interval = _BRIEF * target.crossing / _TRIED
     with TemporaryDirectory() as folder:
-        path = _make(f"{folder}/brief.nc", target, EventDriven(), (_TRIED * interval, interval, None))
+        path = _make(f"{folder}/brief.nc", target, reference_engine(), (_TRIED * interval, interval, None))
         with open_trajectory(path) as trajectory:
             _measured(trajectory, target)
 
@@ -179,7 +163,7 @@ def _measured(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | 
         if error.key not in _UNKNOWN_YET:
             raise SceneError("observable", target.name, rule) from None
         return rule
-    return {name: one for name, one in found.items() if target.face in (None, name)}
+    return {name: one for name, one in found.items() if of_face(name, target.face)}
 
 
 def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, left: float = 1.0) -> Pilot:

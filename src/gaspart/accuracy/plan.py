@@ -1,8 +1,7 @@
-"""The cheapest engine and run for an accuracy of any observable of any steady scene, from pilot runs.
+"""The cheapest engine and run for an accuracy of any observable of any steady scene.
 
-A run of a measured time t is off by at most |bias| + 1.96 sqrt(noise / t) in 95 % of all runs, relatively.
-The noise and the processor time of a unit of time come from pilots; the bias is bounded by theory
-(`gaspart.accuracy.candidates`), and raised where two engines' pilots differ by more.
+What is in the table needs no run, `tabulated`; of everything else pilot runs give the noise and the processor
+time of a unit of time, `trials`. Both give an `Option` for each engine, and the best one is planned.
 """
 
 from __future__ import annotations
@@ -10,24 +9,31 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gaspart.accuracy import PILOT_SECONDS
-from gaspart.accuracy.advice import ACCURACIES
-from gaspart.accuracy.candidates import Candidate
+from gaspart import theory
+from gaspart.accuracy import PILOT_SECONDS, speed
+from gaspart.accuracy import tabulated as known
+from gaspart.accuracy.candidates import suited
+from gaspart.accuracy.noise import room
+from gaspart.accuracy.option import Option, ordered
 from gaspart.accuracy.pilot import Pilot
 from gaspart.accuracy.scatter import Scatter, start_scatter
 from gaspart.accuracy.steady import require_steady
 from gaspart.accuracy.table import EQUILIBRATION as EQUILIBRATED
-from gaspart.accuracy.table import LEAST, QUANTILE
-from gaspart.accuracy.target import Target, tidy
+from gaspart.accuracy.table import LEAST
+from gaspart.accuracy.target import Target, rounded_to_12_digits
 from gaspart.accuracy.trials import Announce, Trials
+from gaspart.analysis import finite
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
 from gaspart.keys.values import number
+from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.until import Requirement, Until
 
+ACCURACIES = 1e-8, 1.0
+"""The best relative accuracy that float64 sums and the table support, and the worst."""
 _FRAMES = 384
 """Of a run: 288 independent intervals give an error 17 degrees of freedom, and 15 are required."""
 _LONGEST = 4.0
@@ -37,36 +43,24 @@ _SETTLED = 2.0
 """The part of a run that is not measured, over the time in which the energy came to its mean in the pilot."""
 _CROSSINGS = 10.0
 """How often a particle crosses a container with walls at least in a run."""
-
-
-@dataclass(frozen=True)
-class Option:
-    """What a candidate needs. bias: the bound on its systematic error, by pilots too; duration: of the run,
-    with its equilibration; seconds: of processor time; half_width: of the 95 % interval that this reaches,
-    relative. Duration and seconds are infinite for an accuracy that it cannot reach."""
-
-    candidate: Candidate
-    speed: float
-    bias: float
-    duration: float
-    seconds: float
-    half_width: float
+_BULK = 4.0  # the finite size of a gas should cost no more than this part of the accuracy
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The advice for a scene. options: of each engine, the best first; refused: why others cannot run it;
-    value: of the observable by the pilots; pilots: their results; affordable: whether the best reaches the
-    accuracy within the budget; differing: pilots that differ from that of the exact engine by more than their
-    bounds; places: of a curve, how many the pilots know, of which the accuracy is, and how many there are."""
+    """The advice for a scene. options: of each engine, the best first; refused: why others cannot run it, by
+    their names in the table; value: of the observable, by the pilots or by theory; replicas: runs that share
+    the measured time; pilots: their results, none of what is in the table; differing: those that differ from
+    that of the exact engine by more than their bounds; places: of a curve, how many the pilots know, of which
+    the accuracy is, and how many there are."""
 
     target: Target
     accuracy: float
     options: tuple[Option, ...]
     refused: dict[str, str]
     value: float
-    pilots: tuple[Pilot, ...]
-    affordable: bool
+    replicas: int = 1
+    pilots: tuple[Pilot, ...] = ()
     differing: tuple[Pilot, ...] = ()
     places: tuple[int, int] = (1, 1)
 
@@ -76,9 +70,39 @@ class Plan:
         return self.options[0]
 
     @property
+    def affordable(self) -> bool:
+        """Whether the best option reaches the accuracy within the budget."""
+        return self.best.half_width <= self.accuracy * (1.0 + 1e-6)
+
+    @property
     def scatter(self) -> Scatter:
         """Of the observable from run to run by that of the energy at the start, beyond the interval."""
         return start_scatter(self.target)
+
+    @property
+    def gas(self) -> Gas | None:
+        """The fluid in a periodic container of which the table is; None where it is of pilots."""
+        return None if self.pilots else known.fluid_of(self.target.scene)
+
+    @property
+    def finite_size(self) -> tuple[float, float]:
+        """Relative difference from an infinite gas, to first order, and the particles for which that is a
+        quarter of the accuracy."""
+        gas = known.fluid_of(self.target.scene)
+        differing, power = getattr(finite, self.target.declared.bulk)(gas)
+        return differing, gas.count * (abs(differing) * _BULK / self.accuracy) ** power
+
+    @property
+    def duration(self) -> float:
+        """Of each run, with what is not measured."""
+        return self.best.whole(self.best.measured / self.replicas)
+
+    @property
+    def collisions_per_particle(self) -> float:
+        """Measured in each run, by the rate of theory."""
+        gas = self.gas
+        rate = float(theory.collision_rate(**gas.parameters)) if gas else self.target.frequency
+        return self.best.measured / self.replicas * rate
 
     @property
     def longest_interval(self) -> float:
@@ -92,29 +116,35 @@ class Plan:
 
     @property
     def recipe(self) -> Recipe:
-        """The run to make: until it is accurate where that can be asked, else of a fixed duration."""
-        best, target = self.best, self.target
-        scene, engine, correlations = target.scene, best.candidate.engine, None
-        duration, interval = best.duration, min(best.duration / _FRAMES, self.longest_interval)
-        interval = float(f"{interval:.3g}")
+        """The run to make, one of the replicas: of a fixed duration where the noise is in the table or
+        nothing ends a run, else until it is accurate."""
+        target, duration = self.target, self.duration
+        scene, engine, correlations = target.scene, self.best.engine, None
+        interval = float(f"{min(duration / _FRAMES, self.longest_interval):.3g}")
         if target.correlated:
             duration, interval, correlations = target.schedule(engine, duration)
         elif quantum := engine.resolved(scene).quantum:
             engine = engine.resolved(scene)
             interval = max(1, round(interval / quantum)) * quantum
-        until = None
-        if target.declared.ends_runs and self.affordable:
-            relative = float(f"{0.99 * (self.accuracy - best.bias) / QUANTILE:.3g}")
-            longest = max(_LONGEST * duration, *(one.duration for one in self.pilots))
-            longest = min(longest, target.span[1])
-            asked = Requirement(target.observable, relative, face=target.face)
-            until = Until((asked,), at_most=float(f"{longest:.2g}"))
-        fixed = None if until else tidy(max(1, round(duration / interval)) * interval)
+        until = (
+            self._until(duration) if self.pilots and target.declared.ends_runs and self.affordable else None
+        )
+        intervals = max(1, math.ceil(duration / interval - 1e-6))
+        fixed = None if until else rounded_to_12_digits(intervals * interval)
         return Recipe(
             scene, engine, 1, fixed, interval,
             displacements=target.needs_paths, correlations=correlations, until=until,
             pairs=target.declared.needs == "pairs",
         )  # fmt: skip
+
+    def _until(self, duration: float) -> Until:
+        """What ends a run of about a duration."""
+        target = self.target
+        relative = float(f"{0.99 * room(self.accuracy, self.best.bias):.3g}")
+        longest = max(_LONGEST * duration, *(one.duration for one in self.pilots))
+        longest = min(longest, target.span[1])
+        asked = Requirement(target.observable, relative, face=target.face)
+        return Until((asked,), at_most=float(f"{longest:.2g}"))
 
 
 def plan(
@@ -129,68 +159,87 @@ def plan(
     measure`; of the pressure on one wall as `pressure:x low`.
 
     budget: processor time in seconds of the run; if it does not suffice, the most accurate run within it is
-    advised. pilot_seconds: of the two pilots that most scenes have, or of the only one; up to half of it goes
-    to what comes before them, if that takes more than 5 s, as to compress particles. More is needed where a
-    third engine turns out to be the best, and by a pilot in a transient, which is continued.
-    announce(text): is called before each pilot.
+    advised. The others are of scenes and observables that the table does not cover: pilot_seconds: of the two
+    pilots that most scenes have, or of the only one; up to half of it goes to what comes before them, if that
+    takes more than 5 s, as to compress particles. More is needed where a third engine turns out to be the
+    best, and by a pilot in a transient, which is continued. announce(text): is called before each pilot.
 
     Raises SceneError for a scene without a steady state, and for an observable that it does not have, or of
     which the pilots are too short to say anything.
     """
-    low, high = ACCURACIES
+    if known.is_tabulated(scene, observable):
+        return tabulated(scene, observable, accuracy, budget)
+    return piloted(scene, observable, accuracy, budget, pilot_seconds, announce)
+
+
+def tabulated(
+    scene: Scene,
+    observable: str,
+    accuracy: float,
+    budget: float | None = None,
+    speed_of: known.SpeedOf = speed.factor,
+) -> Plan:
+    """`plan` by the table; speed_of: this machine's time over the table's (see `gaspart.accuracy.speed`).
+    Raises SceneError for anything that the table does not cover."""
+    gas, target = known.tabulated_target(scene, observable)
+    accuracy, budget = _checked(accuracy, budget)
+    engines, refused = suited(target)
+    options = known.options_of(target, engines, accuracy, budget, speed_of)
+    able = {one.engine.timed_as for one in options}
+    missing = (engine.timed_as for engine in engines if engine.timed_as not in able)
+    refused |= dict.fromkeys(missing, "no setting is known to be as accurate at this density")
+    replicas = known.replicas_of(options[0], target.span[1])
+    return Plan(target, accuracy, tuple(options), refused, known.value_of(gas, observable), replicas)
+
+
+def piloted(
+    scene: Scene,
+    observable: str,
+    accuracy: float,
+    budget: float | None = None,
+    pilot_seconds: float = PILOT_SECONDS,
+    announce: Announce = lambda text: None,
+) -> Plan:
+    """`plan` by pilot runs, whatever is in the table."""
     target = Target.named(scene, observable)
-    accuracy = number("accuracy", accuracy, f"must be from {low:g} to {high:g}", least=low, most=high)
-    if budget is not None:
-        budget = number("budget", budget, "must be positive", above=0.0)
+    accuracy, budget = _checked(accuracy, budget)
     pilot_seconds = number("pilot", pilot_seconds, "must be positive", above=0.0)
     require_steady(scene)
     trials = Trials(target, accuracy, pilot_seconds, announce)
     trials.begin()
     options = _options(trials, budget)
-    while not trials.has_pilot(options[0].candidate.engine):  # none is advised without one
+    while not trials.has_pilot(options[0].engine):  # none is advised without one
         best = options[0].candidate
         found = trials.make(best)
         if not found.measured:
             trials.refuse(best, found.rule)
         options = _options(trials, budget)
-    reached = options[0].half_width <= accuracy * (1.0 + 1e-6)
-    pilots = tuple(trials.pilots)
     reference = trials.reference
     places = reference.component.places if reference.component else (1, 1)
-    shown = trials.refused, reference.value, pilots, reached, trials.differing, places
-    return Plan(target, accuracy, tuple(options), *shown)
+    shown = tuple(trials.pilots), trials.differing, places
+    return Plan(target, accuracy, tuple(options), trials.refused, reference.value, 1, *shown)
+
+
+def _checked(accuracy: float, budget: float | None) -> tuple[float, float | None]:
+    """The arguments. Raises SceneError."""
+    low, high = ACCURACIES
+    accuracy = number("accuracy", accuracy, f"must be from {low:g} to {high:g}", least=low, most=high)
+    return accuracy, None if budget is None else number("budget", budget, "must be positive", above=0.0)
 
 
 def _options(trials: Trials, budget: float | None) -> list[Option]:
     """What each candidate needs, the best first. Raises SceneError if no pilot has measured the
     observable."""
-    target, accuracy, longest = trials.target, trials.accuracy, trials.reference
+    target, longest = trials.target, trials.reference
+    assert longest.component is not None
     options = []
-    for one, speed in trials.speeds.items():
-        affordable = math.inf if budget is None else budget / speed
+    for one, cost in trials.speeds.items():
+        affordable = math.inf if budget is None else budget / cost
         most = min(affordable, _longest(target, longest), target.span[1])
         limits = _least(target, one.engine, longest), most
-        options.append(_option(one, speed, trials.bias(one), longest, accuracy, limits))
-    return sorted(options, key=lambda one: (max(one.half_width, accuracy * (1.0 + 1e-9)), one.seconds))
-
-
-def _option(
-    candidate: Candidate,
-    speed: float,
-    bias: float,
-    pilot: Pilot,
-    accuracy: float,
-    limits: tuple[float, float] = (0.0, math.inf),
-) -> Option:
-    """What a candidate needs for an accuracy, with the noise of a pilot, or reaches within limits of the
-    duration."""
-    least, most = ((1.0 - EQUILIBRATION) * limit for limit in limits)
-    measured = min(max(pilot.length((accuracy - bias) / QUANTILE), least), most)
-    if not math.isfinite(measured):
-        return Option(candidate, speed, bias, math.inf, math.inf, math.inf)
-    duration = measured / (1.0 - EQUILIBRATION)
-    half_width = bias + QUANTILE * pilot.reaches(measured)
-    return Option(candidate, speed, bias, duration, duration * speed, half_width)
+        bias = trials.bias(one)
+        options.append(Option(one, bias, longest.component, cost, trials.accuracy, *limits))
+    return ordered(options)
 
 
 def _longest(target: Target, pilot: Pilot) -> float:

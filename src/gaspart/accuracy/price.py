@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 from gaspart.accuracy import table
-from gaspart.accuracy.table import REFERENCE, STEP
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import Engine
 from gaspart.scene.features import FEATURES, features
@@ -45,16 +44,19 @@ def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
         "two_masses": len({kind.mass for kind in scene.kinds}) > 1,
         "stress": OBSERVABLES[observable].needs == "fluxes",
     }
-    known, present = table.prices(engine.name), features(scene)
+    known, present = table.prices(engine.timed_as), features(scene)
     ratios = {_NAMES[name]: known[name] for name in _NAMES if has[name] and name in known}
     unknown = [_NAMES[name] for name in _NAMES if has[name] and name not in known]
     unknown += [FEATURES[name].meaning for name in FEATURES if name in present and name not in _MEASURED]
-    return Price(ratios, tuple(unknown), _single(scene.dimension) if engine.name == "step" else None)
+    return Price(ratios, tuple(unknown), _single(engine, scene.dimension))
 
 
-def _single(dimension: int) -> float | None:
-    """Time per contact in single over that in double precision, of the reference gas; None if unknown."""
+def _single(engine: Engine, dimension: int) -> float | None:
+    """Time per contact in single over that in double precision, of the gas at which the engine is timed; None
+    of an engine that was not timed in both."""
+    fraction, step = engine.timed_at
     single, double = (
-        table.seconds(dimension, REFERENCE, "step", precision, STEP) for precision in ("float32", "float64")
+        table.seconds(dimension, fraction, engine.timed_as, precision, step)
+        for precision in ("float32", "float64")
     )
     return single / double if math.isfinite(single / double) else None

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.accuracy.estimates import LEAST_FREEDOM, components
+from gaspart.accuracy.estimates import LEAST_FREEDOM, bound, components, of_face
 from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT
 from gaspart.errors import SceneError
 from gaspart.trajectory.reading import open_trajectory
@@ -36,15 +36,13 @@ if TYPE_CHECKING:
 
     from gaspart.analysis.estimate import Estimate
 
-_DOUBT = 0.1
-"""Probability with which the true error exceeds its bound."""
 _CONFIDENCE = 0.95
 IDLE = 16384
 """Frames without any contact after which a run ends that has no longest duration."""
 
 
 @dataclass(frozen=True)
-class Reached:
+class AccuracyStatus:
     """What a run knows of an observable.
 
     asked: what is required; component: the face or axis that is known worst, "" for a scalar; value; error:
@@ -100,14 +98,6 @@ def _student(freedom: float) -> float:
     return float(ndtri(beyond) if math.isinf(freedom) else stdtrit(freedom, beyond))
 
 
-def bound(freedom: float) -> float:
-    """The upper bound of an error with so many degrees of freedom, over the error: from the quantile of
-    chi-square."""
-    from scipy.special import chdtri
-
-    return 1.0 if math.isinf(freedom) else math.sqrt(freedom / float(chdtri(freedom, 1.0 - _DOUBT)))
-
-
 def confirmed(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
     """An estimate with the larger one of its error and that of the examination before, for a run whose
     measured part was shorter by `ratio`."""
@@ -118,7 +108,7 @@ def confirmed(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
     return Estimate(now.value, max(now.error, before.error * math.sqrt(ratio)), now.freedom)
 
 
-def reached_accuracy(path: str | Path) -> list[Reached]:
+def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
     """What a run `until` some accuracies has reached, in their order, by all of its frames, finished or not.
 
     An empty list for a run of a fixed duration. Raises SceneError as `open_trajectory` does.
@@ -134,7 +124,7 @@ class Examiner:
     """Examines a run, and calls `report` with the result. Remembers the last examination, whose frames do not
     change any more."""
 
-    def __init__(self, report: Callable[[list[Reached]], None] | None = None) -> None:
+    def __init__(self, report: Callable[[list[AccuracyStatus]], None] | None = None) -> None:
         self._report = report
         self._known: dict[tuple[Requirement, int], dict[str, Estimate] | str] = {}
 
@@ -150,7 +140,9 @@ class Examiner:
             return 0.0
         return max(one.excess for one in reached)
 
-    def examine(self, data: xr.Dataset, accuracies: tuple[Requirement, ...], frames: int) -> list[Reached]:
+    def examine(
+        self, data: xr.Dataset, accuracies: tuple[Requirement, ...], frames: int
+    ) -> list[AccuracyStatus]:
         """What the first frames of an open trajectory give."""
         from gaspart.analysis.run import EQUILIBRATION
 
@@ -160,7 +152,7 @@ class Examiner:
             now = self._estimates(data, asked, frames)
             earlier = self._estimates(data, asked, before) if before is not None else {}
             if isinstance(now, str):
-                results.append(Reached(asked, rule=now))
+                results.append(AccuracyStatus(asked, rule=now))
                 continue
             ratio = 1.0
             if before is not None:
@@ -173,7 +165,9 @@ class Examiner:
             for name, estimate in now.items():
                 other = None if isinstance(earlier, str) else earlier.get(name)
                 made = confirmed(estimate, other, ratio)
-                parts.append(Reached(asked, name, made.value, made.error, made.freedom, other is not None))
+                parts.append(
+                    AccuracyStatus(asked, name, made.value, made.error, made.freedom, other is not None)
+                )
             results.append(max(parts, key=lambda one: (one.excess, one.accuracy)))
         return results
 
@@ -191,10 +185,10 @@ class Examiner:
         return self._known[key]
 
 
-def _is_idle(reached: list[Reached], collisions: float) -> bool:
+def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
     """Whether an observable is made of contacts of which there was none."""
     return any(
-        one.value == 0.0 if OBSERVABLES[one.asked.observable].along == ("face",) else collisions == 0.0
+        one.value == 0.0 if "face" in OBSERVABLES[one.asked.observable].along else collisions == 0.0
         for one in reached
     )
 
@@ -202,4 +196,4 @@ def _is_idle(reached: list[Reached], collisions: float) -> bool:
 def _measure(data: xr.Dataset, asked: Requirement) -> dict[str, Estimate]:
     """An observable by component, "" for a scalar; of pressures those that are asked for."""
     found = components(data, asked.observable, asked.start)
-    return {name: one.estimate for name, one in found.items() if asked.face in (None, name)}
+    return {name: one.estimate for name, one in found.items() if of_face(name, asked.face)}

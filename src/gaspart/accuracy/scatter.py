@@ -89,11 +89,16 @@ def _smoothed(scene: Scene, kinds: list[Species]) -> float:
 def _of_observable(target: Target, deviation: float) -> float:
     """Relative standard deviation of an observable with one of the energy."""
     scene = target.scene
-    temperature = kinetic_temperature(scene, target.initial)
     freedom = 0.5 * scene.dimension * scene.count
     power = target.declared.power
     if not scene.gravity:
-        return power * deviation / (freedom * temperature) if temperature else 0.0
+        mean = (
+            0.5
+            * scene.dimension
+            * sum(one.count * one.initial_temperature(scene.dimension) for one in scene.kinds)
+        )
+        return power * deviation / mean if mean else 0.0
+    temperature = kinetic_temperature(scene, target.initial)
     if target.conditions is not None and target.conditions.columns:
         found = _of_column(target, deviation)
         if found is not None:

@@ -9,8 +9,7 @@ from functools import cache
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.accuracy.table import DILUTE, MODELS, OWN_STEP, REFERENCE, STEP
-from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
+from gaspart.engines import Engine, offered
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
@@ -23,18 +22,20 @@ _CONTACTS = 2e4
 
 @cache
 def factor(dimension: int, engine: str, precision: str, count: int) -> float:
-    """Processor time of a contact here over that of the table, for `count` particles.
+    """Processor time of a contact here over that of the table, for `count` particles; engine: its name in the
+    table.
 
-    The reference gas is timed three times, after a short run from a lattice.
+    The gas at which the engine is `timed_at` is timed three times, after a short run from a lattice.
     """
     growth = max(1.0, count / _MOST) ** _GROWTH
     count = min(max(count, _LEAST), _MOST)
-    fraction = DILUTE if engine in MODELS else REFERENCE
+    timed = _named(engine)
+    fraction, step = timed.timed_at
     side = (count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
     particles = Species(count, 0.5, temperature=1.0, arrangement="lattice")
     gas = Scene(Container((side,) * dimension, boundary="periodic"), species=(particles,))
     rate = float(theory.collision_rate(fraction, dimension))
-    run = Simulation(gas, _chosen(engine, precision), seed=1)
+    run = Simulation(gas, timed.at_step(gas, step, precision), seed=1)
     run.advance(duration=1.0 / rate)
     stretch = 2.0 * max(_CONTACTS, 0.5 * count) / (count * rate)
     taken = []
@@ -42,16 +43,13 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
         before, start = run.time, time.process_time()
         run.advance(duration=stretch)
         taken.append((time.process_time() - start) / (0.5 * count * rate * (run.time - before)))
-    step = STEP if engine == "step" else OWN_STEP if engine in MODELS else 0.0
     known = table.seconds(dimension, fraction, engine, precision, step)
     return growth * statistics.median(taken) / known if math.isfinite(known) else math.inf
 
 
-def _chosen(engine: str, precision: str) -> Engine:
+def _named(name: str) -> Engine:
     """An engine by its name in the table."""
-    if engine in MODELS:
-        return DSMC(model=MODELS[engine])
-    return EventDriven() if engine == "event" else TimeStepped(STEP, precision=precision)
+    return next(one for one in offered() if one.timed_as == name)
 
 
 def as_measured(dimension: int, engine: str, precision: str, count: int) -> float:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from gaspart.errors import SceneError
 from gaspart.scene.faces import LeesEdwards, Vibrating
 from gaspart.scene.scene import Scene
@@ -47,12 +45,3 @@ def keeps_energy(scene: Scene) -> bool:
     """Whether a run keeps the energy of its start."""
     law = scene.restitution
     return not is_driven(scene) and (law is None or not law.dissipative)
-
-
-def temperature_scatter(scene: Scene) -> float:
-    """Relative standard deviation, from run to run, of the temperature of an even scene whose energy is
-    conserved: velocities that are drawn have that of their species only on average."""
-    drawn = any(kind.temperature is not None and not kind.exact_temperature for kind in scene.species)
-    if not drawn or not keeps_energy(scene):
-        return 0.0
-    return math.sqrt(2.0 / (scene.dimension * scene.count))

@@ -6,7 +6,7 @@ speed (kT / m)^(1/2), of DSMC in its own step, a fifth of a mean free time, 0 fo
 ``value`` and standard ``error``. Quantities: ``seconds`` of processor time for one exact contact of two
 particles; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance of an estimate
 times the contacts that it is made of; ``price_<feature>``, the time per event with a feature over that
-without it. Observables: Z, collision_rate, D. Errors of DSMC follow from theory (`gaspart.accuracy.models`).
+without it. Observables: Z, collision_rate, D. Other errors follow from theory (`gaspart.accuracy.models`).
 """
 
 from __future__ import annotations
@@ -23,20 +23,14 @@ COLUMNS = ("dimension", "packing_fraction", "engine", "precision", "time_step", 
 PATH = Path(__file__).parent / "data" / "accuracy.csv"
 PRECISIONS = {"4 passes": "float64", "4 passes, float32": "float32"}
 """The settings of the time-stepped engine that are worth advising, by their names in figures."""
-QUANTILE = 1.96
 EQUILIBRATION = 30.0
 """Collisions per particle before anything is measured."""
 LEAST = 20.0
 """Collisions per particle that are measured at least: a shorter run is no average over time."""
 REFERENCE, STEP = 0.1, 0.08
 """Packing fraction of the gas by which times are carried over, and the time step with which it is timed."""
-MODELS = {"dsmc": "boltzmann", "dsmc enskog": "enskog"}
-"""The models of the DSMC engine by their names in the table."""
-OWN_STEP = 1.0
-"""Their step unless another one is stated."""
-DILUTE = 0.01
-"""The packing fraction that takes the place of REFERENCE for them."""
-_PRICE = "price_"
+_EXACT = "event"  # the engine by which noise, which is that of a gas with any engine, was measured
+_PRICE, _BIAS = "price_", "bias_"
 _SAFE = 2.0  # standard errors added to a bias
 _BEYOND = 1.05  # a packing fraction may exceed those of the table by this factor
 
@@ -54,25 +48,32 @@ def read() -> tuple[dict, ...]:
 
 
 def lowest(dimension: int) -> float:
-    """The lowest packing fraction at which DSMC was timed, which in dilute gases is much cheaper than the
-    other engines, less what it may be exceeded by."""
-    eta, _, _ = _curve(dimension, "dsmc", "float64", OWN_STEP, "seconds")
-    return float(eta[0] / _BEYOND)
+    """The lowest packing fraction at which an engine was timed, minus 5 %."""
+    timed = (row for row in read() if row["quantity"] == "seconds" and row["dimension"] == dimension)
+    return min(float(row["packing_fraction"]) for row in timed) / _BEYOND
 
 
-def steps(dimension: int, engine: str = "step") -> list[tuple[str, float]]:
+def steps(dimension: int, engine: str) -> list[tuple[str, float]]:
     """(precision, time_step) of all timed settings of an engine."""
     timed = (row for row in read() if row["engine"] == engine and row["quantity"] == "seconds")
     found = (row for row in timed if row["dimension"] == dimension)
     return list(dict.fromkeys((row["precision"], row["time_step"]) for row in found))
 
 
-def bias(dimension: int, fraction: float, precision: str, step: float, observable: str) -> float:
-    """A bound on the relative error of time steps, with two standard errors; inf where none was measured.
+def has_biases(engine: str) -> bool:
+    """Whether errors of an engine were measured; of the others they follow from theory."""
+    return any(row["engine"] == engine and row["quantity"].startswith(_BIAS) for row in read())
+
+
+def bias(
+    dimension: int, fraction: float, precision: str, step: float, observable: str, engine: str = "step"
+) -> float:
+    """A bound on the relative error of an engine, by default that of time steps, with two standard errors;
+    inf where none was measured.
 
     Between packing fractions the larger of the neighbours' is taken: errors change their sign between them.
     """
-    eta, value, error = _curve(dimension, "step", precision, step, f"bias_{observable}")
+    eta, value, error = _curve(dimension, engine, precision, step, f"{_BIAS}{observable}")
     if not eta.size or not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND:
         return np.inf
     bound = np.abs(value) + _SAFE * error
@@ -84,9 +85,10 @@ def bias(dimension: int, fraction: float, precision: str, step: float, observabl
 def seconds(
     dimension: int, fraction: float, engine: str, precision: str = "float64", step: float = 0.0
 ) -> float:
-    """Processor time of one exact contact, on the machine of the table; inf where it was not measured."""
+    """Processor time of one exact contact, on the machine of the table; inf where it was not measured. Beyond
+    the gases of the table that of an engine without steps is that of the nearest one."""
     eta, value, _ = _curve(dimension, engine, precision, step, "seconds")
-    if not eta.size or (engine != "event" and not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND):
+    if not eta.size or (step and not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND):
         return np.inf
     return float(np.exp(np.interp(np.log(fraction), np.log(eta), np.log(value))))
 
@@ -97,7 +99,7 @@ def noise(dimension: int, fraction: float, observable: str) -> float:
     In a gas more dilute than those of the table that of Z falls with the square of (Z - 1) / Z, since Z - 1
     is in proportion to the contacts, and the others are those of the most dilute one.
     """
-    eta, value, _ = _curve(dimension, "event", "float64", 0.0, f"noise_{observable}")
+    eta, value, _ = _curve(dimension, _EXACT, "float64", 0.0, f"noise_{observable}")
     if not eta.size:
         return np.inf
     # A line through the logarithms: single values come from few blocks.

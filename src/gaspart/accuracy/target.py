@@ -11,9 +11,16 @@ import numpy as np
 from gaspart.accuracy.conditions import Conditions, known_conditions
 from gaspart.analysis.diffusion import LINEAR_FROM
 from gaspart.analysis.motion import MOST_FRAMES
-from gaspart.analysis.observables import OBSERVABLES, Named, known, require_defined
+from gaspart.analysis.observables import (
+    OBSERVABLES,
+    Named,
+    known,
+    require_defined,
+    require_steady_value,
+    walls_of,
+)
 from gaspart.analysis.run import EQUILIBRATION
-from gaspart.engines import Engine, EventDriven
+from gaspart.engines import Engine, reference_engine
 from gaspart.engines.dsmc.rates import rates
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
@@ -40,8 +47,8 @@ _COLLIDED = 40.0
 
 @dataclass(frozen=True)
 class Target:
-    """An observable of `gaspart measure` of a scene; face: of the pressure, the wall (`x low`), by default
-    each of them; settled: a state in which the scene has become steady, if one is known."""
+    """An observable of `gaspart measure` of a scene; face: of what walls are given, the wall (`x low`), by
+    default each of them; settled: a state in which the scene has become steady, if one is known."""
 
     scene: Scene
     observable: str
@@ -54,11 +61,12 @@ class Target:
         one that the scene does not have, and a wall that is not there."""
         observable, colon, face = str(name).partition(":")
         known(observable)
-        walls = scene.container.walls
+        walls = walls_of(observable, scene)
         if scene.count:  # an empty one has no advice at all
             _require_defined(scene, observable, name)
-        if colon and (observable != "pressure" or face not in walls):
-            rule = f"{observable} is not of a wall" if observable != "pressure" else "there is no such wall"
+        if colon and face not in walls:
+            of_walls = "face" in OBSERVABLES[observable].along
+            rule = "there is no such wall" if of_walls else f"{observable} is not of a wall"
             raise SceneError("observable", name, f"{rule}; the walls are {', '.join(walls) or 'none'}")
         return cls(scene, observable, face or None)
 
@@ -87,9 +95,9 @@ class Target:
         it becomes; or, if its particles start at rest, in the second half of a short run."""
         found = rates(self.scene, dense=True).frequency
         if found > 0.0:
-            gas = self.conditions
+            gas = self.conditions if self.scene.gravity else None
             return found if gas is None or gas.columns is None else found * gas.quickened
-        simulation = Simulation(self.scene, EventDriven(), SEED, initial=self.start)
+        simulation = Simulation(self.scene, reference_engine(), SEED, initial=self.start)
         times, counts = [0.0], [0.0]
         while times[-1] < _FALL * self.crossing and counts[-1] < _COLLIDED * self.scene.count:
             simulation.advance(duration=self.crossing / 32.0)
@@ -169,7 +177,7 @@ class Target:
             raise SceneError("observable", self.observable, "needs particles that collide")
         sample = float(f"{_LONGEST_LAG / lags / self.frequency:.1g}")
         if quantum := engine.resolved(self.scene, sample).quantum:
-            sample = tidy(max(1, round(sample / quantum)) * quantum)
+            sample = rounded_to_12_digits(max(1, round(sample / quantum)) * quantum)
         return Correlations(sample, lags, stress=self.declared.needs == "fluxes")
 
     def _correlated(self, engine: Engine, length: float) -> tuple[float, float, Correlations]:
@@ -177,18 +185,23 @@ class Target:
         correlations = self.correlations(engine)
         sample = correlations.interval
         per_frame = max(correlations.lags, round(length / sample / _FRAMES[0]))
-        interval = tidy(per_frame * sample)
-        return tidy(max(_LEAST_FRAMES, round(length / interval)) * interval), interval, correlations
+        interval = rounded_to_12_digits(per_frame * sample)
+        return (
+            rounded_to_12_digits(max(_LEAST_FRAMES, round(length / interval)) * interval),
+            interval,
+            correlations,
+        )
 
 
 def _require_defined(scene: Scene, observable: str, name: str) -> None:
     """Raise SceneError, with the name that was asked for, for an observable that a scene does not have."""
     try:
         require_defined(observable, scene)
+        require_steady_value(observable, scene)
     except SceneError as error:
         raise SceneError("observable", name, f"{error.key}: {error.rule}") from None
 
 
-def tidy(multiple: float) -> float:
+def rounded_to_12_digits(multiple: float) -> float:
     """A multiple without its rounding error, which a command would show."""
     return float(f"{multiple:.12g}")

@@ -8,12 +8,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
-from gaspart.accuracy.candidates import Candidate, candidates, exact_candidate, suited
+from gaspart.accuracy.candidates import candidates, suited
 from gaspart.accuracy.conditions import Conditions, measured_conditions
+from gaspart.accuracy.noise import half_width
 from gaspart.accuracy.pilot import Pilot, require_defined, run_pilot, speed_of
-from gaspart.accuracy.table import QUANTILE
 from gaspart.accuracy.target import Target
-from gaspart.engines import Engine
+from gaspart.engines import Engine, reference_engine
+from gaspart.engines.asked import Candidate
 from gaspart.errors import SceneError
 from gaspart.state.given import state_at_time_zero
 from gaspart.trajectory.last_state import last_state
@@ -44,23 +45,24 @@ class Trials:
         """Find the candidates and make the pilot of the exact engine: of half the time if another engine may
         be cheaper. Raises SceneError if no engine runs the scene, and for an observable that it does not
         have."""
-        names, self.refused = suited(self.target)
-        if "event" not in names:
+        engines, self.refused = suited(self.target)
+        if not engines or not engines[0].reference:
             raise self._no_engine()
+        exact = Candidate(reference_engine())
         require_defined(self.target)
         conditions = self.target.conditions
         if conditions is not None and conditions.axis is None:
             self._time(self._able(conditions))
-            known = self.speeds.get(exact_candidate(), math.inf)
+            known = self.speeds.get(exact, math.inf)
             cheaper = any(speed < known for one, speed in self.speeds.items() if one.bias < self.accuracy)
-            self.make(exact_candidate(), 0.5 if cheaper else 1.0)
+            self.make(exact, 0.5 if cheaper else 1.0)
             self._ask_another()
             return
-        self._time([exact_candidate()])
-        rivals = len(names) > 1 and self.target.declared.samples != "structure"
-        pilot = self.make(exact_candidate(), 0.5 if rivals else 1.0)
+        self._time([exact])
+        rivals = len(engines) > 1 and self.target.declared.samples != "structure"
+        pilot = self.make(exact, 0.5 if rivals else 1.0)
         if pilot.path is None:
-            rule = f"the pilot of the event-driven engine failed: {pilot.rule}"
+            rule = f"the pilot of the {exact.engine.title} engine failed: {pilot.rule}"
             raise SceneError("observable", self.target.name, rule)
         if conditions is None:
             conditions = measured_conditions(self.target.scene, pilot.path)
@@ -88,7 +90,7 @@ class Trials:
 
     def refuse(self, candidate: Candidate, rule: str) -> None:
         """Let a candidate be none."""
-        self.refused[candidate.name] = rule
+        self.refused[candidate.engine.timed_as] = rule
         del self.speeds[candidate]
 
     def has_pilot(self, engine: Engine) -> bool:
@@ -144,7 +146,7 @@ class Trials:
             try:
                 self.speeds[one] = speed_of(self.target, one.engine)
             except SceneError as error:  # as of particles from which the engine cannot start
-                self.refused[one.name] = f"{error.key}: {error.rule}"
+                self.refused[one.engine.timed_as] = f"{error.key}: {error.rule}"
 
     def _settle(self, pilot: Pilot) -> None:
         """Start what follows from the end of a pilot, if its file holds the state."""
@@ -161,11 +163,11 @@ class Trials:
 
 def raised_bias(candidate: Candidate, own: Pilot, pilots: list[Pilot]) -> float:
     """The bound on a candidate's bias, with what its own pilot differs by from that of the exact engine."""
-    exact = [one for one in pilots if one.engine.name == "event"]
-    if candidate.engine.name == "event" or not exact:
+    exact = [one for one in pilots if one.engine.reference]
+    if candidate.engine.reference or not exact:
         return candidate.bias
     difference = abs(own.value / exact[0].value - 1.0)
     error = math.hypot(own.accuracy, exact[0].accuracy)
     if difference <= candidate.bias + DIFFERS * error:
         return candidate.bias
-    return difference + QUANTILE * error
+    return half_width(difference, error)

@@ -12,7 +12,7 @@ from typing import Any
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.driving import has_dragged_faces
-from gaspart.scene.faces import thermal_numbers
+from gaspart.scene.faces import sliding_faces, thermal_numbers
 from gaspart.scene.gas import plain_mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
@@ -245,3 +245,31 @@ def shears(scene: Scene, selection: Selection) -> None:
     """A shear rate that is not 0, if there is one."""
     if scene.shear_rate == 0.0:
         raise SceneError("shear_rate", scene.shear_rate, "gives no response")
+
+
+def heat_flows(scene: Scene, selection: Selection) -> None:
+    """Faces at two temperatures, or something that heats the gas or takes its energy."""
+    temperatures = {getattr(face, "temperature", None) for face in scene.faces.values()} - {None}
+    law = scene.restitution
+    heated = (law is not None and law.dissipative) or scene.thermostat is not None or _flows(scene)
+    if len(temperatures) < 2 and not heated and not any(face.moves for face in scene.faces.values()):
+        raise SceneError("faces", list(scene.faces), "have one temperature: the heat flux is 0 on average")
+
+
+def velocity_flows(scene: Scene, selection: Selection) -> None:
+    """Faces that slide, sheared images, or a force along faces."""
+    if not _flows(scene):
+        raise SceneError("faces", list(scene.faces), "nothing drives a flow: the mean velocity is 0")
+
+
+def _flows(scene: Scene) -> bool:
+    periodic = scene.container.periodic
+    along = any(g and around for g, around in zip(scene.gravity or (), periodic, strict=False))
+    return bool(along or scene.shear_rate or sliding_faces(scene))
+
+
+def never_steady(scene: Scene, selection: Selection) -> None:
+    """No scene: what is between two walls does not flow on average."""
+    raise SceneError(
+        "container.boundary", scene.container.boundary, "the net flux between walls is 0 in a steady state"
+    )

@@ -93,9 +93,10 @@ class Named:
 
     Where it is. needs: what a run must have kept: "" nothing, "paths" of particles, "pairs" the collisions of
     each pair of species, "fluxes" correlations of the stress and the heat flux, or "shear" the momentum along
-    faces, which some engines tally; conditions: of a scene,
-    see `Condition`; nothing: the equations that an engine solves (`Engine.equation`) whose runs say nothing
-    of it, each with the reason.
+    faces, which some engines tally; conditions: of a scene, see `Condition`; whole: whether the file must
+    have all particles: "always", "never", "mixed", of several kinds of them, or "unless fluxes" are kept,
+    which have the temperature; nothing: the equations that an engine solves (`Engine.equation`) whose runs
+    say nothing of it, each with the reason.
 
     What it is compared with. theory: a function in `analysis.expected`, which knows the equation of the
     engine; bulk: a function of `analysis.bulk`, of an infinite plain gas by each equation, and source: where
@@ -111,8 +112,10 @@ class Named:
     How it is planned. power: of the temperature that it grows with; memory: whether it depends on the memory
     of collisions, which no kinetic equation has; lags: of its correlations in a pilot, 0 without; samples:
     what frames are spaced for: "" a mean over time, "structure" independent positions, "paths" lags;
-    ends_runs: whether `--until` may require it; tabulated: whether costs and errors are in the table;
-    relative_to: what its accuracy is relative to, each "value", or their "norm" where some vanish on average.
+    ends_runs: whether `--until` may require it; drives: conditions of a scene in whose steady state it is
+    not 0, asked besides `conditions` before an accuracy is; tabulated: whether costs and errors are in the
+    table; relative_to: what its accuracy is relative to, each "value", or their "norm" where some vanish on
+    average.
     """
 
     title: str
@@ -125,6 +128,7 @@ class Named:
     selections: tuple[str, ...] = ()
     needs: str = ""
     conditions: tuple[Condition, ...] = ()
+    whole: str = "always"
     nothing: dict[str, str] = field(default_factory=dict)
     theory: str = ""
     bulk: str = ""
@@ -138,6 +142,7 @@ class Named:
     lags: int = 0
     samples: str = ""
     ends_runs: bool = False
+    drives: tuple[Condition, ...] = ()
     tabulated: bool = False
     relative_to: str = "value"
 

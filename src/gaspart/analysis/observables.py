@@ -14,7 +14,6 @@ from gaspart.analysis import conditions as where
 from gaspart.analysis.declaration import Named, units_in
 from gaspart.errors import SceneError, unknown_word
 from gaspart.scene.scene import Scene
-from gaspart.state.optional_tallies import StressTally, WallShearTally
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -44,6 +43,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="compressibility factor PV/(N k_B T), periodic",
         units="1",
         function="compressibility_factor",
+        whole="unless fluxes",
         conditions=(where.unsheared, where.periodic_virial, where.elastic, where.all_move, where.thermal),
         nothing={"boltzmann": "is 1 of particles without extent, whatever happens"},
         theory="equilibrium.compressibility_factor",
@@ -58,6 +58,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="pressure on each wall",
         units="energy / length^d",
         function="wall_pressure",
+        whole="never",
         along=("face",),
         conditions=(where.walled, where.unsheared),
         theory="equilibrium.wall_pressure",
@@ -70,10 +71,13 @@ OBSERVABLES: dict[str, Named] = {
         definition="heat given to each face at a temperature, per area, in a steady state",
         units="energy / (length^(d-1) time)",
         function="heat_flux",
+        whole="never",
         along=("face",),
         conditions=(where.unsheared, where.thermal_walls),
         theory="walls.heat_flux",
         power=1.5,
+        ends_runs=True,
+        drives=(where.heat_flows,),
         relative_to="norm",
     ),
     "wall_shear": Named(
@@ -82,11 +86,14 @@ OBSERVABLES: dict[str, Named] = {
         definition="shear stress on each face that is dragged along itself, in a steady state",
         units="energy / length^d",
         function="wall_shear",
+        whole="never",
         along=("face", "component"),
         needs="shear",
         conditions=(where.unsheared, where.dragged_walls),
         theory="walls.wall_shear",
         power=1.0,
+        ends_runs=True,
+        drives=(where.velocity_flows,),
         relative_to="norm",
     ),
     "collision_rate": Named(
@@ -108,6 +115,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="collision rate of each pair of species",
         units="1 / time",
         function="pair_collision_rates",
+        whole="never",
         along=("pair",),
         needs="pairs",
         conditions=(where.unsheared, where.of_species),
@@ -217,6 +225,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="radial distribution function, periodic",
         units="1",
         function="rdf",
+        whole="never",
         along=("distance",),
         conditions=(where.unsheared, where.periodic, where.a_pair),
         theory="places.radial_distribution",
@@ -262,6 +271,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="density along an axis, by default the last",
         units="1 / length^d",
         function="profile",
+        whole="mixed",
         arguments={"of": "density"},
         along=("position",),
         selections=("axis", "species"),
@@ -279,6 +289,8 @@ OBSERVABLES: dict[str, Named] = {
         theory="flows.velocity",
         moving=False,
         power=0.5,
+        ends_runs=True,
+        drives=(where.velocity_flows,),
         relative_to="norm",
     ),
     "flux": Named(
@@ -291,6 +303,7 @@ OBSERVABLES: dict[str, Named] = {
         conditions=(where.unsheared, where.walled_axis, where.has_species),
         theory="flows.flux",
         power=0.5,
+        drives=(where.never_steady,),
         relative_to="norm",
     ),
     "temperature": Named(
@@ -312,7 +325,8 @@ OBSERVABLES: dict[str, Named] = {
         units="mass length^(2-d) / time",
         function="shear_viscosity",
         selections=("lag",),
-        conditions=(where.shears, where.tallied),
+        whole="never",
+        conditions=(where.shears, where.tallied, where.thermal),
         theory="transport.shear_viscosity",
         bulk="shear_viscosity",
         source="Enskog's theory, of dense spheres times a measured ratio, with g(sigma) from: {state}",
@@ -328,7 +342,8 @@ OBSERVABLES: dict[str, Named] = {
         units="mass length^(2-d) / time",
         function="bulk_viscosity",
         selections=("lag",),
-        conditions=(where.unsheared, where.tallied),
+        whole="never",
+        conditions=(where.unsheared, where.tallied, where.thermal),
         nothing={"boltzmann": "is 0 of particles without extent; a run shows that of its cells"},
         theory="transport.bulk_viscosity",
         bulk="bulk_viscosity",
@@ -344,7 +359,8 @@ OBSERVABLES: dict[str, Named] = {
         units="1 / (length^(d-2) time)",
         function="thermal_conductivity",
         selections=("lag",),
-        conditions=(where.unsheared, where.in_species, where.tallied),
+        whole="mixed",
+        conditions=(where.unsheared, where.in_species, where.tallied, where.thermal),
         theory="transport.thermal_conductivity",
         bulk="thermal_conductivity",
         source="Enskog's theory, with g(sigma) from: {state}",
@@ -357,6 +373,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="components of the pressure tensor",
         units="mass / (length^(d-2) time^2)",
         function="pressure_tensor",
+        whole="never",
         along=("component",),
         conditions=(where.tallied,),
         theory="equilibrium.pressure_tensor",
@@ -376,7 +393,7 @@ OBSERVABLES: dict[str, Named] = {
 """By name, as on the command line, in a sweep and in a config."""
 
 
-TOO_SHORT = ("frames", "duration", "collisions", "start", "D")
+TOO_SHORT = ("frames", "duration", "collisions", "wall_hits", "start", "D")
 """Keys of the errors of an analysis that a longer run may not have."""
 
 
@@ -435,9 +452,40 @@ def require_defined(name: str, scene: Scene, **selection: Any) -> None:
         condition(scene, selection)
 
 
+def require_run(name: str, scene: Scene, kept: Collection[str] = (), follow: int | None = None) -> None:
+    """Raise SceneError for an observable that no run of a scene has, however long it is; kept: see
+    `require_kept`; follow: the particles in the file, as of `gaspart.run`, None for all."""
+    require_defined(name, scene)
+    whole = {"mixed": len(scene.kinds) > 1, "unless fluxes": "fluxes" not in kept, "never": False}
+    if follow is not None and follow < scene.count and whole.get(OBSERVABLES[name].whole, True):
+        raise SceneError("follow", follow, f"needs all {scene.count} particles in the file")
+    require_kept(name, kept)
+
+
+def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
+    """The walls that an observable may have a value of, as `x low`: none unless it is of faces, all of a
+    pressure, of others those at a temperature."""
+    if "face" not in OBSERVABLES[name].along:
+        return ()
+    if name == "pressure":
+        return scene.container.walls
+    return tuple(
+        key.replace("_", " ") for key, face in scene.faces.items() if getattr(face, "temperature", None)
+    )
+
+
+def require_steady_value(name: str, scene: Scene) -> None:
+    """Raise SceneError, with the reason, for an observable that is 0 on average in the steady state of a
+    scene: no run makes it accurate relatively."""
+    for condition in OBSERVABLES[known(name)].drives:
+        condition(scene, {})
+
+
 def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
     """Raise SceneError, with the reason, if a run by an engine says nothing of an observable: its equation
     does not have it, or has one value of it whatever happens, or the engine does not keep what it needs."""
+    from gaspart.state.optional_tallies import StressTally, WallShearTally  # which load numpy
+
     one = OBSERVABLES[known(name)]
     if engine.equation in one.nothing:
         raise SceneError("observable", name, one.nothing[engine.equation])

@@ -116,7 +116,7 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
     with measured(source, start) as run:
         require_defined("order", run.scene)
         if run.data.sizes["atom"] < run.count:
-            rule = f"neighbours are among all {run.count} particles, which the file has not"
+            rule = f"needs all {run.count} particles in the file"
             raise SceneError("follow", run.data.sizes["atom"], rule)
         lengths = run.scene.container.lengths
         frames, time = chosen_frames(run, run.positions), chosen_frames(run, run.time)
@@ -135,7 +135,7 @@ def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
     a file that holds the first particles of several kinds only."""
     stored = run.data.sizes["atom"]
     if stored < run.count and len(run.scene.kinds) > 1:
-        raise SceneError("follow", stored, f"needs all {run.count} particles, of several kinds, in the file")
+        raise SceneError("follow", stored, f"needs all {run.count} particles in the file")
     chosen = np.isfinite(run.masses) & (run.species == (run.species if species is None else species))
     members = np.flatnonzero(chosen[:stored])
     cells = Cells(run, members, (axis,), (bins,))

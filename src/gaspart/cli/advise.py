@@ -7,7 +7,7 @@ import math
 import shlex
 import sys
 import warnings
-from dataclasses import fields, replace
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,23 +17,21 @@ from gaspart.cli.arguments import (
     Parser,
     Suggested,
     UsageError,
-    of_configs,
+    config_command,
     print_lines,
     real,
     set_command,
 )
-from gaspart.cli.engine_options import one_of, stated
+from gaspart.cli.engine_options import one_of
 from gaspart.cli.progress import waiting
 from gaspart.cli.run import run_options
-from gaspart.engines import DSMC, Engine, TimeStepped
 from gaspart.errors import visible
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from gaspart.accuracy.advice import Advice, Setting
-    from gaspart.accuracy.plan import Option, Plan
-    from gaspart.trajectory.recipe import Recipe
+    from gaspart.accuracy.option import Option
+    from gaspart.accuracy.plan import Plan
 
 _EXAMPLES = """examples:
   gaspart advise scene.yaml --observable Z --accuracy 1e-3
@@ -72,58 +70,90 @@ def _advise(given: argparse.Namespace) -> None:
         raise UsageError("give a scene or --config, and not both")
     if given.config:
         with waiting("predicting the cost of every point"):
-            lines = of_configs("advise")(given.config)
+            lines = config_command("advise")(given.config)
         print_lines(lines)
         return
-    from gaspart.accuracy.advice import advise, is_tabulated
-
-    scene = Scene.from_file(given.scene)
-    if is_tabulated(scene, given.observable):
-        with waiting("measuring the speed of this machine; the first time, compiling kernels"):
-            load_numba(ours=True)
-            advice = advise(scene, given.observable, given.accuracy, given.budget)
-        print_lines(_lines(advice, given.scene))
-        return
     from gaspart.accuracy.plan import plan
+    from gaspart.accuracy.tabulated import is_tabulated
 
     def announce(text: str) -> None:
         if sys.stderr.isatty():
             print(f"gaspart: {visible(text)}", file=sys.stderr)
 
-    with warnings.catch_warnings():
+    scene, request = Scene.from_file(given.scene), (given.observable, given.accuracy, given.budget)
+    timed = is_tabulated(scene, given.observable)
+    text = "measuring the speed of this machine; the first time, compiling kernels"
+    with waiting(text) if timed else nullcontext(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of coarse settings, whose error is stated in the table
-        made = plan(scene, given.observable, given.accuracy, given.budget, given.pilot, announce)
-    print_lines(_plan_lines(made, given.scene))
+        if timed:
+            load_numba(ours=True)
+        made = plan(scene, *request, given.pilot, announce)
+    print_lines(_lines(made, given.scene))
 
 
-def _lines(advice: Advice, file: str) -> list[str]:
+def _lines(plan: Plan, file: str) -> list[str]:
     """The advice as text. file: of the scene, for the command."""
-    from gaspart.accuracy.advice import EQUILIBRATION
-
-    best, gas = advice.setting, advice.gas
-    length = f"{advice.collisions_per_particle:.3g} collisions per particle, duration {advice.duration:.4g}"
-    lines = [
-        f"engine            {_name(best)}",
-        f"boxes             {_boxes(best)}",
-        *_steps(advice.scene, best.engine, advice.observable),
-        f"particles         {gas.count}{_bulk(advice)}",
-        f"replicas          {advice.replicas}",
-        f"run length        {length}, in each replica; {EQUILIBRATION:g} collisions of equilibration",
-        f"predicted cost    {best.seconds:.3g} s of processor time",
-        f"95 % half-width   {best.half_width:.2g} of {advice.observable} (bias: at most {best.bias:.1g})",
-    ]
-    if OBSERVABLES[advice.observable].power:
-        lines += _drawn(advice.observable, advice.scatter, True, False)
-    lines.append(_pays(advice.scene, best.engine, advice.observable))
-    if not advice.within_budget:
-        lines.append(f"the budget does not suffice for {advice.accuracy:g}")
-    each = "" if advice.replicas == 1 else ", and the same with other seeds and files"
-    lines.append(f"command           {_command(advice.recipe, file)}{each}")
-    for other in advice.others:
-        lines.append(f"why: {_name(other)} takes {other.seconds:.3g} s")
-    if "step" not in {other.name for other in (best, *advice.others)}:
-        lines.append("why: no time step is known to be as accurate at this density")
+    best, target = plan.best, plan.target
+    notes = best.engine.notes(target.scene, target.observable, target.declared.memory)
+    lines = [_line("engine", best.engine.describe()), *(_line(*note) for note in notes.items())]
+    if math.isfinite(best.seconds):
+        lines += _run(plan, file)
+    lines += _rarely_visited(plan)
+    scatter = plan.scatter
+    lines += _drawn(target.name, scatter.value, scatter.drawn, scatter.placed)
+    lines.append(_extra_cost(plan))
+    if not plan.affordable:
+        lines.append(_shortfall(plan))
+    for pilot in plan.pilots:
+        cost = f"{pilot.seconds:.2g} s" if pilot.seconds else "kept from before"
+        shown = f"{pilot.value:.4g} to {100.0 * pilot.accuracy:.2g} %" if pilot.measured else pilot.rule
+        lines.append(_line("pilot", f"{pilot.engine.title}, {cost}: {shown}"))
+    lines += _differences(plan)
+    for other in plan.options[1:]:
+        cost = f"{other.seconds:.3g} s" if math.isfinite(other.seconds) else "not as accurate"
+        without = f"gives up {other.engine.limitations}"
+        lines.append(_line("why not", f"{other.engine.describe()}: {cost}; {_components(other)}; {without}"))
+    lines += [_line("why not", f"{name}: {rule}") for name, rule in plan.refused.items()]
     return lines
+
+
+def _line(title: str, text: str) -> str:
+    return f"{title:18s}{text}"
+
+
+def _run(plan: Plan, file: str) -> list[str]:
+    """The run to make, what it costs and how accurate it is."""
+    best, recipe, lines = plan.best, plan.recipe, []
+    if gas := plan.gas:
+        length = f"{plan.collisions_per_particle:.3g} measured collisions per particle"
+        lines += [
+            _line("particles", f"{gas.count}{_bulk(plan, gas.count)}"),
+            _line("replicas", f"{plan.replicas}"),
+            _line(
+                "run length", f"{length}, duration {plan.duration:.4g} with equilibration, in each replica"
+            ),
+        ]
+    each = "" if plan.replicas == 1 else ", and the same with other seeds and files"
+    command = shlex.join(["gaspart", "run", file, *run_options(Path("run.nc"), recipe)])
+    total = "" if plan.gas else f", duration {best.duration:.4g}"
+    cost = f"{best.seconds:.3g} s of processor time{total}"
+    value = f"{plan.target.name} (about {plan.value:.4g}): {_components(best)}"
+    lines += [
+        _line("command", f"{command}{each}"),
+        _line("predicted cost", cost),
+        _line("95 % half-width", f"{best.half_width:.2g} of {value}"),
+    ]
+    if asked := recipe.correlations:
+        lags = f"{asked.interval:g} apart, up to {asked.lags * asked.interval:.4g}"
+        lines.append(_line("lags", f"{lags}, the time of about 10 collisions of a particle"))
+    return lines
+
+
+def _bulk(plan: Plan, count: int) -> str:
+    """The effect of the finite size."""
+    differing, bulk_count = plan.finite_size
+    text = f"; {plan.target.name} differs by {100.0 * differing:+.2g} % from an infinite gas"
+    return text + (f": correct for it, or take {bulk_count:.2g}" if bulk_count > count else "")
 
 
 def _rarely_visited(plan: Plan) -> list[str]:
@@ -157,60 +187,22 @@ def _differences(plan: Plan) -> list[str]:
     lines = []
     for one in plan.differing:
         exact = plan.pilots[0]
-        values = f"{one.value:.4g} against {exact.value:.4g} by the event-driven engine"
-        lines.append(f"pilots differ     {one.engine.title}: {values}, more than its bound and their noise")
+        values = f"{one.value:.4g} against {exact.value:.4g} by the {exact.engine.title} engine"
+        text = f"{one.engine.title}: {values}, more than its bound and their noise"
+        lines.append(_line("pilots differ", text))
     return lines
 
 
-def _pays(scene: Scene, engine: Engine, observable: str) -> str:
-    """What a run pays for beside the collisions of a plain gas."""
+def _extra_cost(plan: Plan) -> str:
+    """What a run costs beside the collisions of a plain gas."""
     from gaspart.accuracy.price import price_of
 
-    price = price_of(scene, engine, observable)
+    price = price_of(plan.target.scene, plan.best.engine, plan.target.observable)
     measured = ", ".join(f"{name} {ratio:.2f}" for name, ratio in price.ratios.items())
     parts = [f"{measured} times the time per event"] if measured else []
     parts += [f"not measured: {', '.join(price.unknown)}"] if price.unknown else []
     parts += [f"float32 takes {price.single:.2f} of the time of float64"] if price.single else []
-    return f"pays for          {'; '.join(parts) or 'its collisions alone'}"
-
-
-def _command(recipe: Recipe, file: str) -> str:
-    """The command that makes a run."""
-    return shlex.join(["gaspart", "run", file, *run_options(Path("run.nc"), recipe)])
-
-
-def _plan_lines(plan: Plan, file: str) -> list[str]:
-    """The advice of pilot runs as text. file: of the scene, for the command."""
-    best = plan.best
-    lines = [f"engine            {_settings(best)}"]
-    if math.isfinite(best.seconds):
-        recipe = plan.recipe
-        lines += [
-            f"command           {_command(recipe, file)}",
-            f"predicted cost    {best.seconds:.3g} s of processor time, duration {best.duration:.4g}",
-            f"95 % half-width   {best.half_width:.2g} of {plan.target.name} (about {plan.value:.4g}): "
-            f"{_components(best)}",
-        ]
-        if asked := recipe.correlations:
-            lags = f"{asked.interval:g} apart, up to {asked.lags * asked.interval:.4g}"
-            lines.append(f"lags              {lags}, the time of about 10 collisions of a particle")
-    lines += _rarely_visited(plan)
-    scatter = plan.scatter
-    lines += _drawn(plan.target.name, scatter.value, scatter.drawn, scatter.placed)
-    lines.append(_pays(plan.target.scene, best.candidate.engine, plan.target.observable))
-    if not plan.affordable:
-        lines.append(_shortfall(plan))
-    for pilot in plan.pilots:
-        cost = f"{pilot.seconds:.2g} s" if pilot.seconds else "kept from before"
-        shown = f"{pilot.value:.4g} to {100.0 * pilot.accuracy:.2g} %" if pilot.measured else pilot.rule
-        lines.append(f"pilot             {pilot.engine.title}, {cost}: {shown}")
-    lines += _differences(plan)
-    for other in plan.options[1:]:
-        cost = f"{other.seconds:.3g} s" if math.isfinite(other.seconds) else "not as accurate"
-        without = f"gives up {other.candidate.gives_up}"
-        lines.append(f"why not           {_settings(other)}: {cost}; {_components(other)}; {without}")
-    lines += [f"why not           {name}: {rule}" for name, rule in plan.refused.items()]
-    return lines
+    return _line("extra cost", "; ".join(parts) or "none beside its collisions")
 
 
 def _components(option: Option) -> str:
@@ -227,65 +219,11 @@ def _components(option: Option) -> str:
     return ", ".join(shown) or "no systematic error"
 
 
-def _settings(option: Option) -> str:
-    """An engine with its settings, as options."""
-    engine = option.candidate.engine
-    changed = {
-        item.name: getattr(engine, item.name)
-        for item in fields(engine)
-        if getattr(engine, item.name) != item.default
-    }
-    return " ".join([engine.name, *stated(changed)])
-
-
 def _shortfall(plan: Plan) -> str:
     """What would reach an accuracy that the budget does not, or that no engine does."""
-    costs = {
-        one.seconds * ((one.half_width - one.bias) / (plan.accuracy - one.bias)) ** 2: one
-        for one in plan.options
-        if one.bias < plan.accuracy
-    }
-    if not costs:
+    able = [one for one in plan.options if one.bias < plan.accuracy]
+    if not able:
         return f"no engine is known to be as accurate as {plan.accuracy:g}"
-    least = min(costs)
-    engine = costs[least].candidate.engine.title
-    return f"the budget does not suffice for {plan.accuracy:g}, which takes {least:.3g} s, {engine} engine"
-
-
-def _name(setting: Setting) -> str:
-    engine = setting.engine
-    if isinstance(engine, DSMC):
-        return f"dsmc, model {engine.model}, time_step {engine.time_step:.4g}"
-    if not isinstance(engine, TimeStepped):
-        return f"{engine.name}, float64"
-    return f"step, time_step {engine.time_step:.4g}, {engine.precision}, {engine.passes} passes"
-
-
-def _boxes(setting: Setting) -> str:
-    """How an engine finds pairs."""
-    if setting.engine.name == "event":
-        return "automatic, about one per particle"
-    if isinstance(setting.engine, DSMC):
-        return "cells, whose particles collide by chance: positions of pairs are given up"
-    return "none: a neighbour list"
-
-
-def _steps(scene: Scene, engine: Engine, observable: str) -> list[str]:
-    """What steps do that are longer than those of the DSMC engine, of which the run warns."""
-    if not isinstance(engine, DSMC):
-        return []
-    own = replace(engine, time_step=None).resolved(scene).time_step
-    if not own or not engine.time_step or engine.time_step < 1.5 * own:
-        return []
-    effect = "which the bias includes" if observable == "D" else f"on which {observable} does not depend"
-    return [f"time step         {engine.time_step / own:.2g} times the engine's own, {effect}"]
-
-
-def _bulk(advice: Advice) -> str:
-    """The effect of the finite size."""
-    if not math.isfinite(advice.finite_size):
-        return ""
-    text = f"; {advice.observable} differs by {100.0 * advice.finite_size:+.2g} % from an infinite gas"
-    if advice.bulk_count > advice.gas.count:
-        text += f": correct for it, or take {advice.bulk_count:.2g}"
-    return text
+    least = min(able, key=lambda one: one.cost(plan.accuracy))
+    cost, engine = f"{least.cost(plan.accuracy):.3g} s", least.engine.title
+    return f"the budget does not suffice for {plan.accuracy:g}, which takes {cost}, {engine} engine"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Parser, add_output, of_configs, print_line, set_command
+from gaspart.cli.arguments import Parser, add_output, config_command, print_line, set_command
 from gaspart.cli.progress import waiting
 
 _EXAMPLES = """examples:
@@ -31,7 +31,7 @@ def add_archive(parser: Parser) -> None:
 
 
 def _archive(given: argparse.Namespace) -> None:
-    write = of_configs("archive")
+    write = config_command("archive")
     with waiting("reading the results"):
         line = write(given.results, given.output, given.config, given.trajectories, given.force)
     print_line(line)

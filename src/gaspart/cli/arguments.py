@@ -99,7 +99,7 @@ def add_trajectory(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("trajectory", metavar="FILE", help="trajectory of gaspart (.nc)")
 
 
-def of_configs(command: str) -> Callable:
+def config_command(command: str) -> Callable:
     """What a command does with a config of the workflow, or its results: an entry point, since the library
     does not import the reproduction. That of another package is not taken."""
     ours = [one for one in entry_points_of("gaspart.configs") if one.value.startswith("gaspart.")]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Parser, of_configs, print_lines, set_command
+from gaspart.cli.arguments import Parser, config_command, print_lines, set_command
 
 _EXAMPLES = """examples:
   gaspart budget config/config.yaml
@@ -25,4 +25,4 @@ def add_budget(parser: Parser) -> None:
 
 
 def _budget(given: argparse.Namespace) -> None:
-    print_lines(of_configs("budget")(given.config, given.output))
+    print_lines(config_command("budget")(given.config, given.output))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from gaspart.cli.arguments import CheckFailed, Parser, of_configs, print_line, real, set_command, several
+from gaspart.cli.arguments import CheckFailed, Parser, config_command, print_line, real, set_command, several
 from gaspart.errors import SceneError
 from gaspart.yaml_text import read_yaml
 
@@ -74,5 +74,5 @@ def _written(file: str, tolerance: float | None) -> list:
 
     content, path = read_yaml(file), Path(file)
     if isinstance(content, dict) and ("experiments" in content or "figures" in content):
-        return of_configs("check")(path)
+        return config_command("check")(path)
     return judge_scene(path, tolerance)

@@ -21,7 +21,7 @@ from gaspart.runs import Accuracy
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from gaspart.accuracy.reached import Reached
+    from gaspart.accuracy.reached import AccuracyStatus
     from gaspart.trajectory.correlator import Correlations
     from gaspart.trajectory.recipe import Recipe
 
@@ -199,9 +199,9 @@ class _Status:
     """The last examination of a run with --until, for the line of progress."""
 
     def __init__(self) -> None:
-        self._reached: list[Reached] = []
+        self._reached: list[AccuracyStatus] = []
 
-    def update(self, reached: list[Reached]) -> None:
+    def update(self, reached: list[AccuracyStatus]) -> None:
         """Take the result of an examination."""
         self._reached = reached
 

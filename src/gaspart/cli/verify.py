@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import CheckFailed, Parser, integer, of_configs, print_line, set_command
+from gaspart.cli.arguments import CheckFailed, Parser, config_command, integer, print_line, set_command
 from gaspart.cli.progress import waiting
 
 _EXAMPLES = """examples:
@@ -31,7 +31,7 @@ def add_verify(parser: Parser) -> None:
 
 
 def _verify(given: argparse.Namespace) -> None:
-    checks = iter(of_configs("verify")(given.archive, given.rerun))
+    checks = iter(config_command("verify")(given.archive, given.rerun))
     failed = False
     while True:
         with waiting("reading the archive, or simulating a point; the first time, compiling kernels"):

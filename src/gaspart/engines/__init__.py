@@ -8,6 +8,8 @@ from gaspart.engines.engine import (
     Engine,
     engine_from_dict,
     engine_to_dict,
+    offered,
+    reference_engine,
     register,
 )
 from gaspart.engines.event.settings import EventDriven
@@ -24,5 +26,7 @@ __all__ = [
     "TimeStepped",
     "engine_from_dict",
     "engine_to_dict",
+    "offered",
+    "reference_engine",
     "register",
 ]

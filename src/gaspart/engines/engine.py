@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import MISSING, asdict, dataclass, fields
-from typing import TYPE_CHECKING, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
+from gaspart.engines.asked import Asked, Candidate
 from gaspart.errors import SceneError
 from gaspart.keys import from_mapping, validate
 from gaspart.keys.values import one_of
@@ -35,7 +36,10 @@ class Engine:
     such an engine fills; neutral_settings: settings that change no bit of its results; forbids_overlap:
     whether particles never overlap; tallies: names of the `state.optional_tallies` that it can make; models:
     names of the `scene.features` that it models, and excludes: pairs of them that it does not model together;
-    first_segment: the work, in events or steps, that a run begins with between two looks at the clock.
+    first_segment: the work, in events or steps, that a run begins with between two looks at the clock;
+    reference: whether it has no systematic error, so that others are compared with it; timed_at: packing
+    fraction and time step, as in the table of costs, by which its times are carried over to another machine;
+    advised: settings that `engine: auto` of a config states.
     """
 
     name: ClassVar[str]
@@ -48,6 +52,9 @@ class Engine:
     forbids_overlap: ClassVar[bool] = True
     tallies: ClassVar[frozenset[str]] = frozenset()
     first_segment: ClassVar[int] = 1
+    reference: ClassVar[bool] = False
+    timed_at: ClassVar[tuple[float, float]] = (0.1, 0.0)
+    advised: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         validate(self)
@@ -76,6 +83,52 @@ class Engine:
         """Bound on the relative error, where it is known, that its settings make in a quantity by what this
         depends on: "rates" of collisions, "paths" of particles, or "fluxes" of momentum and heat."""
         return 0.0
+
+    @classmethod
+    def offered(cls) -> tuple[Engine, ...]:
+        """Those among which advice chooses: one for each of its models."""
+        return (cls(),)
+
+    def candidate(self, asked: Asked) -> Candidate:
+        """With the settings that fit what is asked, and bounds on their errors. Raises SceneError where it is
+        no candidate."""
+        return Candidate(self)
+
+    @property
+    def timed_as(self) -> str:
+        """Its name in the table of costs (`gaspart.accuracy.table`)."""
+        return self.name
+
+    @property
+    def precision(self) -> str:
+        """The floating-point type of its state."""
+        return "float64"
+
+    def timed_step(self, scene: Scene) -> float:
+        """Its time step in the unit that the table of costs has for it, 0 without steps."""
+        return 0.0
+
+    def at_step(self, scene: Scene, step: float, precision: str) -> Engine:
+        """With the settings of a row of the table: a time step in that unit, and a precision."""
+        return self
+
+    def advised_settings(self) -> dict[str, Any]:
+        """Those of `advised`, by name."""
+        return {name: getattr(self, name) for name in self.advised}
+
+    @property
+    def limitations(self) -> str:
+        """What it does not have, in words."""
+        return "nothing"
+
+    def describe(self) -> str:
+        """Its name with the settings that matter, in words."""
+        return self.name
+
+    def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
+        """What advice says of it besides, by title; paths: whether an observable depends on those of
+        particles."""
+        return {}
 
     def cells_along(self, scene: Scene) -> int:
         """The number of cells along an axis, the most, in which partners are drawn; 0 if none are drawn."""
@@ -137,6 +190,18 @@ def register(engine: E) -> E:
     """Make an engine known by its name."""
     ENGINES[engine.name] = engine
     return engine
+
+
+def reference_engine() -> Engine:
+    """The engine without a systematic error, with its default settings."""
+    return next(engine for engine in ENGINES.values() if engine.reference)()
+
+
+def offered() -> list[Engine]:
+    """The engines among which advice chooses, the reference first."""
+    return sorted(
+        (one for engine in ENGINES.values() for one in engine.offered()), key=lambda one: not one.reference
+    )
 
 
 def required(engine: type[Engine]) -> list[str]:

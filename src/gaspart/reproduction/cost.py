@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from gaspart import theory
 from gaspart.accuracy import speed, table
-from gaspart.engines import TimeStepped
 from gaspart.reproduction.config import checked
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import Gas
@@ -49,19 +48,15 @@ def _seconds(point: Point) -> float | None:
     fluid = replace(gas, packing_fraction=min(gas.packing_fraction, densest))
     rate = float(theory.collision_rate(**fluid.parameters))
     contacts = 0.5 * gas.count * rate * point.schedule.duration * point.replicas
-    if not isinstance(engine, TimeStepped):
-        each = table.seconds(gas.dimension, gas.packing_fraction, "event")
-        return contacts * each * _speed(gas, "event", "float64")
-    step = engine.time_step * gas.thermal_speed / gas.diameter
-    known = [made for precision, made in table.steps(gas.dimension) if precision == "float64"]
-    nearest = min(known, key=lambda one: abs(math.log(one / step)))
-    each = table.seconds(gas.dimension, gas.packing_fraction, "step", "float64", nearest)
-    # Shorter steps than any in the table cost in proportion to their number.
-    return (
-        contacts * each * max(1.0, nearest / step) * _speed(gas, "step", "float64")
-        if math.isfinite(each)
-        else None
-    )
+    step, fine = engine.timed_step(point.scene), 1.0
+    known = [
+        made for precision, made in table.steps(gas.dimension, engine.timed_as) if precision == "float64"
+    ]
+    nearest = step if not step else min(known, key=lambda one: abs(math.log(one / step)), default=step)
+    if step and nearest > step:  # shorter steps than any in the table cost in proportion to their number
+        fine = nearest / step
+    each = fine * table.seconds(gas.dimension, gas.packing_fraction, engine.timed_as, "float64", nearest)
+    return contacts * each * _speed(gas, engine.timed_as, "float64") if math.isfinite(each) else None
 
 
 def _speed(gas: Gas, engine: str, precision: str) -> float:

@@ -39,13 +39,12 @@ def varied(dataset, *kept, seed=1):
 
 @dataclass
 class Points:
-    """One series of points. label: a part of its label, or None if it has none; x, y: (n,).
+    """One series of points. x, y: (n,).
 
     error, x_error: (n,) or (2, n) lengths of the bars, or None without bars. some: of these points only
     some are drawn.
     """
 
-    label: str | None
     x: object
     y: object
     error: object = None
@@ -53,14 +52,13 @@ class Points:
     some: bool = False
 
 
-def column(dataset, label, x, y, scale=1.0, some=False):
-    """The points of columns x, y and y_error, the last two multiplied by `scale`."""
-    return Points(label, dataset[x], scale * dataset[y], scale * dataset[f"{y}_error"], some=some)
+def column(dataset, x, y, some=False):
+    """The points of columns x, y and y_error."""
+    return Points(dataset[x], dataset[y], dataset[f"{y}_error"], some=some)
 
 
-def shows(axis, x_label, y_label, *expected):
-    """Assert that a panel's labels contain these texts, and that its points are these series, in order."""
-    assert x_label in axis.get_xlabel() and y_label in axis.get_ylabel()
+def shows(axis, *expected):
+    """Assert that a panel's points are these series, in order."""
     drawn = [one for one in axis.containers if isinstance(one, ErrorbarContainer)]
     assert len(drawn) == len(expected)
     for container, points in zip(drawn, expected, strict=True):
@@ -68,8 +66,6 @@ def shows(axis, x_label, y_label, *expected):
 
 
 def _same(container, points):
-    label = container.get_label()
-    assert label.startswith("_") if points.label is None else points.label in label
     x, y = (np.asarray(values, dtype=float) for values in container.lines[0].get_data())
     wanted = [np.ravel(np.asarray(values, dtype=float)) for values in (points.x, points.y)]
     errors = [_bars(values, wanted[0].size) for values in (points.x_error, points.error)]
@@ -114,19 +110,7 @@ def lines(axis):
     return [one for one in axis.lines if one not in parts and one.get_transform() is axis.transData]
 
 
-def line(axis, label):
-    """The one line whose label contains this text."""
-    (found,) = (one for one in axis.lines if label in str(one.get_label()))
-    return found
-
-
 def follows(drawn, x, y):
     """Assert that a line goes through these points (n,)."""
     _close(np.asarray(drawn.get_xdata(), dtype=float), np.asarray(x, dtype=float))
     _close(np.asarray(drawn.get_ydata(), dtype=float), np.asarray(y, dtype=float))
-
-
-def obeys(drawn, formula):
-    """Assert that a line is the graph of a function of (n,) places."""
-    x = np.asarray(drawn.get_xdata(), dtype=float)
-    _close(np.asarray(drawn.get_ydata(), dtype=float), formula(x))

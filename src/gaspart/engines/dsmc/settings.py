@@ -11,6 +11,7 @@ from gaspart.engines.engine import Engine, register
 from gaspart.keys import choice, count, declared, per_side, positive
 
 if TYPE_CHECKING:
+    from gaspart.engines.asked import Asked, Candidate
     from gaspart.engines.dsmc.dynamics import DsmcDynamics
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
@@ -69,6 +70,8 @@ class DSMC(Engine):
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
     ) | {"centres_to_walls", "thermal", "sliding"}
     counters: ClassVar[tuple[str, ...]] = ("steps",)
+    timed_at: ClassVar[tuple[float, float]] = (0.01, 1.0)
+    advised: ClassVar[tuple[str, ...]] = ("model",)
 
     @property
     def equation(self) -> str:
@@ -141,6 +144,53 @@ class DSMC(Engine):
         if kind == "fluxes":
             return lost + defaults.predicted_error(cells, step, scene, found)
         return lost + (defaults.diffusion_error(step, scene, found) if kind == "paths" else 0.0)
+
+    @classmethod
+    def offered(cls) -> tuple[DSMC, ...]:
+        """One for each model."""
+        return tuple(cls(model=model) for model in MODELS)
+
+    def candidate(self, asked: Asked) -> Candidate:
+        """With its own cells and step."""
+        from gaspart.engines.dsmc.accuracy import candidate
+
+        return candidate(self, asked)
+
+    @property
+    def timed_as(self) -> str:
+        """With the model, if it is that of a dense gas."""
+        return self.name if self.model == MODELS[0] else f"{self.name} {self.model}"
+
+    def timed_step(self, scene: Scene) -> float:
+        """In its own step."""
+        return (self.resolved(scene).time_step or 0.0) / self._own_step(scene)
+
+    def at_step(self, scene: Scene, step: float, precision: str) -> DSMC:
+        """In its own step."""
+        return self.resolved(scene).with_step(step * self._own_step(scene))
+
+    def _own_step(self, scene: Scene) -> float:
+        return replace(self, time_step=None).resolved(scene).time_step or math.inf
+
+    @property
+    def limitations(self) -> str:
+        """What its model lacks, and what no model has that draws partners."""
+        lacks = {"boltzmann": "excluded volume", "enskog": "correlated collisions"}
+        return f"{lacks[self.model]}, positions of pairs"
+
+    def describe(self) -> str:
+        """With its model, and its step once it is known."""
+        step = "" if self.time_step is None else f", time_step {self.time_step:.4g}"
+        return f"{self.name}, model {self.model}{step}"
+
+    def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
+        """How it finds pairs, and what steps do that are longer than its own, of which the run warns."""
+        found = {"boxes": "cells, whose particles collide by chance: positions of pairs are given up"}
+        longer = 1.0 if self.time_step is None else self.time_step / self._own_step(scene)
+        if longer >= 1.5:
+            effect = "which the bias includes" if paths else f"on which {observable} does not depend"
+            found["time step"] = f"{longer:.2g} times the engine's own, {effect}"
+        return found
 
     def variant(self, scene: Scene) -> str:
         """The model, and whether threads share the work."""

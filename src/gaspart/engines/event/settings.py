@@ -52,6 +52,7 @@ class EventDriven(Engine):
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     neutral_settings: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
     first_segment: ClassVar[int] = 256  # events with crossings and predictions
+    reference: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -62,6 +63,14 @@ class EventDriven(Engine):
         from gaspart.engines.event.search import chosen_search
 
         return chosen_search(scene, self.search, self.boxes_per_side is not None)
+
+    def describe(self) -> str:
+        """With its precision."""
+        return f"{self.name}, {self.precision}"
+
+    def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
+        """How it finds pairs."""
+        return {"boxes": "automatic, about one per particle"}
 
     def variant(self, scene: Scene) -> str:
         """The search; of "direct" that of boxes, of which it has one."""

@@ -10,8 +10,10 @@ from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
 from gaspart.keys import choice, count, declared, flag, per_side, positive
 from gaspart.scene.faces import FACE_KINDS
+from gaspart.scene.gas import plain_gas
 
 if TYPE_CHECKING:
+    from gaspart.engines.asked import Asked, Candidate
     from gaspart.engines.step.dynamics import StepDynamics
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
@@ -79,6 +81,9 @@ class TimeStepped(Engine):
         "rebuilds",
     )
 
+    timed_at: ClassVar[tuple[float, float]] = (0.1, 0.08)
+    advised: ClassVar[tuple[str, ...]] = ("time_step", "precision")
+
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.skin is not None and self.boxes_per_side is not None:
@@ -94,6 +99,38 @@ class TimeStepped(Engine):
     def with_step(self, step: float) -> TimeStepped:
         """With steps of this length."""
         return replace(self, time_step=step)
+
+    @classmethod
+    def offered(cls) -> tuple[TimeStepped, ...]:
+        """One, whose step is still to be chosen."""
+        return (cls(1.0),)
+
+    def candidate(self, asked: Asked) -> Candidate:
+        """With the longest step that is accurate enough."""
+        from gaspart.engines.step.accuracy import candidate
+
+        return candidate(self, asked)
+
+    def timed_step(self, scene: Scene) -> float:
+        """In diameters over the thermal speed of a plain gas. Raises SceneError for other scenes."""
+        return self.time_step / _unit(scene)
+
+    def at_step(self, scene: Scene, step: float, precision: str) -> TimeStepped:
+        """In that unit."""
+        return replace(self, time_step=step * _unit(scene), precision=precision)
+
+    @property
+    def limitations(self) -> str:
+        """Pairs that touch and part within a step are missed."""
+        return "exact contacts"
+
+    def describe(self) -> str:
+        """With its step and its passes."""
+        return f"{self.name}, time_step {self.time_step:.4g}, {self.precision}, {self.passes} passes"
+
+    def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
+        """How it finds pairs."""
+        return {"boxes": "none: a neighbour list"}
 
     def variant(self, scene: Scene) -> str:
         """The search, the precision, and whether threads share the work."""
@@ -115,3 +152,9 @@ class TimeStepped(Engine):
         from gaspart.engines.step.dynamics import StepDynamics
 
         return StepDynamics(self, scene, state, seed)
+
+
+def _unit(scene: Scene) -> float:
+    """The time that a diameter takes at the thermal speed of a plain gas."""
+    gas = plain_gas(scene)
+    return gas.diameter / gas.thermal_speed

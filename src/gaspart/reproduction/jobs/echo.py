@@ -73,7 +73,7 @@ def echo(
     shape = (len(seeds), samples)
     columns = {name: np.empty(shape) for name in ("collisions", "echo", "divergence")}
     exponents = np.full(len(seeds), np.nan)
-    slack = SLACK * getattr(engine, "time_step", 0.0)
+    slack = SLACK * (engine.quantum or 0.0)
     for n, seed in enumerate(seeds):
         equilibrium = Simulation(scene, EventDriven(), seed=seed)
         equilibrium.advance(duration=equilibration)
@@ -92,7 +92,7 @@ def echo(
             columns["collisions"][n, k] = 2.0 * there.tally.collisions / state.count
             columns["echo"][n, k] = _distance(start, back.state)
             columns["divergence"][n, k] = _distance(pair[0].state, pair[1].state)
-        if isinstance(engine, EventDriven):
+        if engine.reference:
             exponents[n] = _exponent(equilibrium, samples * interval)
     return PointData(
         {
@@ -105,8 +105,8 @@ def echo(
             "side": max(scene.container.lengths) / (2.0 * scene.largest_radius),
             "packing_fraction": scene.packing_fraction,
             "engine": engine.name,
-            "precision": getattr(engine, "precision", "float64"),
-            "time_step": getattr(engine, "time_step", 0.0),
+            "precision": engine.precision,
+            "time_step": engine.quantum or 0.0,
         },
     )
 

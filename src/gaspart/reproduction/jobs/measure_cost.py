@@ -12,15 +12,14 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Collection, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
-from gaspart.engines import EventDriven, TimeStepped
+from gaspart.engines import engine_to_dict, reference_engine
 from gaspart.errors import SimulationError
 from gaspart.keys import COUNT, POSITIVE, TEXT, Kind, count, described, flag, listed
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY, SCAN_TIME_STEPS, SLACK, intervals
-from gaspart.state.optional_tallies import StressTally
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -70,6 +69,8 @@ def arguments(point: Point) -> dict:
     if "record_events" in extras and not point.engine.records_events:
         raise point.refused("record_events", "has a meaning with job: measure_cost and engine: event only")
     if "stress" in extras:
+        from gaspart.state.optional_tallies import StressTally  # which loads numpy
+
         point.engine.check_tally(StressTally(), point.scene)
     return {
         "scene": point.scene,
@@ -149,6 +150,7 @@ def measure_cost(
 
 def _attributes(scene: Scene, engine: Engine) -> dict:
     """The attributes of a dataset: the gas, and the first engine."""
+    settings = engine_to_dict(engine)
     return {
         "count": scene.count,
         "dimension": scene.dimension,
@@ -156,8 +158,7 @@ def _attributes(scene: Scene, engine: Engine) -> dict:
         "side": scene.container.lengths[0],
         "packing_fraction": scene.packing_fraction,
         "engine": engine.name,
-        "search": getattr(engine, "search", ""),
-        "model": getattr(engine, "model", ""),
+        **{key: settings.get(key, "") for key in ("search", "model")},
         "time_step": engine.resolved(scene).quantum or 0.0,
     }
 
@@ -169,9 +170,8 @@ def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: f
 
     if equilibration <= 0.0:
         return initial_state(scene, seed)
-    quick: Engine = EventDriven()
-    if isinstance(engine, TimeStepped):
-        quick = replace(engine, boxes_per_side=None, near_boxes=False)
+    usual = {item.name: item.default for item in fields(engine) if item.name in engine.neutral_settings}
+    quick = replace(engine, **usual) if engine.equation == "exact" else reference_engine()
     simulation = Simulation(scene, quick, seed=seed)
     simulation.advance(duration=equilibration)
     return simulation.state
@@ -184,6 +184,7 @@ def _timed(
     import numpy as np
 
     from gaspart.engines.event_log import EventLog
+    from gaspart.state.optional_tallies import StressTally
 
     dynamics = engine.start(scene, state, tallies=[StressTally()] if "stress" in extras else [])
     log = EventLog(scene.dimension, scene.rough) if "record_events" in extras else None
@@ -202,7 +203,8 @@ def _timed(
 
 def _sides(engine: Engine, dimension: int) -> tuple[int, ...]:
     """Boxes along each axis; zeros if the engine chooses them itself."""
-    if getattr(engine, "search", "boxes") not in ("automatic", "boxes"):
+    settings = engine_to_dict(engine)
+    if settings.get("search", "boxes") not in ("automatic", "boxes"):
         return (1,) * dimension
-    given = getattr(engine, "boxes_per_side", None) or 0
+    given = settings.get("boxes_per_side") or 0
     return given if isinstance(given, tuple) else (given,) * dimension

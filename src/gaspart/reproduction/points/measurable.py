@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from gaspart.analysis.observables import require_run
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
@@ -15,19 +16,10 @@ _ENOUGH = 64  # particles of a kind: observables do not distinguish more
 
 def require_observable(name: str, point: Point) -> None:
     """Raise SceneError for an observable that no trajectory of a point has, however long it is."""
-    from gaspart.analysis.needs import require_of
-    from gaspart.trajectory.correlator import Correlations
-
     arguments, scene = point.arguments, point.scene
     stated = arguments.get("correlations")
-    require_of(
-        name,
-        scene,
-        correlations=Correlations(**stated) if stated else None,
-        displacements=arguments["displacements"],
-        pairs=arguments.get("pairs", False),
-        follow=arguments.get("follow"),
-    )
+    kept = {"fluxes": stated and stated.get("stress"), "pairs": arguments.get("pairs")}
+    require_run(name, scene, [key for key, value in kept.items() if value], arguments.get("follow"))
     if stated and "frames" not in point.settings and scene.shear_rate is None:
         rule = "is not known of the first and the last frame alone, which the file has: keep more (frames)"
         raise SceneError("frames", None, rule)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from reproduction.families.drawn import Points, draw, line, lines, shows
+from reproduction.families.drawn import Points, draw, lines, shows
 
 import gaspart as gp
 from gaspart.analysis import measuring
@@ -134,10 +134,7 @@ def test_an_exponent_and_a_theory_of_unknown_uncertainty():
 def test_numbers_are_drawn_with_theory(simulated):
     dataset = measured(simulated)
     (axis,) = draw(figure.observable, dataset).axes
-    shows(
-        axis, "packing fraction", "compressibility",
-        Points("measured", dataset["against"], dataset["value"], dataset["value_error"]),
-    )  # fmt: skip
+    shows(axis, Points(dataset["against"], dataset["value"], dataset["value_error"]))
     assert np.allclose(lines(axis)[0].get_ydata(), dataset["theory"])
     (plain,) = draw(figure.observable, measured(simulated, theory=False, logarithmic="both")).axes
     assert not lines(plain)
@@ -148,7 +145,7 @@ def test_a_curve_is_drawn_for_each_point_and_may_be_taken_at_one_place(simulated
     dataset = measured(simulated, observable="rdf")
     assert dataset["value"].dims == ("point", "along")
     (axis,) = draw(figure.observable, dataset).axes
-    drawn = line(axis, "packing fraction 0.1")
+    drawn = lines(axis)[2]  # after the first curve and its theory
     assert np.array_equal(drawn.get_ydata(), dataset["value"][1], equal_nan=True)
     contact = measured(simulated, observable="rdf", place=1.0)
     nearest = np.nanargmin(np.abs(dataset["along_places"].values - 1.0), axis=1)
@@ -214,11 +211,7 @@ def test_a_caption_without_a_finding_gets_a_title():
             "claims.0.between",
             "there is none of the points, which are from 0.05 to 0.1",
         ),
-        (
-            {"claims": [{**POWER, "between": [0.1, 0.05]}]},
-            "claims.0.between",
-            "there is none",
-        ),
+        ({"claims": [{**POWER, "between": [0.1, 0.05]}]}, "claims.0.between", "there is none"),
         ({"claims": [POWER]}, "claims.0", "needs 3 points or more; there are 2"),
         ({"observable": "shear_viscosity"}, "observable", "needs correlations of the stress"),
         ({"observable": "pressure", "claims": []}, "observable", "has no walls"),

@@ -9,13 +9,15 @@ from gaspart.reproduction.families.pictures import figure as pictures
 @pytest.fixture
 def dataset():
     rng = np.random.default_rng(1)
-    return xr.Dataset({
-        "position": (("particle", "axis"), rng.uniform(1, 9, (20, 3))),
-        "radius": ("particle", rng.uniform(0.4, 0.6, 20)),
-        "species": ("particle", np.arange(20) // 19),
-        "speed": ("particle", rng.uniform(0, 2, 20)),
-        "length": ("axis", np.array([10.0, 11.0, 12.0])),
-    })  # fmt: skip
+    return xr.Dataset(
+        {
+            "position": (("particle", "axis"), rng.uniform(1, 9, (20, 3))),
+            "radius": ("particle", rng.uniform(0.4, 0.6, 20)),
+            "species": ("particle", np.arange(20) // 19),
+            "speed": ("particle", rng.uniform(0, 2, 20)),
+            "length": ("axis", np.array([10.0, 11.0, 12.0])),
+        }
+    )
 
 
 @pytest.mark.parametrize("function", [pictures.gas_render, pictures.brownian_render])
@@ -45,8 +47,6 @@ def test_the_particles_of_the_data_set_are_drawn(monkeypatch, dataset, function,
     columns = {"positions": "position", "radii": "radius", "species": "species", "speeds": "speed"}
     for name, column in {**columns, "lengths": "length"}.items():
         assert np.array_equal(getattr(particles, name), dataset[column])
-    scales = figure.axes[1:]
-    assert len(scales) == (colour == "speed")
-    for scale in scales:
-        fastest = pictures.FASTEST * float(np.sqrt((dataset["speed"] ** 2).mean()))
-        assert "speed" in scale.get_xlabel() and scale.get_xlim() == pytest.approx((0.0, fastest))
+    fastest = pictures.FASTEST * float(np.sqrt((dataset["speed"] ** 2).mean()))
+    scales = [scale.get_xlim() for scale in figure.axes[1:]]
+    assert scales == ([pytest.approx((0.0, fastest))] if colour == "speed" else [])

@@ -1,5 +1,5 @@
 import numpy as np
-from reproduction.families.drawn import Points, draw, lines, obeys, shows
+from reproduction.families.drawn import Points, draw, shows
 from reproduction.families.piston.data import REPLICAS, gases
 
 from gaspart import theory
@@ -15,22 +15,18 @@ def test_paths_states_and_an_expansion():
     ds = gases(exponent=1.1, back=0.9, factor=1.02, fluctuation=0.9, speed=1.01)
     upper, middle, lower = draw(figure.piston, ds).axes
     paths, factors, variances = [], [], []
-    for n, name in enumerate(("discs", "spheres")):
+    for n in range(2):
         own = ds.isel(path=n)
         measured = of_replicas(own["path_temperature"].values.T)
-        paths.append(Points(name, own["path_volume"].mean("path_replica"), *measured))
+        paths.append(Points(own["path_volume"].mean("path_replica"), *measured))
         states = ds.isel(state=slice(2 * n, 2 * n + 2))
         eta = states["state_density"].values
         factor = states["state_factor"].values / theory.compressibility_factor(eta, n + 2)
         variance = states["state_fluctuation"].values * theory.speed_of_sound(eta, n + 2) ** 2
-        factors.append(Points(name, eta[:, 0], *of_replicas(factor)))
-        variances.append(Points(name, eta[:, 0], *of_replicas(variance)))
+        factors.append(Points(eta[:, 0], *of_replicas(factor)))
+        variances.append(Points(eta[:, 0], *of_replicas(variance)))
     speed = ds["expansion_speed"].values[0] ** 2
-    paths.append(Points("free expansion", [2.0], *([one] for one in of_replicas(speed))))
-    shows(upper, "volume", "temperature", *paths)
-    shows(middle, "", "reference", *factors)
-    shows(lower, "packing fraction", "variance", *variances)
-    for line, dimension in zip(lines(middle)[-2:], (2, 3), strict=True):
-        obeys(line, lambda eta, d=dimension: theory.constant_enthalpy_factor(eta, d, 500))
-    for line, dimension in zip(lines(upper), (2, 3), strict=True):
-        obeys(line, lambda v, d=dimension: theory.adiabatic_temperature(0.005 / v, 0.005, d))
+    paths.append(Points([2.0], *([one] for one in of_replicas(speed))))
+    shows(upper, *paths)
+    shows(middle, *factors)
+    shows(lower, *variances)

@@ -1,4 +1,4 @@
-"""The data sets of the scaling figures, for the tests of their claims: each is measured once."""
+"""The data sets of the scaling figures: each is measured once."""
 
 import pytest
 from reproduction.families.scaling.data import points, settings

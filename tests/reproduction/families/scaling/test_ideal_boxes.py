@@ -3,13 +3,11 @@
 import math
 
 import pytest
-from reproduction.families.scaling.data import BOX, PARTICLE, TEST, points, settings
-
-from gaspart.reproduction.families.scaling.ideal_boxes import ideal_boxes
+from reproduction.families.scaling.data import BOX, PARTICLE, TEST
 
 
-def test_ideal_boxes(tmp_path):
-    ds = ideal_boxes(points("ideal_boxes", tmp_path), settings("ideal_boxes"))
+def test_ideal_boxes(dataset):
+    ds = dataset("ideal_boxes")
     ideal = math.sqrt(13.5 * TEST / BOX)
     found = ds.ideal_interior.values.astype(bool)
     assert ds.ideal.values[found] == pytest.approx(ideal, rel=0.3)
@@ -19,9 +17,9 @@ def test_ideal_boxes(tmp_path):
     assert ds.source_number.values.tolist() == [10, 7, 10]
 
 
-def test_plateaus(tmp_path):
+def test_plateaus(dataset):
     """Where the ideal number follows N, the gas farthest from it pays most."""
-    ds = ideal_boxes(points("ideal_boxes", tmp_path), settings("ideal_boxes"))
+    ds = dataset("ideal_boxes")
     plateau = ds.isel(plateau=0)
     assert plateau.plateau_boxes == 25**3 and plateau.plateau_count == 2000
     number = 25**3 / 2000

@@ -4,20 +4,18 @@ import math
 
 import numpy as np
 import pytest
-from reproduction.families.scaling.data import BOX, LIST, TEST, points, settings
-
-from gaspart.reproduction.families.scaling import measure as scaling
+from reproduction.families.scaling.data import BOX, LIST, TEST
 
 
-def test_naive_scaling(tmp_path):
-    ds = scaling.naive_scaling(points("naive_scaling", tmp_path), {})
+def test_naive_scaling(dataset):
+    ds = dataset("naive_scaling")
     assert float(ds.tests_excess) == 0.0
     assert float(ds.exponent) == pytest.approx(2.0, abs=0.02)
     assert float(ds.test_seconds) == pytest.approx(TEST, rel=0.03)
 
 
-def test_box_count(tmp_path):
-    ds = scaling.box_count(points("box_count", tmp_path), settings("box_count"))
+def test_box_count(dataset):
+    ds = dataset("box_count")
     ideal = math.sqrt(13.5 * TEST / BOX)
     assert float(ds.ideal) == pytest.approx(ideal, rel=0.3)
     assert float(ds.model) == pytest.approx(ideal, rel=0.1)
@@ -28,8 +26,8 @@ def test_box_count(tmp_path):
     assert float(ds.crossing_exponent) == pytest.approx(1.0, rel=1e-3)
 
 
-def test_linear_scaling(tmp_path):
-    ds = scaling.linear_scaling(points("linear_scaling", tmp_path), settings("linear_scaling"))
+def test_linear_scaling(dataset):
+    ds = dataset("linear_scaling")
     assert float(ds.work_exponent) == pytest.approx(1.0, abs=0.02)
     assert ds.exponent.values == pytest.approx(1.0, abs=0.06)
     assert ds.list_pair_tests.values == pytest.approx(1.0)
@@ -39,8 +37,8 @@ def test_linear_scaling(tmp_path):
     assert float(ds.extrapolated_seconds) == pytest.approx(TEST * count * (count - 1) / 2, rel=0.03)
 
 
-def test_event_scaling(tmp_path):
-    ds = scaling.event_scaling(points("event_scaling", tmp_path), settings("event_scaling"))
+def test_event_scaling(dataset):
+    ds = dataset("event_scaling")
     work = dict(zip(ds.method_search.values.tolist(), ds.work_exponent.values.tolist(), strict=True))
     assert work["pairs"] == pytest.approx(2.0, abs=0.01)
     assert work["direct"] == pytest.approx(1.0, abs=0.01)

@@ -1,11 +1,7 @@
 import numpy as np
 import pytest
 from reproduction.families.drawn import Points, draw, shows, varied
-from reproduction.families.tradeoff.data import (
-    SECONDS,
-    speed_accuracy_measurement,
-    time_to_accuracy_measurement,
-)
+from reproduction.families.tradeoff.data import speed_accuracy_measurement, time_to_accuracy_measurement
 
 from gaspart.reproduction.families.tradeoff import figure as tradeoff
 from gaspart.reproduction.families.tradeoff import panels
@@ -18,10 +14,7 @@ def errors(row, observable):
     seen = size > 2.0 * error
     unseen = ~seen & np.isfinite(size)
     time_step = row["time_step"].values
-    return [
-        Points(None, time_step[seen], size[seen], error[seen]),
-        Points(None, time_step[unseen], 2.0 * error[unseen]),
-    ]
+    return [Points(time_step[seen], size[seen], error[seen]), Points(time_step[unseen], 2.0 * error[unseen])]
 
 
 def test_errors_are_drawn_against_the_step_and_costs_against_errors(tmp_path):
@@ -31,39 +24,22 @@ def test_errors_are_drawn_against_the_step_and_costs_against_errors(tmp_path):
     *steps, cost = draw(tradeoff.speed_accuracy, ds).axes
     rows = {row["setting"].item(): row for row in (ds.isel(row=n) for n in range(ds.sizes["row"]))}
     assert set(rows) == set(tradeoff.SHOWN)
-    for axis, (observable, label) in zip(
-        steps, {"collision_rate": "collision rate", "Z": "$Z$", "D": "$D$"}.items(), strict=True
-    ):
-        series = [one for name in tradeoff.SHOWN for one in errors(rows[name], observable)]
-        shows(axis, "time step", label, *series)
+    for axis, observable in zip(steps, ("collision_rate", "Z", "D"), strict=True):
+        shows(axis, *(one for name in tradeoff.SHOWN for one in errors(rows[name], observable)))
     row = rows["4 passes"]
     at = row.sel(observable="Z")
     error = 100.0 * np.maximum(np.abs(at["bias"]), 2.0 * at["bias_error"]).values
     timed = np.isfinite(row["seconds"].values) & np.isfinite(error)
     seconds, bars = (1e6 * row[name].values[timed] for name in ("seconds", "seconds_error"))
-    models = [ds.isel(dsmc=n) for n in np.flatnonzero(ds["dsmc_dimension"] == 3)]
-    shows(
-        cost, "error of $Z$", "time per collision", Points(None, error[timed], seconds, bars),
-        *(
-            Points(None, [100.0 * of.dsmc_bias], [1e6 * of.dsmc_seconds], [1e6 * of.dsmc_seconds_error])
-            for of in models
-        ),
-    )  # fmt: skip
-    legends = [text.get_text() for axis in (steps[0], cost) for text in axis.get_legend().get_texts()]
-    assert "no error seen: bound" in legends and "DSMC, Boltzmann" in legends
-    assert [1e6 * SECONDS] * 2 in [list(one.get_ydata()) for one in cost.lines]
+    models = [Points(error[timed], seconds, bars)]
+    for one in (ds.isel(dsmc=[n]) for n in np.flatnonzero(ds["dsmc_dimension"] == 3)):
+        models.append(Points(100.0 * one.dsmc_bias, 1e6 * one.dsmc_seconds, 1e6 * one.dsmc_seconds_error))
+    shows(cost, *models)
 
 
 def test_the_map_has_the_cheapest_engine_of_each_field():
     ds = time_to_accuracy_measurement().sortby("accuracy", ascending=False)
-    figure = draw(tradeoff.time_to_accuracy, ds)
-    *fields, errors = figure.axes
-    titles = [axis.get_title(loc="left") for axis in fields]
-    assert titles == [
-        f"({letter}) {title}" for letter, title in zip("abcde", panels.TITLES.values(), strict=True)
-    ]
-    legend = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert legend == {"event-driven", "time-stepped", "DSMC, Boltzmann", "DSMC, Enskog"}
+    *fields, _ = draw(tradeoff.time_to_accuracy, ds).axes
     for axis, quantity in zip(fields, panels.TITLES, strict=True):
         at = ds.sel(quantity=quantity)
         colours = axis.collections[0].get_array()
@@ -74,9 +50,6 @@ def test_the_map_has_the_cheapest_engine_of_each_field():
                 best = costs.solver.values[int(np.argmin(costs.values))]
                 assert tuple(colours[a, f]) == pytest.approx(panels.tint(best))
                 assert next(texts).get_text() == panels.duration(float(costs.min()))
-    assert errors.get_xlabel() == "error / required accuracy"
-    parts = [text.get_text() for text in errors.get_legend().get_texts()]
-    assert parts == [*panels.PART_NAMES, "required"]
 
 
 def test_bars_are_the_parts_of_the_error():
@@ -85,9 +58,6 @@ def test_bars_are_the_parts_of_the_error():
     at = ds.error.sel(quantity="D", fraction=0.01, accuracy=0.01, solver="enskog").values / 0.01
     rows = [bar for bar in errors.patches if bar.get_y() == pytest.approx(-4.4)]
     assert [bar.get_width() for bar in rows] == pytest.approx(list(at))
-    assert [text.get_text() for text in errors.texts] == [
-        r"$D$ to 1 % at $\eta=0.01$", "3", r"$D$ to 1 % at $\eta=0.3$", "100", "25",
-    ]  # fmt: skip
 
 
 def test_a_gas_in_which_no_engine_is_accurate_enough_is_left_white():

@@ -86,7 +86,7 @@ class Setting:
     def of(cls, point: Point, settings: dict) -> Setting:
         """That of a point."""
         scene = point.scene
-        gap, diameter, dilute = Gap.of(scene), 2.0 * scene.smallest_radius, point.engine.name == "dsmc"
+        gap, diameter, dilute = Gap.of(scene), 2.0 * scene.smallest_radius, point.engine.equation != "exact"
         path = float(_path(scene.count / (gap.length * gap.area), diameter, dilute))
         place = gap.length * ((np.arange(settings["bins"]) + 0.5) / settings["bins"] - 0.5)
         clear = min(settings["clear"] * max(path, 0.0 if dilute else diameter), gap.length / 3.0)

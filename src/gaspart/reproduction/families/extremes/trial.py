@@ -109,7 +109,7 @@ def _advance(simulation: Simulation, until: float) -> bool:
 
 def _faults(row: Row, engine: Engine, found: dict, expected: int | None) -> dict:
     """The verdict, if any of the numbers shows that the run is incorrect."""
-    drift = ENERGY_DRIFT[getattr(engine, "precision", "float64")]
+    drift = ENERGY_DRIFT[engine.precision]
     allowed = 0.0
     if row.chaotic and engine.name == "step" and expected:
         allowed = 4.0 * math.sqrt(expected) + MISCOUNTED * expected

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from gaspart.accuracy.table import QUANTILE
+from gaspart.accuracy.noise import half_width, required
 
 ENGINES = ("event", "step", "boltzmann", "enskog")
 """The engines that are compared; the last two are the models of the DSMC engine."""
@@ -20,8 +20,8 @@ class Choice:
 
     model: relative error of the equation that it solves; discretisation: that of time steps and cells, both
     bounds without sign; finite_size: what theory's correction for the number of particles leaves, which every
-    engine has in common and no cost removes. Of processor time, in s: unit, times the relative variance that
-    it leaves, which is that of a relative variance of 1; least, of the shortest run that averages over time;
+    engine has in common and no cost removes. Of processor time, in s: unit, for a relative variance of 1, in
+    proportion to its inverse; least, of the shortest run that averages over time;
     equilibration, before anything is measured; decay, in which the slowest trace of the initial state falls
     to 1/e (0: it is itself what is measured). trace: how much that trace changes the
     observable at first, relatively, at most. uncertainty: relative, of all these times, from the timings.
@@ -46,8 +46,7 @@ class Choice:
     def measured(self, accuracy: float) -> float:
         """Processor time in s of the measurement alone, for an accuracy that 95 % of all runs have; infinite
         if the systematic error leaves no room for noise."""
-        room = (accuracy - self.bias) / QUANTILE
-        return max(self.unit / room**2, self.least) if room > 0.0 else math.inf
+        return required(self.unit, accuracy, self.bias, self.least)
 
     def cost(self, accuracy: float) -> float:
         """Processor time in s, with the equilibration."""
@@ -63,7 +62,7 @@ class Choice:
         left = 0.0
         if self.decay and math.isfinite(length):
             left = self.trace * math.exp(-self.equilibration / self.decay) * self.decay / length
-        noise = QUANTILE * math.sqrt(self.unit / length)
+        noise = half_width(0.0, math.sqrt(self.unit / length))
         return dict(zip(PARTS, (self.model, self.discretisation, noise, left, self.finite_size), strict=True))
 
 

@@ -14,10 +14,11 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from gaspart import theory
-from gaspart.accuracy.bounds import boltzmann_error, enskog_error
 from gaspart.accuracy.conditions import even_conditions
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
+from gaspart.engines.asked import Asked
+from gaspart.engines.dsmc.accuracy import boltzmann_error, enskog_error
 from gaspart.engines.dsmc.rates import rates
 from gaspart.reproduction.families.heat.gap import Gap, averages
 from gaspart.reproduction.families.shared.runs import runs
@@ -127,7 +128,7 @@ def fraction_of(point: Point) -> float:
 
 def engine_of(point: Point) -> str:
     """The engine of a point, as in `choices.ENGINES`."""
-    return str(getattr(point.engine, "model", point.engine.name))
+    return point.engine.name if point.engine.equation == "exact" else point.engine.equation
 
 
 def _step(point: Point) -> float:
@@ -158,7 +159,7 @@ def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
     step = _step(point) * found.speed / math.sqrt(8.0 / math.pi) * math.sqrt(2.0)
     grown = cell_factor(coefficient, width / found.path) * step_factor(coefficient, step / found.path)
     bound = boltzmann_error if name == "boltzmann" else enskog_error
-    model = bound(even_conditions(scene, 1.0), "D")
+    model = bound(Asked("D", 1.0, even_conditions(scene, 1.0), transported=True))
     return model, float(grown) - 1.0
 
 

@@ -15,7 +15,8 @@ import xarray as xr
 from gaspart import theory
 from gaspart.accuracy import table
 from gaspart.accuracy.models import model_error
-from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS, QUANTILE, REFERENCE, STEP
+from gaspart.accuracy.noise import required
+from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS, REFERENCE, STEP
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.shared.accuracy import costs, setting_name
@@ -87,7 +88,7 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     settings: ``counts`` of particles, ``accuracies``, and those of `maps`.
 
     Over (``gas``, ``observable``, ``count``, ``accuracy``, ``engine``): ``measured`` and ``model``, processor
-    time in s of the cheapest setting (see `gaspart.accuracy.advice`), NaN where there is none. Without
+    time in s of the cheapest setting (see `gaspart.accuracy.plan`), NaN where there is none. Without
     ``engine``: ``regret``, measured cost of the setting that the model picks over that of the measured best,
     with ``regret_error`` from the timings.
     """
@@ -161,10 +162,8 @@ def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float,
     noise = table.noise(dimension, fraction, name)
 
     def cost(bias: float, each: float) -> float:
-        room = (accuracy - bias) / QUANTILE
-        if room <= 0.0 or not np.isfinite(each):
-            return np.inf
-        return (max(noise / room**2, 0.5 * count * LEAST) + 0.5 * count * EQUILIBRATION) * each
+        contacts = required(noise, accuracy, bias, 0.5 * count * LEAST) + 0.5 * count * EQUILIBRATION
+        return contacts * each if np.isfinite(each) else np.inf
 
     known = table.seconds(dimension, fraction, "event") * speeds["event", "float64"]
     event = rows[0]["event_seconds"]

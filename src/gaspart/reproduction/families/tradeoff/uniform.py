@@ -16,11 +16,10 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.accuracy.models import cell_loss, model_error, step_error
+from gaspart.accuracy.models import model_error, step_error
 from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
-from gaspart.engines import DSMC
 from gaspart.reproduction.families.shared.accuracy import add_costs, errors
 from gaspart.reproduction.families.shared.pressure import series_of
 from gaspart.reproduction.families.shared.runs import runs
@@ -132,9 +131,7 @@ def cells_of(point: Point) -> Cells:
         name: float(series.var(ddof=1) / series.mean() ** 2) * contacts
         for name, series in (("collision_rate", found.rate), ("Z", found.z))
     }
-    engine = point.engine
-    assert isinstance(engine, DSMC)
-    return Cells(mean_of(found.rate) / expected, cell_loss(engine, point.scene), variances)
+    return Cells(mean_of(found.rate) / expected, point.engine.bias(point.scene, "rates"), variances)
 
 
 def cells_by_fraction(points: Iterable[Point], experiments: Sequence[str]) -> dict[float, Cells]:

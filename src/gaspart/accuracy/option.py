@@ -1,0 +1,84 @@
+"""An engine with its settings for a scene, and what a run with it costs.
+
+A run of a measured time t is off by at most |bias| + 1.96 sqrt(variance(t)) in 95 % of all runs, relatively.
+The bias is bounded by the engine, from theory or from measurements; noise and processor time are those of a
+pilot run, or of the table, which has those of pilots that were kept.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gaspart.accuracy.estimates import Component
+from gaspart.accuracy.noise import half_width, room
+from gaspart.analysis.run import EQUILIBRATION
+from gaspart.engines import Engine
+from gaspart.engines.asked import Candidate
+
+
+@dataclass(frozen=True)
+class Option:
+    """What a candidate needs for an accuracy.
+
+    bias: the bound on its systematic error, by pilots too; noise: of the observable; speed: processor seconds
+    per unit of time; accuracy: the wanted one; least, most: durations of the shortest run, and of the longest
+    that is of use and within the budget; settling: the time before anything is measured, at least.
+    """
+
+    candidate: Candidate
+    bias: float
+    noise: Component
+    speed: float
+    accuracy: float
+    least: float = 0.0
+    most: float = math.inf
+    settling: float = 0.0
+
+    @property
+    def engine(self) -> Engine:
+        """With its settings."""
+        return self.candidate.engine
+
+    @property
+    def measured(self) -> float:
+        """The measured time for the wanted accuracy, or the longest one; inf if it is never reached."""
+        return max(0.0, min(self._length(self.accuracy), self._part(self.most)))
+
+    @property
+    def duration(self) -> float:
+        """Of the run, with what is not measured, inf likewise."""
+        return self.whole(self.measured)
+
+    @property
+    def seconds(self) -> float:
+        """Of processor time, inf likewise."""
+        return self.duration * self.speed
+
+    @property
+    def half_width(self) -> float:
+        """Of the 95 % interval that the run reaches, relative, inf likewise."""
+        measured = self.measured
+        return half_width(self.bias, self.noise.reaches(measured)) if math.isfinite(measured) else math.inf
+
+    def cost(self, accuracy: float) -> float:
+        """Processor seconds for an accuracy, without a budget; inf if it is never reached."""
+        return self.whole(self._length(accuracy)) * self.speed
+
+    def whole(self, measured: float) -> float:
+        """The duration of a run with so long a measured part: a quarter of it is not measured, by default,
+        and the time of settling never."""
+        return max(measured + self.settling, measured / (1.0 - EQUILIBRATION))
+
+    def _part(self, duration: float) -> float:
+        """The inverse."""
+        return min(duration - self.settling, (1.0 - EQUILIBRATION) * duration)
+
+    def _length(self, accuracy: float) -> float:
+        """The measured time for an accuracy, of a run that is not too short."""
+        return max(self.noise.length(room(accuracy, self.bias)), self._part(self.least))
+
+
+def ordered(options: list[Option]) -> list[Option]:
+    """The best first: the cheapest of those that reach the accuracy, or else the most accurate one."""
+    return sorted(options, key=lambda one: (max(one.half_width, one.accuracy * (1.0 + 1e-9)), one.seconds))

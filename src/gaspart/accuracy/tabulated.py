@@ -1,0 +1,156 @@
+"""Options from the table: for the fluids and observables whose errors, noise and times were measured.
+
+A row of the table is a pilot that was kept: its noise is that of a pilot, in contacts instead of time, and
+its processor time is carried over to this machine.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterator
+from typing import TypeAlias
+
+from gaspart import theory
+from gaspart.accuracy import speed, table
+from gaspart.accuracy.estimates import Component
+from gaspart.accuracy.models import model_error
+from gaspart.accuracy.option import Option, ordered
+from gaspart.accuracy.table import EQUILIBRATION, LEAST
+from gaspart.accuracy.target import Target
+from gaspart.analysis import bulk
+from gaspart.analysis.observables import OBSERVABLES, having
+from gaspart.engines import Engine
+from gaspart.engines.asked import Candidate
+from gaspart.errors import SceneError
+from gaspart.scene.gas import Gas, plain_gas
+from gaspart.scene.scene import Scene
+
+FEWEST = 64
+"""Particles of a gas that is like those of the table, to 1 % of Z - 1: fewer have pilots of their own."""
+SpeedOf: TypeAlias = Callable[[int, str, str, int], float]
+"""A function as `gaspart.accuracy.speed.factor`."""
+_WORTH = 3.0  # how many times as cheap the best engine may be by the table, so that another is timed
+_PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilibration
+
+
+def fluid_of(scene: Scene) -> Gas:
+    """The gas of a scene, a fluid in a periodic container. Raises SceneError for a scene whose errors were
+    not measured."""
+    if not scene.count:
+        raise SceneError("count", 0, "advice is for a gas: the scene is empty")
+    gas, container = plain_gas(scene), scene.container
+    if gas.count < FEWEST:
+        raise SceneError("count", gas.count, f"the table is of gases of {FEWEST} particles or more")
+    if not gas.temperature > 0.0:
+        raise SceneError("temperature", gas.temperature, "advice is for moving particles")
+    if not all(container.periodic):
+        rule = (
+            "advice is for periodic containers: walls change Z, D and the rate; measure the pressure on them"
+        )
+        raise SceneError("container.boundary", container.boundary, rule)
+    lowest = table.lowest(gas.dimension)
+    if gas.packing_fraction < lowest:
+        rule = f"advice is known from {lowest:g} on: more dilute gases were not measured"
+        raise SceneError("packing_fraction", gas.packing_fraction, rule)
+    highest = theory.HIGHEST_PACKING_FRACTION[gas.dimension]
+    if gas.packing_fraction > highest:
+        rule = f"advice is for fluids, up to {highest:g}"
+        raise SceneError("packing_fraction", gas.packing_fraction, rule)
+    return gas
+
+
+def tabulated_target(scene: Scene, observable: str) -> tuple[Gas, Target]:
+    """The gas of a scene, and what is to be measured of it. Raises SceneError for a scene, and an observable,
+    that the table does not cover."""
+    if observable not in having(tabulated=True):
+        raise SceneError("observable", observable, f"must be one of {', '.join(having(tabulated=True))}")
+    return fluid_of(scene), Target.named(scene, observable)
+
+
+def is_tabulated(scene: Scene, observable: str) -> bool:
+    """Whether errors and costs of an observable of a scene are in the table."""
+    try:
+        tabulated_target(scene, observable)
+    except SceneError:
+        return False
+    return True
+
+
+def options_of(
+    target: Target, engines: list[Engine], accuracy: float, budget: float | None, speed_of: SpeedOf
+) -> list[Option]:
+    """Those of all settings that were measured, of the cheapest one of each engine, the best first.
+
+    An engine that is three times as expensive as another one by the table is not timed: it is taken to be as
+    fast as the reference.
+    """
+
+    def made(factor: SpeedOf) -> Iterator[Option]:
+        for engine in engines:
+            for precision, step in table.steps(target.scene.dimension, engine.timed_as):
+                one = _option(
+                    target, engine.at_step(target.scene, step, precision), accuracy, budget, step, factor
+                )
+                if math.isfinite(one.speed):
+                    yield one
+
+    known = [one for one in made(speed.as_measured) if one.bias < accuracy]
+    limit = _WORTH * min(one.cost(accuracy) for one in known)
+    timed = {(one.engine.timed_as, one.engine.precision) for one in known if one.cost(accuracy) < limit}
+    reference = engines[0].timed_as, engines[0].precision
+
+    def factor(dimension: int, engine: str, precision: str, count: int) -> float:
+        near = (engine, precision) if (engine, precision) in timed else reference
+        return speed_of(dimension, *near, count)
+
+    best: dict[str, Option] = {}
+    for one in ordered([one for one in made(factor) if one.bias < accuracy]):
+        best.setdefault(one.engine.timed_as, one)
+    return list(best.values())
+
+
+def _option(
+    target: Target, engine: Engine, accuracy: float, budget: float | None, step: float, speed_of: SpeedOf
+) -> Option:
+    """That of an engine with the settings of a row; step: in the unit of the table."""
+    gas = fluid_of(target.scene)
+    frequency = float(theory.collision_rate(**gas.parameters))
+    row = gas.dimension, gas.packing_fraction, engine.timed_as, engine.precision, step
+    each = table.seconds(*row) * speed_of(gas.dimension, engine.timed_as, engine.precision, gas.count)
+    candidate = _bounded(target, engine, gas, step)
+    each_time = 0.5 * gas.count * frequency  # contacts
+    value = value_of(gas, target.observable)
+    variance = table.noise(gas.dimension, gas.packing_fraction, target.observable) / each_time
+    noise = Component(value, value, LEAST / frequency, variance * value**2, freedom=math.inf)
+    cost = each * each_time
+    return Option(
+        candidate, candidate.bias, noise, cost, accuracy,
+        (EQUILIBRATION + LEAST) / frequency,
+        math.inf if budget is None else budget / cost,
+        EQUILIBRATION / frequency,
+    )  # fmt: skip
+
+
+def _bounded(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate:
+    """With its errors: those that were measured, or by theory those of its equation, and of its cells and
+    steps as the engine states them."""
+    observable, row = target.observable, (gas.dimension, gas.packing_fraction)
+    if table.has_biases(engine.timed_as):
+        error = table.bias(*row, engine.precision, step, observable, engine.timed_as)
+        return Candidate(engine, discretisation=error)
+    model = model_error(gas.packing_fraction, gas.dimension, engine.equation, observable)
+    kind = "paths" if OBSERVABLES[observable].memory else "rates"
+    return Candidate(engine, model, engine.bias(target.scene, kind))
+
+
+def value_of(gas: Gas, observable: str) -> float:
+    """An observable by theory."""
+    return float(getattr(bulk, OBSERVABLES[observable].bulk)(gas, bulk.EXACT))
+
+
+def replicas_of(option: Option, longest: float) -> int:
+    """How many runs share the measured time: one for each processor, if each is much longer than its
+    equilibration, and so many that none is longer than `longest`."""
+    shared = min(os.cpu_count() or 1, int(option.measured / (_PER_EQUILIBRATION * option.settling)))
+    return max(1, shared, math.ceil(option.duration / longest))

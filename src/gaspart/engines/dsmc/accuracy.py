@@ -1,0 +1,154 @@
+"""Bounds on the errors of the DSMC engine in a steady scene, from its local conditions.
+
+The Boltzmann model lacks the excluded volume: in the contact value, in the virial, and in contacts, which
+have no extent. The Enskog model is given the contact value of the local density; what it does not have is the
+memory of collisions, that of a pair among few particles, and the layers of particles at a wall. Cells average
+over what changes within them.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.engines.asked import Asked, Candidate, Local
+from gaspart.errors import SceneError
+
+if TYPE_CHECKING:
+    from gaspart.engines.dsmc.settings import DSMC
+
+DENSEST = 0.4
+"""Packing fraction up to which the Enskog model is known."""
+_STATIC = 3e-3
+"""Bound on its error in Z, the collision rate and pressures of an even gas (figure `dsmc_convergence`)."""
+_NORMAL = {2: 2.0 / math.pi, 3: 0.5}
+"""Mean of |e_z| of a contact, by dimension."""
+_AT_WALLS = 2.5
+"""Error of the Enskog model's collision rate over the packing fraction and the diameter over the distance of
+two walls: 2.1 at most in slits of 4, 8 and 16 diameters, at packing fractions of 0.05 to 0.3."""
+_ON_PROFILES = 2.0
+"""What cells change in the collision rate of the Enskog model over that of the Boltzmann model, at most: the
+contact value too is that of the mean density."""
+
+
+def candidate(engine: DSMC, asked: Asked) -> Candidate:
+    """The engine with the cells and the step that it chooses. Raises SceneError where these are too coarse
+    for the local conditions, and for a gas that is too dense for the Enskog model."""
+    conditions, dense = asked.conditions, engine.model == "enskog"
+    filled = float(conditions.filled.max())
+    if dense and filled > DENSEST:
+        rule = f"the Enskog model is known up to {DENSEST:g}, also where the gas is densest"
+        raise SceneError("packing_fraction", round(filled, 4), rule)
+    resolved = engine.resolved(asked.scene)
+    require_resolved(resolved, conditions)
+    model = enskog_error(asked, cells_of(resolved, conditions)) if dense else boltzmann_error(asked)
+    return Candidate(engine, model, cell_error(resolved, asked))
+
+
+def boltzmann_error(asked: Asked) -> float:
+    """Bound on the relative error of the Boltzmann equation: pairs in a cell collide as if they were
+    points."""
+    conditions, scene = asked.conditions, asked.scene
+    error = (conditions.memory if asked.transported else 0.0) + _layers(asked)
+    if asked.observable != "pressure":
+        lost = _NORMAL[scene.dimension] * conditions.surfaces
+        error += lost / (1.0 - lost) if lost < 1.0 else math.inf
+    few = float((conditions.contact_of_few / conditions.contact).max()) - 1.0
+    differing = conditions.of_points(asked.observable, asked.face)
+    if differing is not None:
+        return float(error + few + differing)
+    virial = float(conditions.virial.max())
+    if math.isinf(virial):
+        return math.inf
+    excess = float(conditions.contact_of_few.max()) - 1.0
+    return float(error + max(excess, virial if scene.gravity else virial / (1.0 + virial)))
+
+
+def enskog_error(asked: Asked, cells: tuple[int, ...] | None = None) -> float:
+    """Bound on the relative error of the Enskog equation: pairs collide a diameter apart, with the contact
+    value of their density; cells: along each axis, by default narrow ones."""
+    conditions = asked.conditions
+    error = _STATIC + _layers(asked)
+    if asked.transported:
+        error += conditions.memory
+    error += float((conditions.contact_of_few / conditions.contact).max()) - 1.0
+    error += _AT_WALLS * float(conditions.filled.max()) * conditions.surfaces
+    if asked.observable == "pressure" and cells is not None:
+        virial = float(conditions.virial.max())
+        periodic = asked.scene.container.periodic
+        walled = [n for n, around in zip(cells, periodic, strict=True) if not around]
+        error += sum(virial / (1.0 + virial) / n for n in walled)
+    return float(error)
+
+
+def cell_error(engine: DSMC, asked: Asked) -> float:
+    """Bound on what cells and steps change: in the viscosity, and in what depends on it, by the shortest free
+    path; in a rate by the mean over a cell, of a density that changes by e over the scale; in the Enskog
+    model by the collisions that are lost among few in a cell."""
+    conditions, error = asked.conditions, 0.0
+    if asked.transported:
+        error += engine.predictions(asked.scene)["viscosity_error"] * conditions.contrast**2
+    dense = engine.model == "enskog"
+    if conditions.axis is not None:
+        half = 0.5 * cell_widths(engine, conditions)[conditions.axis] / conditions.scale
+        averaged = 1.0 - math.tanh(half) / half if half > 1e-6 else 0.0
+        error += averaged * (_ON_PROFILES if dense else 1.0)
+    return float(error + (_lost(engine, conditions) if dense else 0.0))
+
+
+def require_resolved(engine: DSMC, conditions: Local) -> None:
+    """Raise SceneError for cells or steps that are longer than a length or a time over which an uneven gas
+    changes, or than its shortest free path or time. What an even gas is like does not depend on them."""
+    if conditions.axis is None:
+        return
+    widths = cell_widths(engine, conditions)
+    path, time = float(conditions.path.min()), float((conditions.path / conditions.speed).min())
+    cells, step = engine.cells_per_side, engine.time_step or 0.0
+    widest, along = float(widths.max()), float(widths[conditions.axis])
+    moved = step * float(conditions.speed.max())
+    scale = "the length over which the gas changes by e"
+    for key, value, size, limit, name in (
+        ("cells_per_side", cells, along, conditions.scale, scale),
+        ("cells_per_side", cells, widest, path, "the shortest local free path"),
+        ("time_step", step, moved, conditions.scale, scale),
+        ("time_step", step, step, time, "the shortest local free time"),
+    ):
+        if size > limit:
+            what = "cells are" if key == "cells_per_side" else "particles move" if size is moved else "is"
+            raise SceneError(key, value, f"{what} {size:.2g}, more than {limit:.2g}, {name}")
+
+
+def cell_widths(engine: DSMC, conditions: Local) -> np.ndarray:
+    """(d,) the sides of a cell, 0 along an axis that has one cell between periodic faces and no profile."""
+    cells = np.array(cells_of(engine, conditions))
+    around = np.array(conditions.scene.container.periodic)
+    flat = (cells == 1) & around
+    if conditions.axis is not None:
+        flat[conditions.axis] = False
+    return np.where(flat, 0.0, conditions.free / cells)
+
+
+def cells_of(engine: DSMC, conditions: Local) -> tuple[int, ...]:
+    """(d,) the cells along each axis, 1 where none are stated."""
+    return tuple(np.broadcast_to(np.array(engine.cells_per_side or 1), conditions.free.shape).tolist())
+
+
+def _layers(asked: Asked) -> float:
+    """What the layers of particles at walls are of a density: they have Z times the density of the middle, in
+    about a diameter."""
+    conditions, scene = asked.conditions, asked.scene
+    if asked.observable != "density" or scene.container.periodic[-1]:
+        return 0.0
+    sigma, free = 2.0 * scene.largest_radius, float(conditions.free[-1])
+    length = min(free, conditions.scale) if conditions.axis == scene.dimension - 1 else free
+    return float(conditions.virial.max()) * math.sqrt(sigma / max(length, sigma))
+
+
+def _lost(engine: DSMC, conditions: Local) -> float:
+    """The collisions that the engine loses where fewer particles are in a cell than in the mean, weighted by
+    collisions."""
+    weights = conditions.share * conditions.contact
+    fewer = float(weights.sum() / (weights * conditions.crowding).sum())
+    return engine.bias(conditions.scene, "rates") * fewer

@@ -1,0 +1,77 @@
+"""Accuracies of what faces are given: heat, momentum along them, and the flow between them."""
+
+import pytest
+
+import gaspart as gp
+from gaspart.accuracy import pilot, plan
+from gaspart.accuracy.estimates import components
+from gaspart.analysis.measuring import measure
+from gaspart.analysis.observables import OBSERVABLES
+from gaspart.runs import require_measurable
+
+SLIT = gp.Container((10.0, 6.0), ("periodic", "wall"))
+COLD = gp.Scene(
+    SLIT, [gp.Species(12, 0.5, temperature=1.0)], faces={"y_low": gp.Thermal(1.0), "y_high": gp.Thermal(1.0)}
+)
+
+
+def between(low, high):
+    return gp.Scene(SLIT, COLD.species, faces={"y_low": low, "y_high": high})
+
+
+HEATED = between(gp.Thermal(1.0), gp.Thermal(3.0))
+SLIDING = between(gp.Thermal(1.0), gp.Thermal(1.0, velocity=(2.0, 0.0)))
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path, monkeypatch):
+    monkeypatch.setattr(pilot, "cache_directory", lambda: tmp_path / "cache")
+
+
+def test_the_heat_flux_is_not_the_pressure(tmp_path):
+    """Both are of faces: each component is that of the measured observable, with its freedom."""
+    path = gp.run(HEATED, gp.EventDriven(), 1, 400.0, 1.0, tmp_path / "run.nc")
+    with gp.open_trajectory(path) as data:
+        found, measured = components(data, "heat_flux"), measure("heat_flux", data)
+    assert list(found) == ["y low", "y high"]
+    for face, one in found.items():
+        exact = measured.sel(face=face)
+        assert (one.value, one.freedom) == (float(exact.estimate), float(exact["heat_flux_freedom"]))
+        assert one.estimate.error == pytest.approx(float(exact.error))
+    assert found["y low"].value > 0.0 > found["y high"].value
+
+
+@pytest.mark.parametrize(
+    ("scene", "observable", "accuracy"),
+    [(HEATED, "heat_flux", 0.2), (SLIDING, "wall_shear", 0.3), (SLIDING, "velocity", 0.3)],
+)
+def test_runs_end_when_they_are_accurate(tmp_path, scene, observable, accuracy):
+    asked = gp.Accuracy(observable, accuracy)
+    path = gp.run(
+        scene, gp.EventDriven(), 1, sample_interval=1.0, path=tmp_path / "run.nc", until=asked, at_most=4000.0
+    )
+    (reached,) = gp.reached_accuracy(path)
+    assert reached.met and reached.accuracy <= accuracy
+
+
+def test_the_heat_flux_to_one_face_is_advised():
+    made = plan.plan(HEATED, "heat_flux:y low", 0.4, pilot_seconds=0.4)
+    (asked,) = made.recipe.until.accuracies
+    assert asked.name == "heat_flux:y low" and made.value > 0.0
+
+
+@pytest.mark.parametrize(
+    ("scene", "observable", "reason"),
+    [
+        (COLD, "heat_flux", "have one temperature: the heat flux is 0 on average"),
+        (COLD, "velocity", "nothing drives a flow"),
+        (SLIDING, "flux", "the net flux between walls is 0 in a steady state"),
+        (HEATED, "heat_flux:x low", "the walls are y low, y high"),
+    ],
+)
+def test_what_vanishes_is_refused(scene, observable, reason):
+    with pytest.raises(gp.SceneError, match=reason):
+        plan.plan(scene, observable, 0.1, pilot_seconds=0.1)
+    if OBSERVABLES[observable.partition(":")[0]].ends_runs:
+        with pytest.raises(gp.SceneError, match=reason):
+            require_measurable(gp.Accuracy.named(observable, 0.1), scene, gp.EventDriven())
