@@ -2,6 +2,7 @@
 engine with its own settings against the event-driven one."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -75,3 +76,16 @@ def test_energies_and_pressures_are_those_of_the_event_driven_engine(start, kind
         return
     means, apart, error = compared(start, kind, range(SEEDS))
     assert (np.abs(apart) < 3.0 * error + SIZE * means).all(), (means, apart, error)
+
+
+def test_an_own_step_fits_a_given_state_that_is_hotter():
+    """Ten times as fast as the scene states: eight times as many parts, the power of two that fits."""
+    scene = gp.Scene(gp.Container((12.0,) * 3, "periodic"), [gp.Species(300, 0.5, temperature=1.0)])
+    steps = []
+    for factor in (1.0, 10.0):
+        state = gp.Simulation(scene, gp.DSMC(), 1).initial_state
+        faster = replace(state, velocities=factor * state.velocities)
+        simulation = gp.Simulation(scene, gp.DSMC(), 1, initial=faster)
+        simulation.advance(until=5.0)
+        steps.append(simulation.tally.steps)
+    assert steps[1] == 8 * steps[0]

@@ -18,6 +18,7 @@ import numpy as np
 from gaspart.engines.dsmc.rates import Rates, highest_speed, rates
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.scene import Scene
+from gaspart.state.state import State
 
 if TYPE_CHECKING:
     from gaspart.kernels.dsmc.pace import Pace
@@ -34,6 +35,9 @@ FINEST = 40
 """The highest level."""
 ROOM = math.sqrt(2.0)
 """By so much a step may be longer than recommended before it is divided."""
+_HOTTER = 2.0
+"""By so much a given state may be faster than the scene's own: steps are then too long by as much, which
+changes coefficients by 1 %."""
 _KICKED = 0.09
 """Of the mean speed: the width of the kicks of a step, unless a step has one kick at most. They come at its
 end, and the energy there is above its mean over time by half of what they give, 0.35 % at most."""
@@ -113,6 +117,16 @@ def may_speed_up(scene: Scene) -> bool:
     if scene.gravity is not None or scene.thermostat is not None or scene.faces or scene.rough:
         return True
     return highest_speed(scene) > ROOM * rates(scene, False).speed
+
+
+def is_hotter(state: State, found: Rates) -> bool:
+    """Whether a state that was given is so much faster than the scene's own, about its mean velocity, that
+    steps must follow its speeds."""
+    velocities = state.velocities[np.isfinite(state.masses)]
+    if not len(velocities):
+        return False
+    apart = velocities - velocities.mean(axis=0)
+    return float(np.sqrt((apart**2).sum(axis=1)).mean()) > _HOTTER * found.speed
 
 
 def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.ndarray]:

@@ -11,7 +11,15 @@ from gaspart.engines.dsmc.arrays import grid_for
 from gaspart.engines.dsmc.crowding import crowding, may_crowd, next_level
 from gaspart.engines.dsmc.defaults import cells_for, coarse, recommended_cells, step_for
 from gaspart.engines.dsmc.dense import dense_for, moved_fields
-from gaspart.engines.dsmc.pace import FINEST, check_step, may_speed_up, pace_for, reach_of, too_fast
+from gaspart.engines.dsmc.pace import (
+    FINEST,
+    check_step,
+    is_hotter,
+    may_speed_up,
+    pace_for,
+    reach_of,
+    too_fast,
+)
 from gaspart.engines.dsmc.rates import Rates, rates
 from gaspart.kernels.dsmc.enskog import Dense
 from gaspart.kernels.dsmc.model import Grid, Particles
@@ -59,7 +67,7 @@ class Resolution:
         self.grid = grid
         self._reach = reach_of(scene, self._found.crowded(2.0**crowded).path)
         self.pace: Pace | None = None
-        if may_speed_up(scene):
+        if may_speed_up(scene) or is_hotter(state, self._found):
             self.pace = pace_for(scene, self._reach, self.step, engine.adapts_steps)
 
     def look(self, places: np.ndarray, time: float) -> None:
