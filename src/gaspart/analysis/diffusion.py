@@ -14,7 +14,7 @@ from gaspart.analysis.expected.described import described
 from gaspart.analysis.motion import Groups, axes_of, groups_of, stride_of
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
-from gaspart.analysis.run import Run, Source, measured, selected
+from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.scene.faces import mean_velocity
@@ -40,7 +40,7 @@ def diffusion_coefficient(
     that their squared displacement grows like t ln t; where the slope from 6 to 12 collisions is another one,
     so that there is no D; and for runs that are too short, or have too few frames.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("D", run.scene, species=species)
         chosen = selected(run, species, None)
         stride = stride_of(run)

@@ -22,7 +22,7 @@ from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, scalar
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES
-from gaspart.analysis.run import Source, measured
+from gaspart.analysis.run import Source, open_run
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
 from gaspart.scene.gas import plain_gas
@@ -129,10 +129,10 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
     if no place was free.
     """
     places = count_of("places", places, least=1)
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("chemical_potential", run.scene)
         gas = plain_gas(run.scene)
-        if run.followed:
+        if run.is_subset:
             raise SceneError("follow", run.data.sizes["atom"], f"needs all {run.count} particles in the file")
         if len(run.time) <= STRETCHES:
             raise SceneError("frames", len(run.time), f"an error needs {STRETCHES + 1} or more")

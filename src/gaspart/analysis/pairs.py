@@ -10,7 +10,7 @@ import numpy as np
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
-from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import means_of
 from gaspart.analysis.waves import factors, in_shells, shells_of
 from gaspart.errors import SceneError
@@ -43,7 +43,7 @@ def rdf(
     from gaspart.analysis.order import radial_distribution
 
     bins = count_of("bins", bins, least=2)
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("rdf", run.scene)
         stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
         if stored < 2:
@@ -75,10 +75,10 @@ def structure_factor(
     particles, too few frames, and a wave number below that of the longest wave.
     """
     bins = count_of("bins", bins, least=2)
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("structure_factor", run.scene)
         stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
-        if run.followed:
+        if run.is_subset:
             raise SceneError("follow", stored, f"needs all {run.count} particles in the file")
         diameter, least = 2.0 * run.scene.largest_radius, 2.0 * np.pi / max(lengths)
         rule = f"must be above that of the longest wave, {least:.4g}"

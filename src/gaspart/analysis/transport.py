@@ -23,7 +23,7 @@ import xarray as xr
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import KEPT, require_defined
-from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
@@ -48,7 +48,7 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
     Raises SceneError for a run without correlations of the stress, a lag that is longer than theirs, fewer
     than 17 frames, and a shear rate of 0.
     """
-    with measured(source, start, sheared=True) as run:
+    with open_run(source, start, sheared=True) as run:
         require_defined("shear_viscosity", run.scene)
         if run.scene.shear_rate is None:
             return _coefficient(run, "shear_viscosity", "shear", lag)
@@ -61,7 +61,7 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
     Arguments, theory and errors as of `shear_viscosity`. The mean is that of the run, of duration T, which
     makes the value too low by about 2 lag / T of it.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         return _coefficient(run, "bulk_viscosity", "bulk", lag)
 
 
@@ -71,7 +71,7 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     Arguments, theory and errors as of `shear_viscosity`; SceneError also for a mixture, whose heat flux
     contains that of diffusion.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         return _coefficient(run, "thermal_conductivity", "heat", lag)
 
 
@@ -82,7 +82,7 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     flow. Theory: the equation of state, of a gas at rest. Raises SceneError for other trajectories, and fewer
     than 17 frames.
     """
-    with measured(source, start, sheared=True) as run:
+    with open_run(source, start, sheared=True) as run:
         require_defined("pressure_tensor", run.scene)
         _stored(run)
         if len(run.time) <= LEAST_INTERVALS:
