@@ -268,10 +268,10 @@ def test_a_run_that_another_process_finished_meanwhile_is_not_replaced(folder, m
     """Another run begins and ends during a slow set-up: of another seed, and of the same."""
     path, slow = folder / "late.nc", trajectory.Simulation
 
-    def during(*arguments):
+    def during(*arguments, **options):
         monkeypatch.setattr(trajectory, "Simulation", slow)
         gp.run(scene, gp.EventDriven(), 1, 1.0, 0.5, path)
-        return slow(*arguments)
+        return slow(*arguments, **options)
 
     for seed in (1, 2):
         monkeypatch.setattr(trajectory, "Simulation", during)

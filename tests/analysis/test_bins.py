@@ -6,7 +6,7 @@ import pytest
 import gaspart as gp
 from gaspart.analysis.bins import Grid
 from gaspart.analysis.profiles import ratio
-from gaspart.analysis.run import measured
+from gaspart.analysis.run import open_run
 from gaspart.analysis.series import Blocks, over
 
 
@@ -82,7 +82,7 @@ def test_blocks_cover_the_intervals_of_a_run():
     scene = gp.Scene(gp.Container((8.0, 8.0)), [gp.Species(20, 0.5, temperature=1.0)])
     sim = gp.Simulation(scene, gp.EventDriven(), 1)
     sim.advance(duration=20.0)
-    with measured(sim, 0.0) as run:
+    with open_run(sim, 0.0) as run:
         blocks = Blocks(run, 5)
         hits = run.data["wall_hits"].values
         rates = np.diff(hits[:: blocks.length][:6], axis=0) / np.diff(run.time[:: blocks.length][:6])[:, None]

@@ -3,7 +3,7 @@
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.run import measured
+from gaspart.analysis.run import open_run
 
 A = gp.analysis
 SPHERES = [gp.Species(200, 0.5, temperature=1.0)]
@@ -78,7 +78,7 @@ def test_the_zero_momentum_along_each_axis_is_allowed_for(tmp_path):
         gp.Container((5.0,) * 3, ("periodic", "periodic", "wall")), [gp.Species(16, 0.5, speed=1.0)]
     )
     path = gp.run(scene, gp.EventDriven(), 1, 2000.0, 1.0, tmp_path / "a.nc")
-    with measured(path, None) as part:
+    with open_run(path, None) as part:
         temperature = part.temperature
     found = A.velocity_autocorrelation(path, lags=2).estimate
     assert float(found[0]) == pytest.approx(temperature, rel=0.01)  # 2/3 of a 16th is .04

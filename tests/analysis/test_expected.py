@@ -12,7 +12,7 @@ from gaspart.analysis.expected.equilibrium import compressibility_factor
 from gaspart.analysis.expected.transport import diffusion_in_cube
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES
-from gaspart.analysis.run import measured
+from gaspart.analysis.run import open_run
 from gaspart.inspection.checks import judge
 from gaspart.inspection.readers import read_frames
 from gaspart.scene.gas import Gas
@@ -94,7 +94,7 @@ def test_a_mixture_by_the_enskog_equation_is_its_contact_values():
     for scene in (one, half):
         simulation = gp.Simulation(scene, gp.DSMC(model="enskog"), seed=1)
         simulation.advance(duration=1.0)
-        with measured(simulation, None) as run:
+        with open_run(simulation, None) as run:
             found.append(compressibility_factor(run)[0])
     assert found[0] == pytest.approx(found[1], rel=1e-12)
     beyond = float(gp.theory.carnahan_starling(0.2)) - 1.0

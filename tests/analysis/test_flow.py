@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.run import measured
+from gaspart.analysis.run import open_run
 
 A = gp.analysis
 
@@ -49,7 +49,7 @@ def test_speeds_are_those_about_the_flow(couette):
     assert found.theory is None and "about the local flow" in found.estimate.attrs["long_name"]
     speed, width = found["speed"], float(found["speed"][1] - found["speed"][0])
     square = float((found.estimate * speed**2).sum() * width)
-    with measured(couette, None) as run:
+    with open_run(couette, None) as run:
         assert square == pytest.approx(2.0 * run.temperature, rel=0.01)
 
 
@@ -107,7 +107,7 @@ def test_a_force_along_a_channel_drives_a_flow_however_weak(tmp_path):
     for force in (0.001, 0.05):
         scene = gp.Scene(container, species, faces=faces, gravity=(0.0, force))
         path = gp.run(scene, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / f"{force}.nc")
-        with measured(path, None) as run:
+        with open_run(path, None) as run:
             assert run.flow_axes == [0]
             energy, temperature = float((run.velocities**2).mean()), run.temperature
         if force > 0.01:  # 1.2 about a flow of 1.1

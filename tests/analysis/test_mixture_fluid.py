@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.run import measured
+from gaspart.analysis.run import open_run
 from gaspart.analysis.transport import green_kubo
 from gaspart.yaml_text import dump_yaml
 
@@ -84,7 +84,7 @@ def test_a_mixture_conducts_without_diffusion(tmp_path):
     error = np.hypot(float(found.error), 0.025 * expected)  # higher approximations
     assert error < 0.08 * expected
     assert float(found.estimate) == pytest.approx(expected, abs=3.0 * error)
-    with measured(path, None) as run:
+    with open_run(path, None) as run:
         assert green_kubo(run, "heat").mean(axis=0)[-1] > 1.6 * expected
     with pytest.raises(gp.SceneError, match="sample_interval = 10"):
         A.thermal_conductivity(path, lag=5.0 - 1e-9)

@@ -7,7 +7,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.analysis.room import mean_areas, sides, touched
-from gaspart.analysis.run import measured
+from gaspart.analysis.run import open_run
 
 A = gp.analysis
 GAS = [gp.Species(60, 0.1, temperature=1.0)]
@@ -39,7 +39,7 @@ def test_the_area_is_that_of_the_moment():
         scene = gp.Scene(TUBE, GAS, faces={"y_low": face})
         sim = gp.Simulation(scene, gp.EventDriven(), 1)
         sim.advance(duration=20.0)
-        with measured(sim, 0.0) as run:
+        with open_run(sim, 0.0) as run:
             fine = np.linspace(run.time[3], run.time[4], 20001)
             height = (touched(run, fine)[:, 1]).mean()
             areas = mean_areas(run)
@@ -56,7 +56,7 @@ def test_faces_of_both_ends_and_two_axes_move_at_once():
     scene = gp.Scene(gp.Container((10.0, 10.0, 10.0)), GAS, faces=faces)
     sim = gp.Simulation(scene, gp.EventDriven(), 1)
     sim.advance(duration=4.0)
-    with measured(sim, 0.0) as run:
+    with open_run(sim, 0.0) as run:
         found = sides(run, np.array([0.0, 1.0]))
         area = mean_areas(run)[:, 2].mean()
     assert found[:, 0].tolist() == [[0.0, 10.0], [2.0, 9.0]]

@@ -10,7 +10,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.analysis.expected.walls import plates_of
 from gaspart.analysis.measuring import measure
-from gaspart.analysis.run import measured
+from gaspart.analysis.run import open_run
 from gaspart.errors import SceneError
 from gaspart.theory.heat import INTERPOLATED
 
@@ -111,7 +111,7 @@ def test_the_equations_of_points_do_not_depend_on_density():
     scene = plates(50, 0.2)
     paths = {}
     for engine in ENGINES:
-        with measured(made(scene, 2.0, engine), 0.0) as run:
+        with open_run(made(scene, 2.0, engine), 0.0) as run:
             paths[engine] = plates_of(run)
     found = paths["event"]
     assert found.filled > 0.03 and found.length == pytest.approx(GAP - 2.0 * scene.largest_radius)

@@ -16,7 +16,7 @@ import numpy as np
 from gaspart import theory
 from gaspart.accuracy.column import Column, Pulled, between, pulled
 from gaspart.accuracy.steady import face_temperatures
-from gaspart.analysis.run import measured
+from gaspart.analysis.run import open_run
 from gaspart.engines.dsmc.rates import accessible, contact_values
 from gaspart.scene.faces import Thermal
 from gaspart.scene.geometry import ball_volume
@@ -223,7 +223,7 @@ def _of_column(scene: Scene, pulled_scene: Pulled, start: State) -> Conditions:
 def measured_conditions(scene: Scene, path: Path) -> Conditions:
     """Those of the measured part of a run, along the axis on which density and temperature change most.
     Raises SceneError for a file without all particles."""
-    with measured(path, None, sheared=True) as run:
+    with open_run(path, None, sheared=True) as run:
         places = run.positions[:, run.moving]
         thermal = (run.masses[run.moving] * (run.peculiar**2).sum(axis=2)) / run.dimension
     found = [_along(scene, k, places[..., k], thermal) for k in range(scene.dimension)]

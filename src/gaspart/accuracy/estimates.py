@@ -93,9 +93,9 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     """An observable of `gaspart measure` of a trajectory, by component, "" for a scalar or a curve, whose
     value and error are root mean squares. Raises SceneError as the functions of `gaspart.analysis`."""
     from gaspart.analysis.measuring import measure
-    from gaspart.analysis.run import measured
+    from gaspart.analysis.run import open_run
 
-    with measured(data, start, sheared=True) as run:
+    with open_run(data, start, sheared=True) as run:
         if observable == "pressure":
             return _pressures(run)
         time = float(run.time[-1] - run.time[0])
@@ -162,7 +162,7 @@ def _pressures(run: Run) -> dict[str, Component]:
 def _stores(run: Run) -> np.ndarray:
     """(d, T, 2) of each axis the total momentum and sum m x v of the moving particles at each frame;
     (d, T, 0) of a file that lacks some."""
-    if run.followed:
+    if run.is_subset:
         return np.zeros((run.dimension, len(run.time), 0))
     velocities, masses = run.velocities[:, run.moving], run.masses[run.moving]
     centred = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)

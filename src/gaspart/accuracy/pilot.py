@@ -18,7 +18,7 @@ import numpy as np
 from gaspart.accuracy.estimates import Component, components, of_face
 from gaspart.accuracy.target import SEED, Target
 from gaspart.analysis.observables import KEPT, TOO_SHORT
-from gaspart.analysis.run import EQUILIBRATION, measured
+from gaspart.analysis.run import EQUILIBRATION, open_run
 from gaspart.engines import Engine, engine_to_dict, reference_engine
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.compile.cache import cache_directory
@@ -211,7 +211,7 @@ def settling_time(trajectory: xr.Dataset) -> float:
     """The time from which on a run is steady: when the kinetic energy, and the mean place of the particles
     along each axis with walls, have reached their means of the second half, and have left the range of that
     for the last time."""
-    with measured(trajectory, 0.0, sheared=True) as run:
+    with open_run(trajectory, 0.0, sheared=True) as run:
         velocities, masses = run.peculiar, run.masses[run.moving]
         series = [np.einsum("tnd,tnd,n->t", velocities, velocities, masses)]
         places = run.positions[:, run.moving].mean(axis=1)

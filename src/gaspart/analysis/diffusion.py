@@ -17,7 +17,7 @@ from gaspart.analysis.expected.described import described
 from gaspart.analysis.motion import Groups, axes_of, groups_of, stride_of
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
-from gaspart.analysis.run import Run, Source, measured, selected
+from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import number
@@ -54,7 +54,7 @@ def diffusion_coefficient(
     momentum lasts longer than these collisions, so that their squared displacement grows like t ln t, and
     where the slope from 6 to 12 collisions is another one, so that there is no D.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("D", run.scene, species=species, particles=particles, lag=lag)
         chosen = selected(run, species, particles)
         stride = stride_of(run, len(chosen))

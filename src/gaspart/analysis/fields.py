@@ -9,7 +9,7 @@ import numpy as np
 
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.profiles import Cells, with_freedom
-from gaspart.analysis.run import Run, Source, measured, selected
+from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, one_of
 
@@ -38,7 +38,7 @@ def field(
     Raises SceneError for an unknown property or axis, a file without all particles, and too few frames.
     """
     one_of("of", of, QUANTITIES)
-    with measured(source, start, sheared=True) as run:
+    with open_run(source, start, sheared=True) as run:
         along = _axes(run, axes)
         numbers = _numbers(cells, len(along))
         members = np.flatnonzero(run.moving)[selected(run, species, None)]

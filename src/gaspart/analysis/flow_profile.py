@@ -7,7 +7,7 @@ from gaspart.analysis.fields import field
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.profiles import Means, with_freedom
-from gaspart.analysis.run import Source, measured
+from gaspart.analysis.run import Source, open_run
 
 
 def velocity_profile(
@@ -30,7 +30,7 @@ def velocity_profile(
     Raises SceneError for an unknown axis, a species that does not move, a file without all particles, and too
     few frames.
     """
-    with measured(source, start, sheared=True) as run:
+    with open_run(source, start, sheared=True) as run:
         require_defined("velocity", run.scene, axis=axis, species=species)
         name = "xyz"[run.dimension - 1] if axis is None else axis
         found = field(run.data, "velocity", name, bins, float(run.time[0]), species)

@@ -25,7 +25,7 @@ from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable,
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES
 from gaspart.analysis.profiles import Means, with_freedom
-from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
@@ -145,9 +145,9 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
     single particles or a polydisperse species, for too few frames, and if no place was free.
     """
     places = count_of("places", places, least=1)
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("chemical_potential", run.scene)
-        if run.followed:
+        if run.is_subset:
             raise SceneError("follow", run.data.sizes["atom"], f"needs all {run.count} particles in the file")
         if len(run.time) <= STRETCHES:
             raise SceneError("frames", len(run.time), f"an error needs {STRETCHES + 1} or more")

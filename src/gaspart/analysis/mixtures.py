@@ -10,7 +10,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
 from gaspart.analysis.observables import KEPT, require_defined
-from gaspart.analysis.run import Run, Source, measured, require_collisions
+from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 from gaspart.theory.geometry import unit_sphere_surface
@@ -27,7 +27,7 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
     species, and the mean speed is that of a finite number at fixed energy. Raises SceneError for single
     particles, too few frames, and a run without `pairs`.
     """
-    with measured(source, start, pairs=True) as run:
+    with open_run(source, start, pairs=True) as run:
         require_defined("pair_rates", run.scene)
         return _of_pairs("pair_rates", "pair_collision_rate", run, estimates_of(run, rate_scales(run)))
 
@@ -45,7 +45,7 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
     Raises SceneError as that, for a scene with walls or contacts that lose energy, and for a polydisperse
     species.
     """
-    with measured(source, start, pairs=True) as run:
+    with open_run(source, start, pairs=True) as run:
         found = estimates_of(run, contact_scales(run))
         return _of_pairs("contact_values", "contact_value", run, found)
 

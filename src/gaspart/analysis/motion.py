@@ -18,7 +18,7 @@ from gaspart.analysis.correlations import accumulated_mean, autocorrelation, cor
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
-from gaspart.analysis.run import Run, Source, measured, selected
+from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
@@ -68,7 +68,7 @@ def mean_squared_displacement(
     unless they are selected, frames at uneven times, and frames too far apart to follow particles across
     periodic faces.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("msd", run.scene, species=species, particles=particles)
         if _accumulates(run, _SQUARES, lags, species, particles) and not per_axis:
             time, values, errors = accumulated_mean(run, _SQUARES)
@@ -100,7 +100,7 @@ def velocity_autocorrelation(
     m) exp(-2 nu t / d), nu the collision rate: exact at short times, without the long-time tail. Raises
     SceneError for fewer than 16 moving particles, and frames at uneven times.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("vacf", run.scene, species=species, particles=particles)
         if _accumulates(run, _PRODUCTS, lags, species, particles):
             time, values, errors = accumulated_mean(run, _PRODUCTS)

@@ -9,7 +9,7 @@ from gaspart.analysis.expected.described import described
 from gaspart.analysis.motion import unwrapped
 from gaspart.analysis.observable import Observable, scalar
 from gaspart.analysis.observables import require_defined
-from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.run import Run, Source, open_run
 
 
 def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
@@ -31,7 +31,7 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
     Raises SceneError for other numbers of species, fixed particles, walls, contacts that lose energy, discs,
     which have no such coefficient, frames too far apart, and runs that are too short.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("mutual_diffusion", run.scene)
         _, early, late = lags_of_slopes(run)
         apart = _separation(run)

@@ -9,7 +9,7 @@ from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.profiles import Means, with_freedom
-from gaspart.analysis.run import Source, measured, selected
+from gaspart.analysis.run import Source, open_run, selected
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 
@@ -35,7 +35,7 @@ def particle_flux(
     n sqrt(k_B T / 2 pi m) times their area, with the density on both sides. Raises SceneError for a periodic
     axis, which images pass, a plane outside the container, a file without all particles, and too few frames.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("flux", run.scene, axis=axis, at=at, species=species)
         number = walled_axis_of(run.scene, axis)
         place = 0.5 * run.scene.container.lengths[number] if at is None else float(at)

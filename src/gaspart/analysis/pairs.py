@@ -10,7 +10,7 @@ import numpy as np
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
-from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
@@ -36,7 +36,7 @@ def rdf(
     from gaspart.analysis.order import radial_distribution
 
     bins = count_of("bins", bins, least=2)
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("rdf", run.scene)
         stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
         if stored < 2:

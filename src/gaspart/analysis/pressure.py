@@ -9,7 +9,7 @@ from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.room import mean_areas, touched
-from gaspart.analysis.run import Run, Source, measured, require_collisions
+from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.trajectory.amber import face_names
@@ -28,7 +28,7 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
 
     Raises SceneError for walls, fixed particles, contacts that lose energy, too few frames, and no collision.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("Z", run.scene)
         require_collisions(run)
         return scalar("compressibility_factor", series.compressibility(run), run.time, **described("Z", run))
@@ -46,7 +46,7 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     distance (`gaspart.theory.wall_pressure`). Raises SceneError without walls, for too few frames, and where
     particles rest in a scene with obstacles, which may carry them.
     """
-    with measured(source, start, sheared=True) as run:
+    with open_run(source, start, sheared=True) as run:
         require_defined("pressure", run.scene)
         blocks = min(_BLOCKS, len(run.time) - 1)
         if blocks < 4:
@@ -87,7 +87,7 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
     Raises SceneError if particles rest where something else than faces may carry them.
     """
     carried = np.zeros((len(ends) - 1, 2 * run.dimension))
-    if not run.falls or (run.followed and not run.dissipates):
+    if not run.has_gravity or (run.is_subset and not run.dissipates):
         return carried
     if run.scene.walls or not run.moving.all():
         refuse_rest(run, "obstacles may carry particles at rest, whose contacts give no impulse")
@@ -108,7 +108,7 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
 
 def refuse_rest(run: Run, rule: str) -> None:
     """Raise SceneError, with a rule, if a particle rests under gravity in a frame after the first."""
-    if run.falls:
+    if run.has_gravity:
         along = np.flatnonzero(run.scene.gravity or ())
         resting = (run.velocities[1:, run.moving][..., along] == 0.0).any(axis=2).any(axis=0).sum()
         if resting:
@@ -123,7 +123,7 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
     the fluid's equation of state, corrected for the number of particles. Raises SceneError for too few
     frames, without a collision, and if particles come to rest.
     """
-    with measured(source, start, sheared=True) as run:
+    with open_run(source, start, sheared=True) as run:
         require_defined("collision_rate", run.scene)
         refuse_rest(run, "touch others without a collision, so that there is no rate")
         require_collisions(run)

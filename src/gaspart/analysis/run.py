@@ -165,7 +165,7 @@ class Run:
         """(T,) k_B T of each frame: twice the kinetic energy of flight about the mean motion (see `motion`)
         per degree of freedom; 0 if it is only rounding of the velocity of the centre of mass. Of a file that
         lacks particles, see `_of_all`. Raises SceneError as `freedoms`."""
-        if self.followed and "stress_sum" in self.data:
+        if self.is_subset and "stress_sum" in self.data:
             return self._of_all
         freedoms, masses, scene = self.freedoms, self.masses[self.moving], self.scene
         if self.flow_axes or scene.rough or scene.thermostat or scene.shear_rate is not None:
@@ -197,12 +197,12 @@ class Run:
         return float(self.temperatures.mean())
 
     @property
-    def falls(self) -> bool:
+    def has_gravity(self) -> bool:
         """Whether gravity acts."""
         return bool(np.any(self.scene.gravity))
 
     @property
-    def followed(self) -> bool:
+    def is_subset(self) -> bool:
         """Whether only some of the particles are in the file."""
         return self.data.sizes["atom"] < self.count
 
@@ -272,7 +272,7 @@ def require_collisions(run: Run) -> None:
 
 
 @contextmanager
-def measured(
+def open_run(
     source: Source, start: float | None, pairs: bool = False, sheared: bool = False
 ) -> Iterator[Run]:
     """The part of a source from the time `start` on; by default without its first quarter.

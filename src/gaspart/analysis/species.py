@@ -12,7 +12,7 @@ import xarray as xr
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import Observable, scalar
 from gaspart.analysis.observables import having, selecting
-from gaspart.analysis.run import Run, Source, measured, selected
+from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.errors import SceneError
 from gaspart.trajectory.reading import open_trajectory
 
@@ -41,7 +41,7 @@ def by_species(source: Source, start: float | None = None) -> xr.Dataset:
     """
     opened = open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source)
     with opened as run_of_all:
-        with measured(run_of_all, start) as run:
+        with open_run(run_of_all, start) as run:
             kinds = [int(kind) for kind in np.unique(run.species[run.moving])]
             if not kinds:
                 raise SceneError("species", [], "none of the particles moves")

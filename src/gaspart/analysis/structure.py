@@ -14,7 +14,7 @@ from gaspart.analysis.observables import having, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.profiles import Cells, Means, with_freedom
 from gaspart.analysis.room import left_by_obstacles
-from gaspart.analysis.run import Run, Source, measured, selected
+from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, one_of
@@ -36,7 +36,7 @@ def speed_distribution(source: Source, bins: int = 40, start: float | None = Non
     not one. Raises SceneError for fewer than 16 moving particles, and for particles at rest.
     """
     bins = count_of("bins", bins, least=2)
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("speeds", run.scene)
         masses, temperature = run.masses[run.moving], run.temperature
         if not temperature > 0.0:
@@ -88,7 +88,7 @@ def profile(
     """
     one_of("of", of, having(function="profile"))
     bins = count_of("bins", bins, least=2)
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined(of, run.scene, axis=axis, species=species)
         names = "xyz"[: run.dimension]
         k = names.index(names[-1] if axis is None else axis)
@@ -113,7 +113,7 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
     """
     from gaspart.analysis.order import global_steinhardt, hexatic
 
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("order", run.scene)
         if run.data.sizes["atom"] < run.count:
             rule = f"needs all {run.count} particles in the file"

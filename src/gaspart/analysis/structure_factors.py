@@ -14,7 +14,7 @@ from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
-from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import means_of
 from gaspart.analysis.waves import amplitudes, factors, in_shells, shells_of
 from gaspart.errors import SceneError
@@ -42,7 +42,7 @@ def structure_factor(
     spheres Verlet and Weis's, an approximation. Raises SceneError for walls, followed
     particles, too few frames, and a wave number below that of the longest wave.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("structure_factor", run.scene)
         lengths = run.scene.container.lengths
         found, along = _measured(run, bins, highest, lambda frame, waves: factors(frame, lengths, waves))
@@ -63,7 +63,7 @@ def partial_structure_factors(
     what is refused as there; also SceneError for single particles, which are of no species. Theory: of
     spheres of one size Verlet and Weis's, of a mixture Percus and Yevick's, both approximations.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("partial_structure_factors", run.scene)
         members = [np.flatnonzero(run.species == kind) for kind in range(len(run.scene.species))]
         lengths, pairs = run.scene.container.lengths, pairs_of(run.scene)
@@ -88,7 +88,7 @@ def _measured(
     vectors, in intervals of |k|, and the coordinate. Raises SceneError; see `structure_factor`."""
     bins = count_of("bins", bins, least=2)
     stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
-    if run.followed:
+    if run.is_subset:
         raise SceneError("follow", stored, f"needs all {run.count} particles in the file")
     diameter, least = 2.0 * run.scene.largest_radius, 2.0 * np.pi / max(lengths)
     rule = f"must be above that of the longest wave, {least:.4g}"

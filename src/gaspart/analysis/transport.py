@@ -24,7 +24,7 @@ from gaspart.analysis.conduction import conductivity_without_diffusion
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import KEPT, require_defined
-from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
@@ -49,7 +49,7 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
     Raises SceneError for a run without correlations of the stress, a lag that is longer than theirs, fewer
     than 17 frames, and a shear rate of 0.
     """
-    with measured(source, start, sheared=True) as run:
+    with open_run(source, start, sheared=True) as run:
         require_defined("shear_viscosity", run.scene)
         if run.scene.shear_rate is None:
             return _coefficient(run, "shear_viscosity", "shear", lag)
@@ -62,7 +62,7 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
     Arguments, theory and errors as of `shear_viscosity`. The mean is that of the run, of duration T, which
     makes the value too low by about 2 lag / T of it.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         return _coefficient(run, "bulk_viscosity", "bulk", lag)
 
 
@@ -73,7 +73,7 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     `conduction`), from the fluxes between frames, whose interval may not be longer than the lag, without
     the curves; SceneError also for particles of many sizes, and single ones in a mixture.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         if run.scene.alike:
             return _coefficient(run, "thermal_conductivity", "heat", lag)
         require_defined("thermal_conductivity", run.scene)
@@ -89,7 +89,7 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     flow. Theory: the equation of state, of a gas at rest. Raises SceneError for other trajectories, and fewer
     than 17 frames.
     """
-    with measured(source, start, sheared=True) as run:
+    with open_run(source, start, sheared=True) as run:
         require_defined("pressure_tensor", run.scene)
         _stored(run)
         if len(run.time) <= LEAST_INTERVALS:

@@ -10,7 +10,7 @@ from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.profiles import Means, with_freedom
 from gaspart.analysis.room import mean_areas
-from gaspart.analysis.run import Run, Source, measured
+from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 from gaspart.scene.faces import sliding_faces, thermal_numbers
@@ -34,7 +34,7 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     (`gaspart.theory.interpolated_flux`); between sliding plates half the work of their stress.
     Raises SceneError without a face at a temperature, for too few frames, and if nothing hit these faces.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("heat_flux", run.scene)
         faces = np.array(thermal_numbers(run.scene))
         energy = _sums(run, "wall_energy")[:, faces].astype(float)
@@ -60,7 +60,7 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
     these an interpolation, good to 8 % (`gaspart.theory.interpolated_stress`). Raises SceneError where
     nothing drags faces along themselves, for too few frames, and if nothing hit these faces.
     """
-    with measured(source, start) as run:
+    with open_run(source, start) as run:
         require_defined("wall_shear", run.scene)
         faces = np.array(thermal_numbers(run.scene, drawn=True))
         axes = np.array([axis for axis in range(run.dimension) if (faces // 2 != axis).any()])
@@ -123,7 +123,7 @@ def _corrected(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
 def _energies(run: Run) -> list[np.ndarray]:
     """(T,) each: the energy of flight about the mean velocity of the faces, and its first moments across
     them. None of a file that lacks some particles."""
-    if run.followed:
+    if run.is_subset:
         return []
     energy = 0.5 * (_about_faces(run) ** 2).sum(axis=2) * run.masses[run.moving]
     return _with_moments(run, energy)
@@ -132,7 +132,7 @@ def _energies(run: Run) -> list[np.ndarray]:
 def _momenta(run: Run, axis: int) -> list[np.ndarray]:
     """(T,) each: the momentum along an axis about the mean velocity of the faces, and its first moments
     across them."""
-    if run.followed:
+    if run.is_subset:
         return []
     return _with_moments(run, _about_faces(run)[..., axis] * run.masses[run.moving])
 

@@ -6,6 +6,7 @@ import gaspart as gp
 from gaspart.reproduction.config import checked_points
 from gaspart.reproduction.jobs.arguments import from_plain
 from gaspart.reproduction.jobs.simulate import simulate
+from gaspart.reproduction.points.modules import PACKAGE, closure
 
 POINT = {"dimension": 3, "count": 60, "side": 8, "radius": 0.5, "boundary": "periodic", "temperature": 1.0}
 
@@ -36,6 +37,14 @@ def test_the_equilibration_is_not_examined():
     assert start() is None  # a quarter of the run
     assert start(equilibration=10.0, samples=4000) == 10.0
     assert planned(samples=4000).arguments["sample_interval"] == 1.0
+
+
+def test_only_runs_with_until_depend_on_the_analysis():
+    def packages(point):
+        return {path.relative_to(PACKAGE).parts[0] for path in closure(*point.modules)}
+
+    assert {"analysis", "accuracy"} <= packages(planned())
+    assert {"analysis", "accuracy", "theory"}.isdisjoint(packages(planned(until=None)))
 
 
 @pytest.mark.parametrize(

@@ -99,7 +99,7 @@ def contact_values(run: Run) -> Expected | None:
 
 def pair_rates(run: Run) -> Expected | None:
     """Collisions of a particle of the first species of a pair, which has N_j - delta_ij partners."""
-    mixture = None if run.followed else _mixture_of_species(run)
+    mixture = None if run.is_subset else _mixture_of_species(run)
     if mixture is None:
         return None
     found = theory.mixture_collision_rates(*mixture.sizes, temperature=run.temperature, masses=mixture.masses)

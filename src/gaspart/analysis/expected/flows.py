@@ -84,7 +84,7 @@ def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndar
         return _closed(run)
     masses, radii = run.masses[members], run.radii[members]
     area = opening(scene, axis, place, float(radii.max()))
-    plain = not (scene.faces or scene.thermostat or run.dissipates or run.falls)
+    plain = not (scene.faces or scene.thermostat or run.dissipates or run.has_gravity)
     alike = np.ptp(masses) == 0.0 and np.ptp(radii) == 0.0 and run.moving.all()
     if area is None or not alike or not plain or _path(run) < area ** (1.0 / (run.dimension - 1)):
         return None

@@ -120,7 +120,7 @@ def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expe
     equal = whole and scene.alike and not any(kind.fixed for kind in kinds)
     if not equal or scene.walls or scene.faces or across or not (field or run.periodic[axis]):
         return None
-    if field and (run.dissipates or run.followed or not run.temperature > 0.0):
+    if field and (run.dissipates or run.is_subset or not run.temperature > 0.0):
         return None  # in no equilibrium, or of unknown temperature
     if not field:
         return scene.number_density, 0.0, "uniform"

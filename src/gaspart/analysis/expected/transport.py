@@ -25,7 +25,7 @@ _WINDOW = 12.0, 24.0
 
 def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) -> Expected | None:
     """(lag,) by an exponential velocity correlation; axes: along each of them."""
-    gas = None if run.followed else run.moving_fluid
+    gas = None if run.is_subset else run.moving_fluid
     if gas is None:
         return None
     equation = equation_of(run)
@@ -37,7 +37,7 @@ def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) ->
 
 def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
     """(lag,) with the exact decay at the start."""
-    gas = None if run.followed else run.moving_fluid
+    gas = None if run.is_subset else run.moving_fluid
     if gas is None:
         return None
     equation = equation_of(run)

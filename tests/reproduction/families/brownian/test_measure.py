@@ -11,7 +11,7 @@ RATE, MASS, COUNT = 0.5, 100.0, 900
 
 
 def point(replicas=300, boundary="periodic", **more):
-    """A point whose scene file is replaced by `setting`'s scene in these tests."""
+    """A point whose scene file is replaced by `motion`'s scene in these tests."""
     settings = {
         "scene": "config/scenes/brownian_heavy.yaml",
         "scene.container.boundary": boundary,
@@ -24,17 +24,17 @@ def point(replicas=300, boundary="periodic", **more):
     return Point("brownian_heavy", "single", "simulate", settings | more, "results/points", 1)
 
 
-def paths(setting, replicas, drift=0.0):
+def paths(motion, replicas, drift=0.0):
     """Ornstein-Uhlenbeck paths in 3D of the container's friction, (T,), (T, 1, 3), (T, 1, 3) each."""
     rng = np.random.default_rng(5)
-    rest = 1.0 - setting.share
-    rate, steps = setting.friction / rest, 300
+    rest = 1.0 - motion.share
+    rate, steps = motion.friction / rest, 300
     interval, fine = 0.1 / rate, 20
-    width = np.sqrt(rest * setting.temperature / setting.mass)
+    width = np.sqrt(rest * motion.temperature / motion.mass)
     keep = np.exp(-rate * interval / fine)
     v = width * rng.standard_normal((replicas, 3))
     x = np.zeros_like(v)
-    common = drift * np.sqrt(rest * setting.share * setting.temperature / setting.mass)
+    common = drift * np.sqrt(rest * motion.share * motion.temperature / motion.mass)
     common = common * rng.standard_normal((replicas, 3))
     moved, velocities = [x], [v]
     for _ in range(steps):
@@ -64,13 +64,13 @@ def made_up(monkeypatch):
 def test_friction_diffusion_and_equipartition_of_known_paths(made_up):
     """With the recoil that a finite gas gives back, and its drift, taken out."""
     chosen = point()
-    setting = brownian.setting_of(chosen)
-    assert setting.share == pytest.approx(0.1)
-    ds = brownian.brownian_msd([made_up(chosen, paths(setting, 300, drift=1.0))], {}).isel(point=0)
+    motion = brownian.motion_of(chosen)
+    assert motion.share == pytest.approx(0.1)
+    ds = brownian.brownian_msd([made_up(chosen, paths(motion, 300, drift=1.0))], {}).isel(point=0)
     for name, expected in (
         ("equipartition", 1.0),
-        ("measured_friction", setting.friction),
-        ("measured_diffusion", setting.diffusion),
+        ("measured_friction", motion.friction),
+        ("measured_diffusion", motion.diffusion),
     ):
         value, error = float(ds[name]), float(ds[f"{name}_error"])
         assert 0.002 * expected < error < 0.05 * expected, name
@@ -87,13 +87,13 @@ def test_a_light_particle_is_expected_to_move_as_the_linear_boltzmann_equation_s
     found = {}
     for name, gas in (("maxwell", {}), ("equal", equal_speeds)):
         light = {"replicas": 40, "boundary": "wall", "scene.particles.0.mass": 1.0, **gas}
-        setting = brownian.setting_of(point(**light))
-        unit = 1.0 / setting.friction
+        motion = brownian.motion_of(point(**light))
+        unit = 1.0 / motion.friction
         chosen = point(**light, duration=24.0 * unit, equilibration=6.0 * unit, samples=240)
-        assert setting.is_light
-        made_up(chosen, paths(setting, 40))
+        assert motion.is_light
+        made_up(chosen, paths(motion, 40))
         found[name] = brownian.brownian_msd([chosen], {}).isel(point=0)
-        assert 0.001 < float(found[name]["expected_friction_error"] / setting.friction) < 0.02
+        assert 0.001 < float(found[name]["expected_friction_error"] / motion.friction) < 0.02
     maxwell, equal = found["maxwell"], found["equal"]
     assert float(maxwell["expected_equipartition"]) == pytest.approx(1.0, abs=0.012)
     assert float(maxwell["expected_friction"] / maxwell["friction"]) == pytest.approx(0.9935, abs=0.015)
@@ -103,17 +103,17 @@ def test_a_light_particle_is_expected_to_move_as_the_linear_boltzmann_equation_s
 
 
 def test_between_walls_nothing_is_given_back():
-    setting = brownian.setting_of(point(boundary="wall"))
-    assert setting.share == 0.0
-    assert setting.diffusion * setting.friction * setting.mass == pytest.approx(setting.temperature)
-    light = brownian.setting_of(point(boundary="wall", **{"scene.particles.0.mass": 1.0}))
+    motion = brownian.motion_of(point(boundary="wall"))
+    assert motion.share == 0.0
+    assert motion.diffusion * motion.friction * motion.mass == pytest.approx(motion.temperature)
+    light = brownian.motion_of(point(boundary="wall", **{"scene.particles.0.mass": 1.0}))
     assert light.diffusion * light.friction == pytest.approx(1.01895)
 
 
 def test_ends_of_paths(made_up):
     chosen = point(boundary="wall")
-    setting = brownian.setting_of(chosen)
-    found = [(t, x, v) for t, x, v in paths(setting, 200)]
+    motion = brownian.motion_of(chosen)
+    found = [(t, x, v) for t, x, v in paths(motion, 200)]
     ds = brownian.brownian_paths([made_up(chosen, found)], {"paths": 3}).isel(point=0)
     assert ds["way"].shape == (3, 301, 3) and int(ds["end_freedom"]) == 600
     # these start in equilibrium, not at rest: farther by (30 - 1) / (30 - 1.5)
@@ -138,9 +138,9 @@ def test_what_cannot_be_measured_is_refused(made_up):
     with pytest.raises(gp.SceneError, match="displacements"):
         brownian.brownian_msd([point(displacements=False)], {})
     short = point()
-    setting = brownian.setting_of(short)
-    found = [(t[:60], x[:60], v[:60]) for t, x, v in paths(setting, 2)]
+    motion = brownian.motion_of(short)
+    found = [(t[:60], x[:60], v[:60]) for t, x, v in paths(motion, 2)]
     with pytest.raises(gp.SceneError, match="must be .* or more"):
         brownian.brownian_msd([made_up(short, found)], {})
     with pytest.raises(gp.SceneError, match="one entry of particles and one species"):
-        brownian.setting_of(point(scene="config/scenes/brownian.yaml", **{"scene.particles": []}))
+        brownian.motion_of(point(scene="config/scenes/brownian.yaml", **{"scene.particles": []}))

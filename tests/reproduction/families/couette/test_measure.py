@@ -60,7 +60,7 @@ def test_numbers_of_an_exact_flow():
     place = 20.0 * ((np.arange(40) + 0.5) / 40 - 0.5)
     density = 1.0 / (np.sqrt(2.0) * np.pi)
     gap = couette.Gap(20.0, 1.0, 1.0, 1.0, 3)
-    setting = couette.Setting(gap, 1.0, 1.0, True, 1.0, place, np.abs(place) < 7.0)
+    setting = couette.FlowBetweenPlates(gap, 1.0, 1.0, True, 1.0, place, np.abs(place) < 7.0)
     gradient = 1.0 / (20.0 + 2.0 * 1.25)
     velocity = gradient * place
     squares = np.stack([np.ones(40), 1.0 + velocity**2, np.ones(40)], axis=1)

@@ -28,7 +28,7 @@ GAS = 100_000
 
 
 @dataclass(frozen=True)
-class Setting:
+class BrownianMotion:
     """Theory's predictions for a point. share: the large particle's part of all mass where momentum is
     conserved (all axes periodic), else 0."""
 
@@ -48,8 +48,8 @@ class Setting:
         return self.mass <= HEAVY * self.gas_mass
 
 
-def setting_of(point: Point) -> Setting:
-    """The setting of a point's scene; SceneError for one that has not one particle and one species."""
+def motion_of(point: Point) -> BrownianMotion:
+    """The motion of a point's scene; SceneError for one that has not one particle and one species."""
     scene, where = point.scene, f"experiments.{point.experiment}.scene"
     if len(scene.particles) != 1 or len(scene.species) != 1:
         raise SceneError(
@@ -63,7 +63,7 @@ def setting_of(point: Point) -> Setting:
     density = gas.count / (room - theory.particle_volume(3, 2.0 * contact))
     friction = float(theory.friction_rate(density, contact, particle.mass, gas.mass, temperature))
     conserved = all(scene.container.periodic)
-    return Setting(
+    return BrownianMotion(
         mass=particle.mass,
         gas_mass=gas.mass,
         radius=particle.radius,
@@ -76,7 +76,7 @@ def setting_of(point: Point) -> Setting:
     )
 
 
-def light_paths(point: Point, setting: Setting) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+def light_paths(point: Point, motion: BrownianMotion) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Paths of the linear Boltzmann equation from rest, sampled as the point's runs, in GROUPS: times (T,),
     displacements and velocities (T, N, 3).
 
@@ -85,18 +85,18 @@ def light_paths(point: Point, setting: Setting) -> Iterator[tuple[np.ndarray, np
     gas, times = point.scene.species[0], point.schedule
     frames = times.equilibration_frames + times.samples
     # n pi d^2, from the mean free path of Maxwell's gas, 1 / (sqrt(2) n pi d^2)
-    own = 1.0 / (math.sqrt(2.0) * setting.mean_free_path)
+    own = 1.0 / (math.sqrt(2.0) * motion.mean_free_path)
     middle = times.sample_interval * (np.arange(frames) + 0.5)
     if gas.speed is not None:
         speeds = gas.speed * relaxing_speeds(GAS, gas.speed * middle, own)
     else:
-        thermal = math.sqrt(setting.temperature / setting.gas_mass)
+        thermal = math.sqrt(motion.temperature / motion.gas_mass)
         even = (np.arange(GAS) + 0.5) / GAS
         speeds = [np.asarray(theory.maxwell_ppf(even, 3, thermal**2))] * frames
-    hits = own * (setting.contact / (2.0 * gas.radius)) ** 2
+    hits = own * (motion.contact / (2.0 * gas.radius)) ** 2
     time = times.sample_interval * np.arange(frames + 1)
     size = min(point.replicas, MOST)
-    ratio = setting.mass / setting.gas_mass
+    ratio = motion.mass / motion.gas_mass
     made = tagged_paths(speeds, times.sample_interval, hits, ratio, GROUPS * size)
     for group in np.split(np.arange(GROUPS * size), GROUPS):
         yield time, made.displacements[:, group], made.velocities[:, group]

@@ -19,7 +19,7 @@ from gaspart.analysis.correlations import Curves, correlate
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import bootstrap, means_of
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.brownian.expected import Setting, light_paths, setting_of
+from gaspart.reproduction.families.brownian.expected import BrownianMotion, light_paths, motion_of
 from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
@@ -56,15 +56,15 @@ def brownian_paths(points: list[Point], settings: dict) -> xr.Dataset:
     """
     rows = []
     for point in points:
-        setting = setting_of(point)
+        motion = motion_of(point)
         found = list(_followed(point))
         ends = np.array([moved[-1, 0] for _, moved, _ in found])
         duration = float(found[0][0][-1])
-        variance = _end_variance(point, setting, duration)
+        variance = _end_variance(point, motion, duration)
         shown = np.array([moved[:, 0] for _, moved, _ in found[: settings["paths"]]])
         rows.append(
             {
-                **_facts(point, setting),
+                **_facts(point, motion),
                 "duration": duration,
                 "way": shown,
                 "end_variance": variance,
@@ -75,15 +75,15 @@ def brownian_paths(points: list[Point], settings: dict) -> xr.Dataset:
     return from_rows("point", rows, ("path", "frame", "axis"))
 
 
-def _end_variance(point: Point, setting: Setting, duration: float) -> float:
+def _end_variance(point: Point, motion: BrownianMotion, duration: float) -> float:
     """Expected mean square of a component of the displacement at the end."""
-    if setting.is_light:
-        return float(np.mean([(moved[-1] ** 2).mean() for _, moved, _ in light_paths(point, setting)]))
-    rest = 1.0 - setting.share
+    if motion.is_light:
+        return float(np.mean([(moved[-1] ** 2).mean() for _, moved, _ in light_paths(point, motion)]))
+    rest = 1.0 - motion.share
     variance = theory.langevin_msd_from_rest(
-        duration, rest**2 * setting.diffusion, setting.friction / rest, dimension=1
+        duration, rest**2 * motion.diffusion, motion.friction / rest, dimension=1
     )
-    return float(variance + rest * setting.share * setting.temperature / setting.mass * duration**2)
+    return float(variance + rest * motion.share * motion.temperature / motion.mass * duration**2)
 
 
 def brownian_msd(points: list[Point], settings: dict) -> xr.Dataset:
@@ -105,40 +105,40 @@ def brownian_msd(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _statistics(point: Point) -> dict:
-    setting = setting_of(point)
-    curves, found = _reduced(point, setting, _followed(point))
-    row = {**_facts(point, setting), **curves}
+    motion = motion_of(point)
+    curves, found = _reduced(point, motion, _followed(point))
+    row = {**_facts(point, motion), **curves}
     row |= entries({NAMES[name]: one for name, one in found.items()})
-    if setting.is_light:
-        infinite = replace(setting, share=0.0)
-        predicted, expected = _reduced(point, infinite, light_paths(point, setting))
+    if motion.is_light:
+        infinite = replace(motion, share=0.0)
+        predicted, expected = _reduced(point, infinite, light_paths(point, motion))
         row |= {f"expected_{name}": predicted[name][: len(curves["time"])] for name in ("vacf", "msd")}
     else:
         time = curves["time"]
         row |= {"expected_vacf": np.exp(-time), "expected_msd": theory.langevin_msd(time, 1.0 / 6.0, 1.0)}
-        exact = {"equipartition": 1.0, "friction": setting.friction, "diffusion": setting.diffusion}
+        exact = {"equipartition": 1.0, "friction": motion.friction, "diffusion": motion.diffusion}
         expected = {name: Estimate(value) for name, value in exact.items()}
     return row | entries({f"expected_{name}": one for name, one in expected.items()})
 
 
 def _reduced(
-    point: Point, setting: Setting, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
+    point: Point, motion: BrownianMotion, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> tuple[dict[str, np.ndarray], dict[str, Estimate]]:
     """The correlations of paths in reduced units, with errors, and the quantities derived from them."""
-    rest = 1.0 - setting.share
-    rate, curves = setting.friction / rest, _curves(point, setting, paths)
+    rest = 1.0 - motion.share
+    rate, curves = motion.friction / rest, _curves(point, motion, paths)
     time = rate * curves[0].time
     if time[-1] < DIFFUSION_AT:
         longer = math.ceil(2.0 * DIFFUSION_AT / rate)
         where = f"experiments.{point.experiment}[{point.name}].duration"
         raise SceneError(where, point.settings.get("duration"), f"must be {longer} or more")
-    equilibrium = setting.temperature / setting.mass
-    drift = rest * setting.share * equilibrium
+    equilibrium = motion.temperature / motion.mass
+    drift = rest * motion.share * equilibrium
     vacf = np.array([one.correlation for one in curves]) - drift
     msd = np.array([one.msd for one in curves]) - 3.0 * drift * curves[0].time ** 2
     late = int(np.argmin(np.abs(time - DIFFUSION_AT)))
     early = time[1 : max(2, np.searchsorted(time, FRICTION_TO) + 1)]
-    langevin = float(theory.langevin_msd(time[late], setting.diffusion, 1.0)) * rest**2 / rate
+    langevin = float(theory.langevin_msd(time[late], motion.diffusion, 1.0)) * rest**2 / rate
     both = np.concatenate([vacf[:, : early.size + 1], msd[:, [late]]], axis=1)
 
     def decay(x: np.ndarray) -> float:
@@ -149,7 +149,7 @@ def _reduced(
     derived = {
         "equipartition": lambda x: x[:, 0].mean() / (rest * equilibrium),
         "friction": lambda x: rest * rate * decay(x),
-        "diffusion": lambda x: x[:, -1].mean() / langevin * setting.diffusion,
+        "diffusion": lambda x: x[:, -1].mean() / langevin * motion.diffusion,
     }
     curves_of = {
         "msd": means_of(msd * rate**2 / (6.0 * rest * equilibrium)),
@@ -161,11 +161,11 @@ def _reduced(
 
 
 def _curves(
-    point: Point, setting: Setting, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
+    point: Point, motion: BrownianMotion, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> list[Curves]:
     """Time correlations of each of the paths, after equilibration."""
     drop = point.schedule.equilibration_frames
-    rate, curves = setting.friction / (1.0 - setting.share), []
+    rate, curves = motion.friction / (1.0 - motion.share), []
     for time, moved, velocities in paths:
         interval = (time[-1] - time[0]) / (len(time) - 1)
         lags = min(math.ceil(LONGEST / (rate * interval)), (len(time) - drop) // 2) + 1
@@ -173,12 +173,12 @@ def _curves(
     return curves
 
 
-def _facts(point: Point, setting: Setting) -> dict:
+def _facts(point: Point, motion: BrownianMotion) -> dict:
     """The columns of every row."""
     return {
         "equal_speeds": point.scene.species[0].speed is not None,
         "stepped": point.settings.get("engine") == "step",
         "replicas": point.replicas,
-        "is_light": setting.is_light,
-        **vars(setting),
+        "is_light": motion.is_light,
+        **vars(motion),
     }

@@ -69,8 +69,8 @@ def _equilibrium(point: Point) -> dict:
 
 
 @dataclass(frozen=True)
-class Setting:
-    """What is known of a flow. gap: its size; speed, by which the velocities of the walls differ; diameter of
+class FlowBetweenPlates:
+    """A flow and its bins. gap: its size; speed, by which the velocities of the walls differ; diameter of
     the spheres; dilute: whether they take no room, as in DSMC; coarse: the viscosity by the engine's cells
     and steps over the exact one; place (B,), of the bins; middle (B,), which are clear of the walls."""
 
@@ -83,7 +83,7 @@ class Setting:
     middle: np.ndarray
 
     @classmethod
-    def of(cls, point: Point, settings: dict) -> Setting:
+    def of(cls, point: Point, settings: dict) -> FlowBetweenPlates:
         """That of a point."""
         scene = point.scene
         gap, diameter, dilute = Gap.of(scene), 2.0 * scene.smallest_radius, point.engine.equation != "exact"
@@ -171,7 +171,7 @@ def _blocks_of(run: Run, gap: Gap, blocks: int, bins: int) -> Averages:
 
 def _flow(point: Point, settings: dict) -> dict:
     """The numbers of one flow."""
-    setting = Setting.of(point, settings)
+    setting = FlowBetweenPlates.of(point, settings)
     gap, bins = setting.gap, settings["bins"]
     blocks = _blocks(point, gap, settings["blocks"], bins)
     averages = blocks.steady, blocks.pressure, blocks.density, blocks.flow, blocks.squares
@@ -211,7 +211,7 @@ def _profile(
     return velocity, energies.mean(axis=1), energies
 
 
-def _numbers(setting: Setting, stress: float, pressure: float, *averages: np.ndarray) -> np.ndarray:
+def _numbers(setting: FlowBetweenPlates, stress: float, pressure: float, *averages: np.ndarray) -> np.ndarray:
     """The stress and `NUMBERS`, from averages over a run.
 
     Across the gap T + b u^2 is constant (`theory.viscous_heating`), and the viscosity grows like the root of
