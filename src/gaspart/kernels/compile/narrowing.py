@@ -23,25 +23,26 @@ numba: Any = load_numba()
 types: Any = numba.types
 
 _UNKNOWN = None  # the type of what is not an argument, nor an entry of one
+_MATTER = types.NamedTuple, types.NoneType
 Use = dict  # by name of an entry, what of it is used; {} if no more than whether it is None
 WHOLE: Use = {"*": {}}
 
 
 def narrowed(function: Callable, arguments: tuple) -> tuple:
     """The types of arguments for which a function is to be compiled instead of these."""
-    key = _key(function, arguments)
-    if key not in _known_types:
-        uses = zip(arguments, _uses(function, arguments), strict=True)
-        _known_types[key] = tuple(_narrow(one, use) for one, use in uses)
-    return _known_types[key]
+    uses = zip(arguments, _uses(function, arguments), strict=True)
+    return tuple(_narrow(one, use) for one, use in uses)
 
 
 def _narrow(given: Any, use: Use) -> Any:
     if not isinstance(given, types.NamedTuple) or "*" in use:
         return given
-    entries = zip(given.fields, given.types, strict=True)
-    kept = [_narrow(kind, use[name]) if name in use else types.none for name, kind in entries]
-    return types.NamedTuple(kept, given.instance_class)
+    key = given._code, str(use)
+    if key not in _known_types:
+        entries = zip(given.fields, given.types, strict=True)
+        kept = [_narrow(kind, use[name]) if name in use else types.none for name, kind in entries]
+        _known_types[key] = types.NamedTuple(kept, given.instance_class)
+    return _known_types[key]
 
 
 def _uses(function: Callable, arguments: tuple) -> tuple[Use, ...]:
@@ -53,12 +54,12 @@ def _uses(function: Callable, arguments: tuple) -> tuple[Use, ...]:
 
 
 def _key(function: Callable, arguments: tuple) -> tuple:
-    """The source of a function, and the numbers of the types, whose own hashes are slow."""
-    return function.__code__, tuple(_UNKNOWN if one is _UNKNOWN else one._code for one in arguments)
+    """The source of a function, and the numbers of the types that matter, whose own hashes are slow."""
+    return function.__code__, tuple(one._code if isinstance(one, _MATTER) else _UNKNOWN for one in arguments)
 
 
 _known_uses: dict[tuple, tuple[Use, ...]] = {}
-_known_types: dict[tuple, tuple] = {}
+_known_types: dict[tuple[int, str], Any] = {}
 
 
 def _read(function: Callable, arguments: tuple) -> tuple[Use, ...]:
@@ -164,10 +165,13 @@ class _Reader(ast.NodeVisitor):
         """What is handed on to a function of ours is used as it is there."""
         called = self.names.get(node.func.id) if isinstance(node.func, ast.Name) else None
         function = getattr(called, "py_func", None)
-        if function is None or node.keywords or any(isinstance(one, ast.Starred) for one in node.args):
+        kinds = tuple(map(self._type, node.args))
+        named = any(isinstance(kind, types.NamedTuple) for kind in kinds)  # others are used whole
+        starred = any(isinstance(one, ast.Starred) for one in node.args)
+        if function is None or not named or node.keywords or starred:
             self.generic_visit(node)
             return
-        uses = _uses(function, tuple(map(self._type, node.args)))
+        uses = _uses(function, kinds)
         for argument, use in zip(node.args, uses, strict=True):
             place = self._place(argument)
             if place is None:
