@@ -121,6 +121,12 @@ def test_a_row_without_an_array_has_nan_in_its_place():
     np.testing.assert_array_equal(ds["b"].values, [[[1.0, 1.0]], [[np.nan, np.nan]]])
 
 
+def test_degrees_of_freedom_may_be_one_number_for_an_array():
+    row = {"a": np.ones(2), "a_error": np.ones(2), "a_freedom": 3}
+    ds = from_rows("gas", [row], {"a": ("bin",)})
+    assert ds["a_freedom"].dims == ("gas",) and Table(ds, "gas").a.freedom.tolist() == [[3.0, 3.0]]
+
+
 def test_dimensions_and_units_are_those_of_the_key_without_error():
     row = {"a": np.ones(2), "a_error": np.ones(2), "b": np.ones(3), "count": 5, "name": "x"}
     ds = from_rows("gas", [row, row], {"a": ("bin",), "b": ("step",)}, {"a": "length"})

@@ -169,11 +169,8 @@ def from_rows(
     for name in dict.fromkeys(name for row in rows for name in row):
         key = name.removesuffix("_error")
         values = _stacked([np.asarray(row.get(name, np.nan)) for row in rows])
-        dims = (
-            inner[: values.ndim - 1]
-            if isinstance(inner, tuple)
-            else inner.get(key.removesuffix("_freedom"), ())
-        )
+        dims = inner if isinstance(inner, tuple) else inner.get(key.removesuffix("_freedom"), ())
+        dims = dims[: values.ndim - 1]  # one number of degrees of freedom may be that of an array
         attributes = {} if units is None or values.dtype.kind in "OSU" else {"units": units.get(key, "1")}
         columns[name] = (over, *dims), values, attributes
     return xr.Dataset(columns)

@@ -5,6 +5,7 @@ from reproduction.families.drawn import Points, column, draw, shows, varied
 
 from gaspart import theory
 from gaspart.reproduction.families.displacement import figure as displacement
+from gaspart.reproduction.table import Table
 
 KEPT = ("packing_fraction", "time", "interval")
 
@@ -52,6 +53,6 @@ def test_discs():
 
 @pytest.mark.parametrize("data", [discs, spheres])
 def test_no_lag_is_drawn_twice(data):
-    pieces = list(displacement._pieces(data(), 0.3))
-    drawn = [time for row, lags in pieces for time in row["time"].values[lags]]
+    pieces = list(displacement._pieces(Table(data(), "point"), 0.3))
+    drawn = [time for run, lags in pieces for time in run.time[lags]]
     assert len(pieces) >= 2 and np.all(np.diff(drawn) > 0.0)

@@ -8,8 +8,8 @@ import xarray as xr
 import gaspart as gp
 from gaspart.reproduction.families.heat.approach import FRAMES
 from gaspart.reproduction.families.heat.measure import INNER
-from gaspart.reproduction.families.shared.rows import from_rows
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import from_rows
 from gaspart.theory.heat import (
     METAL_BEND,
     METAL_GAP,
@@ -88,7 +88,6 @@ def metals(error=0.002):
         "energy_ratio": ones,
         "log_fluctuation": 0.0 * ones,
         "bend": METAL_BEND * ones,
-        "gap_over_path": METAL_GAP * ones,
         "mode_ratio": ones,
         "flux": np.array([0.1, 0.1, 0.1, 0.105]),
     }
@@ -103,4 +102,5 @@ def metals(error=0.002):
     for name, value in {"hot": [2, 1, 2, 2], "cold": [1, 1, 2, 1], "expected": [360] * 4}.items():
         ds[name] = ("point", np.array(value, dtype=float))
     ds["regular"] = ("point", np.array([False, False, False, True]))
-    return ds.assign(electrons_part=("point", ones * 5 / 9), slope=1.0, slope_error=error)
+    ds = ds.assign(gap_over_path=("point", METAL_GAP * ones), electrons_part=("point", ones * 5 / 9))
+    return ds.assign(slope=1.0, slope_error=error)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import rows
+from gaspart.reproduction.table import Row, Table
 
 LANGEVIN = "the Langevin equation with the friction of a dilute gas ([Chapman 1970])"
 BOLTZMANN = "the linear Boltzmann equation, direct simulation (gaspart.theory.tagged)"
@@ -18,90 +18,88 @@ FAILS_IF = {
 STATISTICAL = "the statistical error of the direct simulation"
 
 
-def _name(row: xr.Dataset) -> str:
+def _name(row: Row) -> str:
     """The particle that a row describes."""
-    gas = ", gas of equal speeds" if row["equal_speeds"] else ""
-    steps = "time-stepped, " if row["stepped"] else ""
-    return f"{steps}mass {float(row['mass'] / row['gas_mass']):g} times a gas particle's{gas}"
+    gas = ", gas of equal speeds" if row.equal_speeds else ""
+    steps = "time-stepped, " if row.stepped else ""
+    return f"{steps}mass {row.mass / row.gas_mass:g} times a gas particle's{gas}"
 
 
-def _source(row: xr.Dataset) -> str:
+def _source(row: Row) -> str:
     """The source of what is expected of a row."""
-    if not row["is_light"]:
+    if not row.is_light:
         return LANGEVIN
-    return RELAXING if row["equal_speeds"] else BOLTZMANN
+    return RELAXING if row.equal_speeds else BOLTZMANN
 
 
 def brownian_paths(ds: xr.Dataset) -> list[Claim]:
     """Distances from the start at the end of the paths."""
     return [
         Claim.chi_square(
-            claim=f"ends of {int(row['replicas'])} paths over their variance from rest, {_name(row)}",
-            chi_square=float(row["end_chi_square"]),
-            degrees_of_freedom=int(row["end_freedom"]),
+            claim=f"ends of {row.replicas} paths over their variance from rest, {_name(row)}",
+            chi_square=row.end_chi_square,
+            degrees_of_freedom=row.end_freedom,
             source=_source(row),
             fails_if="paths that spread too far or too little, or are cut off by the walls",
         )
-        for row in rows(ds, "point")
+        for row in Table(ds, "point")
     ]
 
 
 def brownian_msd(ds: xr.Dataset) -> list[Claim]:
     """Equipartition, friction and diffusion of every point, and the mean free path that theory requires; the
     same numbers by both engines where both have run a scene."""
-    claims = [claim for row in rows(ds, "point") for claim in _coefficients(row)]
-    steps, events = (rows(ds.isel(point=ds["stepped"].values == one), "point") for one in (True, False))
-    for row in steps:
-        for other in events:
-            if all(row[name] == other[name] for name in ("equal_speeds", "mass", "friction")):
-                claims += _both_engines(row, other)
+    points = Table(ds, "point")
+    claims = [claim for row in points for claim in _coefficients(row)]
+    for steps in points[points.stepped]:
+        for events in points[~points.stepped]:
+            if all(steps[name] == events[name] for name in ("equal_speeds", "mass", "friction")):
+                claims += _both_engines(steps, events)
     return claims
 
 
-def _both_engines(row: xr.Dataset, other: xr.Dataset) -> list[Claim]:
+def _both_engines(steps: Row, events: Row) -> list[Claim]:
     """What time steps give of a scene over what events do, from independent runs."""
-    claims = []
-    for text, key, required in (
-        ("energy of the large particle", "equipartition", 0.04),
-        ("friction rate", "measured_friction", 0.04),
-        ("diffusion coefficient", "measured_diffusion", 0.08),
-    ):
-        claims.append(
-            Claim(
-                claim=f"{text} by time steps over that by events, {_name(other)}",
-                measured=Estimate.of(row, key) / Estimate.of(other, key),
-                expected=1.0,
-                required=required,
-                follows=True,
-                source="both engines solve the same equations of motion",
-                fails_if="contacts that time steps miss, count twice, or resolve along a wrong normal",
-            )
+    return [
+        Claim(
+            claim=f"{text} by time steps over that by events, {_name(events)}",
+            measured=steps[key] / events[key],
+            expected=1.0,
+            required=required,
+            follows=True,
+            source="both engines solve the same equations of motion",
+            fails_if="contacts that time steps miss, count twice, or resolve along a wrong normal",
         )
-    return claims
+        for text, key, required in (
+            ("energy of the large particle", "equipartition", 0.04),
+            ("friction rate", "measured_friction", 0.04),
+            ("diffusion coefficient", "measured_diffusion", 0.08),
+        )
+    ]
 
 
-def _alternative(row: xr.Dataset, key: str) -> float | None:
+def _alternative(row: Row, key: str) -> float | None:
     """What a competing theory expects: of a gas of equal speeds, that it is in equilibrium; of one that is,
     that the particle's own radius counts instead of the distance of contact."""
-    if row["equal_speeds"]:
+    if row.equal_speeds:
         return 1.0 if key == "equipartition" else float(row[key])
-    bare = float(row["radius"] / row["contact"]) ** 2
+    bare = (row.radius / row.contact) ** 2
     factor = {"friction": bare, "diffusion": 1.0 / bare}.get(key)
-    return factor and factor * float(row[f"expected_{key}"])
+    return factor and factor * float(row[f"expected_{key}"].value)
 
 
-def _coefficients(row: xr.Dataset) -> list[Claim]:
+def _coefficients(row: Row) -> list[Claim]:
     name, claims = _name(row), []
     for text, key, measured, required in (
         ("equipartition M<V^2>/3kT", "equipartition", "equipartition", 0.03),
         ("friction rate", "friction", "measured_friction", 0.03),
         ("diffusion coefficient", "diffusion", "measured_diffusion", 0.05),
     ):
-        expected = Estimate.of(row, f"expected_{key}")
+        expected = row[f"expected_{key}"]
         claims.append(
             Claim(
                 claim=f"{text}, {name}",
-                measured=Estimate.of(row, measured),
+                measured=row[measured],
                 expected=expected,
                 required=required * expected.value,
                 source=_source(row),
@@ -115,7 +113,7 @@ def _coefficients(row: xr.Dataset) -> list[Claim]:
         Claim.at_least(
             claim=f"mean free path over the particle's radius, {name}",
             kind="identity",
-            measured=Estimate(row["mean_free_path"] / row["radius"]),
+            measured=Estimate(row.mean_free_path / row.radius),
             bound=10.0,
             required=1.0,
             source="the friction is that of a gas whose particles do not collide near the large one",

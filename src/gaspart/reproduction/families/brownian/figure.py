@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.table import Row, Table
 
 LONGEST = 3.2
 """Friction times up to which the velocity autocorrelation is drawn: noise dominates beyond."""
@@ -20,74 +23,78 @@ def brownian_paths(ds: xr.Dataset) -> Figure:
     """Paths from above, a panel for each point; in the middle, the sphere to scale."""
     from matplotlib.patches import Circle
 
-    figure, axes = style.new(*((3.4,),) * ds.sizes["point"])
-    for index, axis in enumerate(axes):
-        row = ds.isel(point=index)
-        axis.add_patch(Circle((0.0, 0.0), float(row["radius"]), color=style.GREY, alpha=0.35, lw=0))
-        for path in range(ds.sizes["path"]):
-            points = row["way"].isel(path=path).values
+    spheres = Table(ds, "point")
+    figure, axes = style.new(*((3.4,),) * len(spheres))
+    for letter, axis, sphere in zip("abcdefgh", axes, spheres, strict=False):
+        axis.add_patch(Circle((0.0, 0.0), sphere.radius, color=style.GREY, alpha=0.35, lw=0))
+        for path, way in enumerate(sphere.way):
             colour = style.COLOURS[path % len(style.COLOURS)]
-            axis.plot(points[:, 0], points[:, 1], color=colour, lw=0.7)
-            end = points[np.isfinite(points[:, 0])][-1]
+            axis.plot(way[:, 0], way[:, 1], color=colour, lw=0.7)
+            end = way[np.isfinite(way[:, 0])][-1]
             axis.plot(*end[:2], color=colour, marker=style.MARKERS[path % len(style.MARKERS)], zorder=4)
         axis.plot(0.0, 0.0, color=style.DATA, marker="o", ms=2.5, zorder=5)
-        widest = 1.08 * np.nanmax(np.abs(row["way"].values[..., :2]))
-        axis.set_xlim(-widest, widest)
-        axis.set_ylim(-widest, widest)
-        axis.set_aspect("equal")
-        axis.set_xlabel("$x$ (length)")
-        axis.set_ylabel("$y$ (length)")
-        masses = float(row["mass"] / row["gas_mass"])
-        collisions = float(row["duration"] * row["friction"])
-        style.letter(axis, f"({'ab'[index]}) $M={masses:g}\\,m$, {collisions:.0f} friction times")
+        widest = 1.08 * np.nanmax(np.abs(sphere.way[..., :2]))
+        axis.set(xlim=(-widest, widest), ylim=(-widest, widest), aspect="equal")
+        style.labelled(axis, "$x$ (length)", "$y$ (length)")
+        mass, collisions = sphere.mass / sphere.gas_mass, sphere.duration * sphere.friction
+        style.letter(axis, f"({letter}) $M={mass:g}\\,m$, {collisions:.0f} friction times")
     return figure
 
 
 def brownian_msd(ds: xr.Dataset) -> Figure:
     """Mean-squared displacement and velocity autocorrelation, with those of the Langevin equation; below, the
     deviations from it, with those that theory expects of a light particle as lines."""
-    figure, axes = style.new((2.4, 1.1), (2.4, 1.1))
-    t = np.geomspace(0.05, 1.05 * float(ds["time"].max()), 300)
-    axes[0].loglog(t, theory.langevin_msd(t, 1.0 / 6.0, 1.0), color=style.DATA, label="Langevin", zorder=2)
-    axes[2].semilogy(t, np.exp(-t), color=style.DATA, label=r"$e^{-\gamma t}$", zorder=2)
-    for residual in (axes[1], axes[3]):
+    figure, (far, ratio, memory, difference) = style.new((2.4, 1.1), (2.4, 1.1))
+    spheres = Table(ds, "point")
+    t = np.geomspace(0.05, 1.05 * np.nanmax(spheres.time), 300)
+    far.loglog(t, _langevin(t), color=style.DATA, label="Langevin", zorder=2)
+    memory.semilogy(t, np.exp(-t), color=style.DATA, label=r"$e^{-\gamma t}$", zorder=2)
+    for residual in (ratio, difference):
         style.level(residual, 0.0)
-    for kind in range(ds.sizes["point"]):
-        row = ds.isel(point=kind).dropna("lag", subset=["time"])
-        label = f"$M={float(row['mass'] / row['gas_mass']):g}\\,m$"
-        label += ", equal speeds" * bool(row["equal_speeds"]) + ", steps" * bool(row["stepped"])
-        time = row["time"].values
-        shown = np.unique(np.round(np.geomspace(1, time.size - 1, 16)).astype(int))
-        curve = theory.langevin_msd(time[shown], 1.0 / 6.0, 1.0)
-        msd, error = estimates(row, "msd")[:, shown]
-        hollow = kind > 0
-        style.points(axes[0], time[shown], msd, error, kind=kind, hollow=hollow, label=label)
-        style.points(axes[1], time[shown], msd / curve - 1.0, error / curve, kind=kind, hollow=hollow)
-        if row["is_light"]:
-            expected = row["expected_msd"].values[1:] / theory.langevin_msd(time[1:], 1.0 / 6.0, 1.0) - 1.0
-            axes[1].plot(time[1:], expected, color=style.COLOURS[kind], lw=0.8, zorder=2)
-            early = time < LONGEST
-            expected = row["expected_vacf"].values[early] - np.exp(-time[early])
-            axes[3].plot(time[early], expected, color=style.COLOURS[kind], lw=0.8, zorder=2)
-        shown = np.flatnonzero(time < LONGEST)
-        shown = shown[:: max(1, round(shown.size / MOST))]
-        (vacf, error), curve = estimates(row, "vacf")[:, shown], np.exp(-time[shown])
-        style.points(axes[2], time[shown], vacf, error, kind=kind, hollow=hollow, label=label)
-        style.points(axes[3], time[shown], vacf - curve, error, kind=kind, hollow=hollow)
-    axes[0].set_ylabel(r"$\langle\Delta r^2\rangle\,M\gamma^2/6k_\mathrm{B}T$")
-    axes[2].set_ylabel(r"$\langle V(0)\!\cdot\!V(t)\rangle\,M/3k_\mathrm{B}T$")
-    axes[1].set_ylabel("ratio $-$ 1")
-    axes[3].set_ylabel("difference")
-    for bottom in (axes[1], axes[3]):
-        bottom.set_ylim(-0.25, 0.25)
-        bottom.set_xlabel(r"time $\gamma t$")
-    axes[0].legend(loc="lower right")
-    axes[2].legend(loc="lower left")
-    for axis in axes[:2]:
-        axis.set_xscale("log")
-        axis.set_xlim(0.07, t[-1])
-    for axis in axes[2:]:
+    for kind, sphere in enumerate(spheres):
+        label = f"$M={sphere.mass / sphere.gas_mass:g}\\,m$"
+        label += ", equal speeds" * bool(sphere.equal_speeds) + ", steps" * bool(sphere.stepped)
+        look: dict[str, Any] = {"kind": kind, "hollow": kind > 0}
+        _displacement(far, ratio, sphere, label, look)
+        _memory(memory, difference, sphere, label, look)
+    style.labelled(far, y=r"$\langle\Delta r^2\rangle\,M\gamma^2/6k_\mathrm{B}T$", legend="lower right")
+    correlation = r"$\langle V(0)\!\cdot\!V(t)\rangle\,M/3k_\mathrm{B}T$"
+    style.labelled(memory, y=correlation, legend="lower left", ylim=(0.02, 1.4))
+    for residual, name in ((ratio, "ratio $-$ 1"), (difference, "difference")):
+        style.labelled(residual, r"time $\gamma t$", name, ylim=(-0.25, 0.25))
+    for axis in (far, ratio):
+        axis.set(xscale="log", xlim=(0.07, t[-1]))
+    for axis in (memory, difference):
         axis.set_xlim(-0.05, LONGEST)
-    axes[2].set_ylim(0.02, 1.4)
-    style.letters(axes[0], axes[2])
+    style.letters(far, memory)
     return figure
+
+
+def _langevin(time: np.ndarray) -> np.ndarray:
+    """The mean-squared displacement in reduced units."""
+    return np.asarray(theory.langevin_msd(time, 1.0 / 6.0, 1.0))
+
+
+def _displacement(axis: Axes, residual: Axes, sphere: Row, label: str, look: dict) -> None:
+    """The mean-squared displacement of one sphere, and its ratio to that of the Langevin equation."""
+    time = sphere.time[np.isfinite(sphere.time)]
+    shown = np.unique(np.round(np.geomspace(1, time.size - 1, 16)).astype(int))
+    msd = sphere.msd[shown]
+    style.points(axis, time[shown], msd, label=label, **look)
+    style.points(residual, time[shown], msd / _langevin(time[shown]) - 1.0, **look)
+    if sphere.is_light:
+        expected = sphere.expected_msd[1 : time.size] / _langevin(time[1:]) - 1.0
+        residual.plot(time[1:], expected, color=style.COLOURS[look["kind"]], lw=0.8, zorder=2)
+
+
+def _memory(axis: Axes, residual: Axes, sphere: Row, label: str, look: dict) -> None:
+    """The velocity autocorrelation of one sphere, and its difference from that of the Langevin equation."""
+    early = np.flatnonzero(sphere.time < LONGEST)
+    if sphere.is_light:
+        expected = sphere.expected_vacf[early] - np.exp(-sphere.time[early])
+        line: dict[str, Any] = {"color": style.COLOURS[look["kind"]], "lw": 0.8, "zorder": 2}
+        residual.plot(sphere.time[early], expected, **line)
+    shown = early[:: max(1, round(early.size / MOST))]
+    time, vacf = sphere.time[shown], sphere.vacf[shown]
+    style.points(axis, time, vacf, label=label, **look)
+    style.points(residual, time, vacf - np.exp(-time), **look)

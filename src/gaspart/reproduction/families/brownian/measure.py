@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -20,9 +21,9 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import bootstrap, means_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.brownian.expected import BrownianMotion, light_paths, motion_of
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 
 LONGEST = 8.0
 """Friction times up to which curves are taken."""
@@ -54,25 +55,21 @@ def brownian_paths(points: list[Point], settings: dict) -> xr.Dataset:
     drift of mean square (1 - share) share k_B T / M along each axis (its momentum is drawn with the
     velocities). Dimensions point, path, frame, axis.
     """
-    rows = []
-    for point in points:
-        motion = motion_of(point)
-        found = list(_followed(point))
-        ends = np.array([moved[-1, 0] for _, moved, _ in found])
-        duration = float(found[0][0][-1])
-        variance = _end_variance(point, motion, duration)
-        shown = np.array([moved[:, 0] for _, moved, _ in found[: settings["paths"]]])
-        rows.append(
-            {
-                **_facts(point, motion),
-                "duration": duration,
-                "way": shown,
-                "end_variance": variance,
-                "end_chi_square": float((ends**2).sum() / variance),
-                "end_freedom": ends.size,
-            }
-        )
-    return from_rows("point", rows, ("path", "frame", "axis"))
+    return table("point", points, _ends, settings["paths"], inner=("path", "frame", "axis"))
+
+
+def _ends(point: Point, paths: int) -> dict[str, Any]:
+    motion, found = motion_of(point), list(_followed(point))
+    ends = np.array([moved[-1, 0] for _, moved, _ in found])
+    duration = float(found[0][0][-1])
+    variance = _end_variance(point, motion, duration)
+    return _facts(point, motion) | {
+        "duration": duration,
+        "way": np.array([moved[:, 0] for _, moved, _ in found[:paths]]),
+        "end_variance": variance,
+        "end_chi_square": float((ends**2).sum() / variance),
+        "end_freedom": ends.size,
+    }
 
 
 def _end_variance(point: Point, motion: BrownianMotion, duration: float) -> float:
@@ -101,30 +98,29 @@ def brownian_msd(points: list[Point], settings: dict) -> xr.Dataset:
     Dimensions point, lag: `time` in 1 / g', `vacf` in (1 - s) k_B T / M, `msd` in 6 (1 - s) k_B T / (M g'^2),
     `expected_vacf` and `expected_msd`. Errors: standard errors over replicas (bootstrap for the numbers).
     """
-    return from_rows("point", [_statistics(point) for point in points], ("lag",))
+    return table("point", points, _statistics, inner=("lag",))
 
 
-def _statistics(point: Point) -> dict:
+def _statistics(point: Point) -> dict[str, Any]:
     motion = motion_of(point)
     curves, found = _reduced(point, motion, _followed(point))
-    row = {**_facts(point, motion), **curves}
-    row |= entries({NAMES[name]: one for name, one in found.items()})
+    time, row = curves["time"], _facts(point, motion) | curves
+    row |= {NAMES[name]: one for name, one in found.items()}
     if motion.is_light:
         infinite = replace(motion, share=0.0)
         predicted, expected = _reduced(point, infinite, light_paths(point, motion))
-        row |= {f"expected_{name}": predicted[name][: len(curves["time"])] for name in ("vacf", "msd")}
+        row |= {f"expected_{name}": predicted[name][0][: len(time)] for name in ("vacf", "msd")}
     else:
-        time = curves["time"]
         row |= {"expected_vacf": np.exp(-time), "expected_msd": theory.langevin_msd(time, 1.0 / 6.0, 1.0)}
         exact = {"equipartition": 1.0, "friction": motion.friction, "diffusion": motion.diffusion}
         expected = {name: Estimate(value) for name, value in exact.items()}
-    return row | entries({f"expected_{name}": one for name, one in expected.items()})
+    return row | {f"expected_{name}": one for name, one in expected.items()}
 
 
 def _reduced(
     point: Point, motion: BrownianMotion, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
-) -> tuple[dict[str, np.ndarray], dict[str, Estimate]]:
-    """The correlations of paths in reduced units, with errors, and the quantities derived from them."""
+) -> tuple[dict[str, Any], dict[str, Estimate]]:
+    """The correlations of paths in reduced units, and their errors, and the quantities derived from them."""
     rest = 1.0 - motion.share
     rate, curves = motion.friction / rest, _curves(point, motion, paths)
     time = rate * curves[0].time
@@ -151,13 +147,12 @@ def _reduced(
         "friction": lambda x: rest * rate * decay(x),
         "diffusion": lambda x: x[:, -1].mean() / langevin * motion.diffusion,
     }
-    curves_of = {
+    reduced = {
+        "time": time,
         "msd": means_of(msd * rate**2 / (6.0 * rest * equilibrium)),
         "vacf": means_of(vacf / (rest * equilibrium)),
     }
-    return {"time": time, **entries(curves_of)}, {
-        name: bootstrap(function, both) for name, function in derived.items()
-    }
+    return reduced, {name: bootstrap(function, both) for name, function in derived.items()}
 
 
 def _curves(
@@ -173,7 +168,7 @@ def _curves(
     return curves
 
 
-def _facts(point: Point, motion: BrownianMotion) -> dict:
+def _facts(point: Point, motion: BrownianMotion) -> dict[str, Any]:
     """The columns of every row."""
     return {
         "equal_speeds": point.scene.species[0].speed is not None,

@@ -64,8 +64,8 @@ def _row(part: str, point: Point, settings: dict) -> dict:
 def _equilibrium(point: Point) -> dict:
     """The viscosity over Enskog's, as of an infinite gas."""
     row = coefficient(point, "shear", theory.enskog_viscosity)
-    value = Estimate(row["value"], row["value_error"], row["value_freedom"]) / row["finite"]
-    return {"packing_fraction": row["packing_fraction"], **entries({"viscosity": value})}
+    viscosity = row["value"] / row["finite"]
+    return {"packing_fraction": row["packing_fraction"], **entries({"viscosity": viscosity})}
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,8 @@ displacements and velocities. One species. Errors are standard errors of the mea
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,11 +18,12 @@ from scipy.integrate import cumulative_simpson
 from gaspart import theory
 from gaspart.analysis.correlations import Curves, between, line
 from gaspart.analysis.diffusion import LINEAR_FROM
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import fit_polynomial, means_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.curves import reduced_curves
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import Table, entries, table
 from gaspart.scene.gas import plain_gas
 
 SETTLE_SHEAR_TIMES = 3.0
@@ -59,35 +62,35 @@ def msd_spheres(points: list[Point], settings: dict) -> xr.Dataset:
     goes the line size_intercept + size_slope / L, or with Yeh and Hummer's slope one from `size_limit`.
     Raises SceneError for a run too short for its straight stretch.
     """
-    dataset = _dataset([spheres(point) for point in points], 3)
-    eta, count = dataset["packing_fraction"].values.round(6), dataset["count"].values
-    long = np.isfinite(dataset["diffusion"].values)
+    dataset = table("point", points, spheres, inner=("lag",), units=UNITS).assign_attrs(dimension=3, **ABOUT)
+    runs = Table(dataset, "point")
+    eta, long = runs.packing_fraction.round(6), np.isfinite(runs.diffusion.value)
     same = long & long[:, None] & (eta == eta[:, None])
-    dataset["largest"] = ("point", long & (np.where(same, count, 0).max(axis=1) == count))
-    dataset["in_series"] = ("point", long & (same.sum(axis=1) >= 3))
-    return size_series(dataset)
+    most = np.where(same, runs.count, 0).max(axis=1) == runs.count
+    made = runs.assign(largest=long & most, in_series=long & (same.sum(axis=1) >= 3))
+    return size_series(made.dataset)
 
 
 def size_series(dataset: xr.Dataset) -> xr.Dataset:
     """The data set with the lines of D against 1/L through the points `in_series`, if there are any; see
     `msd_spheres`."""
-    if not dataset["in_series"].any():
+    runs = Table(dataset, "point")
+    sizes = runs[runs.in_series]
+    if not sizes:
         return dataset
-    series = dataset.isel(point=dataset["in_series"].values)
-    table = 1.0 / series["side"], series["diffusion"], series["diffusion_error"]
-    fit = fit_polynomial(*table, freedoms=series["diffusion_freedom"])
-    predicted = -float((series["correction"] * series["side"])[0])
-    limit = float(fit_polynomial(*table, powers=(0,), fixed={1: predicted}).values[0])
+    inverse, predicted = 1.0 / sizes.side, -sizes.correction[0] * sizes.side[0]
+    fit = fit_polynomial(inverse, sizes.diffusion)
+    limit = fit_polynomial(inverse, sizes.diffusion, powers=(0,), fixed={1: predicted}).values[0]
     found = {"size_intercept": fit.estimate(0), "size_slope": fit.estimate(1)}
-    return dataset.assign(entries(found) | {"size_limit": limit})
+    return dataset.assign(entries(found) | {"size_limit": float(limit)})
 
 
 def msd_discs(points: list[Point], settings: dict) -> xr.Dataset:
     """Mean-squared displacement of discs and the growth of its slope with ln t; see `_discs`."""
-    return _dataset([_discs(point) for point in points], 2)
+    return table("point", points, _discs, inner=("lag",), units=UNITS).assign_attrs(dimension=2, **ABOUT)
 
 
-def _state(point: Point) -> dict:
+def _state(point: Point) -> dict[str, Any]:
     """Theory's predictions for a point's scene: collision rate, decay time of the slowest shear mode ..."""
     gas, lengths = plain_gas(point.scene), point.scene.container.lengths
     eta, dimension = gas.packing_fraction, gas.dimension
@@ -109,34 +112,25 @@ def _state(point: Point) -> dict:
     }
 
 
-def _common(point: Point, state: dict, curves: list[Curves]) -> dict:
+def _common(point: Point, state: dict, curves: list[Curves]) -> dict[str, Any]:
     """The columns of every point: its state, its sampling in collisions per particle, its curves."""
     time = np.mean([one.time for one in curves], axis=0)
-    rows = {
-        **state,
+    rate = state["collision_rate"]
+    row = state | {
         "experiment": point.experiment,
         "replicas": len(curves),
-        "interval": float(time[1] * state["collision_rate"]),
+        "interval": time[1] * rate,
         "time": time,
-        **_mean("msd", [one.msd for one in curves]),
-        **_mean("running", [one.running for one in curves]),
+        "msd": _mean([one.msd for one in curves]),
+        "running": _mean([one.running for one in curves]),
     }
-    if rows["interval"] > SHORT_INTERVAL:
-        return {
-            **rows,
-            **_absent("integral_difference"),
-            **_absent("correlation", "integral", empty=np.full(time.size, np.nan)),
-        }
-    return {**rows, **_green_kubo(curves, state["collision_rate"], point.settings["dimension"])}
+    if row["interval"] <= SHORT_INTERVAL:
+        return row | _green_kubo(curves, rate, point.settings["dimension"])
+    no_curve = Estimate(np.full(time.size, math.nan), math.nan, math.nan)
+    return row | {"integral_difference": ABSENT, "correlation": no_curve, "integral": no_curve}
 
 
-def _absent(*names: str, empty: float | np.ndarray = math.nan) -> dict:
-    """Entries, and those of their errors, for quantities that a point does not measure."""
-    values = {key: empty for name in names for key in (name, f"{name}_error")}
-    return values | {f"{name}_freedom": math.nan for name in names}
-
-
-def spheres(point: Point) -> dict:
+def spheres(point: Point) -> dict[str, Any]:
     """D, D of the infinite system, and the curves.
 
     Of N particles whose total momentum is zero, D is (N - 1) / N of that of N particles without this
@@ -155,27 +149,26 @@ def spheres(point: Point) -> dict:
         Curves(one.time, factor * one.msd, factor * one.correlation, factor * one.running)
         for one in replicas(point, 2.0 * start)
     ]
-    rows = _common(point, state, curves)
-    if rows["interval"] <= SHORT_INTERVAL:
-        return {**rows, **_absent("diffusion")}
-    time = rows["time"]
+    row = _common(point, state, curves)
+    if row["interval"] <= SHORT_INTERVAL:
+        return row | {"diffusion": ABSENT}
+    time = row["time"]
     if time[-1] + time[1] < 2.0 * start:
         where = f"experiments.{point.experiment}[{point.name}]: collisions per particle"
         needed = math.ceil(4.0 * start * state["collision_rate"])
         rule = f"must be {needed} or more, and `lags` reach half of it, for a straight stretch of the msd"
-        raise SceneError(where, round(point.schedule.samples * rows["interval"]), rule)
+        raise SceneError(where, round(point.schedule.samples * row["interval"]), rule)
     slopes = []
     for one in curves:
         inside = between(one.time, start, 2.0 * start)
         slopes.append(line(one.time[inside], one.msd[inside]) / 6.0)
-    diffusion = _mean("diffusion", slopes)
-    carried = float(theory.number_density(state["packing_fraction"], 3)) * diffusion["diffusion"]
+    diffusion = _mean(slopes)
+    carried = float(theory.number_density(state["packing_fraction"], 3)) * diffusion.value
     correction = float(theory.yeh_hummer(state["side"], state["viscosity"] + carried))
     rough = theory.VISCOSITY_RATIO_UNCERTAINTY
     next_order = (2.0 * math.pi * state["mean_free_path"] / state["side"]) ** 2
-    return {
-        **rows,
-        **diffusion,
+    return row | {
+        "diffusion": diffusion,
         "correction": correction,
         "correction_uncertainty": correction * min(1.0, math.hypot(rough, next_order)),
         "fit_from": start,
@@ -183,7 +176,7 @@ def spheres(point: Point) -> dict:
     }
 
 
-def _discs(point: Point) -> dict:
+def _discs(point: Point) -> dict[str, Any]:
     """The slope of D(t), the msd's derivative over 2d, against ln t, and the curves; `slope_expected`, that
     of the hydrodynamic modes of the container, fitted in the same way.
 
@@ -205,21 +198,21 @@ def _discs(point: Point) -> dict:
         )
         for one in replicas(point, stop)
     ]
-    rows = _common(point, state, curves)
-    if rows["interval"] <= SHORT_INTERVAL:
-        return {**rows, **_absent("logarithmic_slope"), "slope_expected": math.nan}
+    row = _common(point, state, curves)
+    if row["interval"] <= SHORT_INTERVAL:
+        return row | {"logarithmic_slope": ABSENT, "slope_expected": math.nan}
     slopes = []
     for one in curves:
         inside = between(one.time, start, stop)
         slopes.append(line(np.log(one.time[inside]), one.running[inside]))
-    time = rows["time"][between(rows["time"], start, stop)]
+    time = row["time"][between(row["time"], start, stop)]
     running = theory.diffusion_modes(time, state["packing_fraction"], 2, state["count"])
     expected = line(np.log(time), running)
-    slope = _mean("logarithmic_slope", slopes)
-    return {**rows, **slope, "slope_expected": expected, "fit_from": start, "fit_to": stop}
+    fit = {"slope_expected": expected, "fit_from": start, "fit_to": stop}
+    return row | {"logarithmic_slope": _mean(slopes)} | fit
 
 
-def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict:
+def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict[str, Estimate]:
     """The integral of the velocity autocorrelation, and how far it is from the msd's slope.
 
     `integral_difference`: (slope of the twice integrated correlation) / (slope of the msd over 2d) - 1, both
@@ -234,17 +227,20 @@ def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict:
         einstein = line(one.time[inside], one.msd[inside]) / (2.0 * dimension)
         differences.append(line(one.time[inside], twice[inside]) / einstein - 1.0)
     return {
-        **_mean("correlation", [one.correlation for one in curves]),
-        **_mean("integral", integrals),
-        **_mean("integral_difference", differences),
+        "correlation": _mean([one.correlation for one in curves]),
+        "integral": _mean(integrals),
+        "integral_difference": _mean(differences),
     }
 
 
-def _mean(name: str, samples: list) -> dict:
-    """Mean over replicas, its standard error and the degrees of freedom of that, as three entries."""
-    return entries({name: means_of(samples)}, len(samples) - 1)
+def _mean(samples: Sequence[Any]) -> Estimate:
+    """Mean over replicas."""
+    return Estimate(*means_of(samples), len(samples) - 1)
 
 
+ABSENT = Estimate(math.nan, math.nan, math.nan)
+"""What a point does not measure."""
+ABOUT = {"reduced_time": "diameter sqrt(mass / temperature)"}
 UNITS = {
     "side": "diameter",
     "mean_free_path": "diameter",
@@ -257,9 +253,3 @@ UNITS = {
     "collision_rate": "1 / reduced time",
     "interval": "collisions per particle",
 }
-
-
-def _dataset(rows: list[dict], dimension: int) -> xr.Dataset:
-    """One dataset of all points; what a point does not have is NaN."""
-    about = {"dimension": dimension, "reduced_time": "diameter sqrt(mass / temperature)"}
-    return from_rows("point", rows, ("lag",), UNITS).assign_attrs(about)

@@ -6,7 +6,8 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES, rows
+from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.table import Row, Table
 
 BALANCE = (
     "kicks against contacts at Enskog's rate; [van Noije 1998], first order in a2; no correlations, "
@@ -20,56 +21,58 @@ HEATED = (
 
 def driven_gas(ds: xr.Dataset) -> list[Claim]:
     """The temperature at which contacts lose what kicks give, and the deviation from Maxwell velocities."""
-    claims = []
-    for row in rows(ds, "gas"):
-        dimension, e, count = int(row["dimension"]), float(row["restitution"]), int(row["count"])
-        which, power = f"{PARTICLES[dimension]}, restitution {e:g}", float(row["power"])
-        expected = float(theory.driven_temperature(e, dimension, power, float(row["packing_fraction"])))
-        own = theory.driven_cumulant(e, dimension)
-        claims += [
-            Claim(
-                claim=f"steady temperature over that of the energy balance, {which}",
-                measured=Estimate.of(row, "temperature") / expected,
-                expected=1.0,
-                required=0.015,
-                source=BALANCE,
-                fails_if="kicks that give another energy, or contacts that lose another",
-            ),
-            Claim(
-                claim=f"fourth cumulant of the velocities, {which}",
-                measured=Estimate.of(row, "cumulant"),
-                expected=float(theory.finite_size_cumulant(own, count, dimension)),
-                required=0.01,
-                source=HEATED,
-                fails_if="a distribution that is not that of the heated gas",
-            ),
-            Claim(
-                kind="identity",
-                claim=f"energy given by kicks over the power of the thermostat, {which}",
-                measured=Estimate.of(row, "given") / (power * (1.0 - 1.0 / count)),
-                expected=1.0,
-                required=0.02,
-                source="exact, less the share 1/N of the centre of mass",
-                fails_if="kicks of the wrong width, or too few of them",
-            ),
-        ]
-    dimensions = sorted(set(ds["dimension"].values.tolist()))
-    return claims + [_heated(ds.isel(gas=(ds["dimension"] == one).values), one) for one in dimensions]
+    gases = Table(ds, "gas")
+    claims = [claim for gas in gases for claim in _of_gas(gas)]
+    return claims + [_heated(own, dimension) for dimension, own in gases.by("dimension")]
 
 
-def _heated(gases: xr.Dataset, dimension: int) -> Claim:
+def _of_gas(gas: Row) -> list[Claim]:
+    e, dimension, power = gas.restitution, gas.dimension, gas.power
+    which = f"{PARTICLES[dimension]}, restitution {e:g}"
+    return [
+        Claim(
+            claim=f"steady temperature over that of the energy balance, {which}",
+            measured=gas.temperature
+            / float(theory.driven_temperature(e, dimension, power, gas.packing_fraction)),
+            expected=1.0,
+            required=0.015,
+            source=BALANCE,
+            fails_if="kicks that give another energy, or contacts that lose another",
+        ),
+        Claim(
+            claim=f"fourth cumulant of the velocities, {which}",
+            measured=gas.cumulant,
+            expected=float(
+                theory.finite_size_cumulant(theory.driven_cumulant(e, dimension), gas.count, dimension)
+            ),
+            required=0.01,
+            source=HEATED,
+            fails_if="a distribution that is not that of the heated gas",
+        ),
+        Claim(
+            kind="identity",
+            claim=f"energy given by kicks over the power of the thermostat, {which}",
+            measured=gas.given / (power * (1.0 - 1.0 / gas.count)),
+            expected=1.0,
+            required=0.02,
+            source="exact, less the share 1/N of the centre of mass",
+            fails_if="kicks of the wrong width, or too few of them",
+        ),
+    ]
+
+
+def _heated(gases: Table, dimension: int) -> Claim:
     """Where the cumulants of all gases of a dimension lie, by least squares: a single one does not decide."""
-    e, count = gases["restitution"].values, gases["count"].values
     heated, cooling = (
-        theory.finite_size_cumulant(of(e, dimension), count, dimension)
+        theory.finite_size_cumulant(of(gases.restitution, dimension), gases.count, dimension)
         for of in (theory.driven_cumulant, theory.fourth_cumulant)
     )
-    weight = (cooling - heated) / gases["cumulant_error"].values ** 2
+    weight = (cooling - heated) / gases.cumulant.error**2
     norm = float(weight @ (cooling - heated))
     return Claim(
         claim=f"fourth cumulants of {PARTICLES[dimension]} from those of the heated gas (0) to those of the "
         "cooling gas (1)",
-        measured=Estimate(weight @ (gases["cumulant"].values - heated) / norm, norm**-0.5),
+        measured=Estimate(weight @ (gases.cumulant.value - heated) / norm, norm**-0.5),
         expected=0.0,
         required=0.5,
         source=HEATED,

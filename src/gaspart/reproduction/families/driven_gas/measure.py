@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import xarray as xr
 
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import mean_of
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 
 
 def means(run: Run) -> dict[str, float]:
@@ -33,10 +35,10 @@ def driven_gas(points: list[Point], settings: dict) -> xr.Dataset:
     and lost (see `means`), with their errors from replicas.
     """
     units = {"temperature": "energy", **dict.fromkeys(("power", "given", "lost"), "energy / time")}
-    return from_rows("gas", [_gas(point) for point in points], units=units)
+    return table("gas", points, _gas, units=units)
 
 
-def _gas(point: Point) -> dict[str, float]:
+def _gas(point: Point) -> dict[str, Any]:
     scene = point.scene
     assert scene.restitution is not None and scene.thermostat is not None, "a driven granular gas"
     replicas = [means(run) for run in runs(point)]
@@ -47,4 +49,4 @@ def _gas(point: Point) -> dict[str, float]:
         "count": scene.count,
         "power": scene.thermostat.power,
     }
-    return row | entries({name: mean_of([one[name] for one in replicas]) for name in replicas[0]})
+    return row | {name: mean_of([one[name] for one in replicas]) for name in replicas[0]}

@@ -168,8 +168,7 @@ def _event_paths(point: Point, settings: dict) -> dict:
     """D of the event-driven engine in an infinite container, over Enskog's."""
     row = spheres(point)
     enskog = float(theory.enskog_diffusion(row["packing_fraction"], 3))
-    measured = Estimate(row["diffusion"], row["diffusion_error"], row["diffusion_freedom"])
-    infinite = measured + Estimate(row["correction"], row["correction_uncertainty"])
+    infinite = row["diffusion"] + Estimate(row["correction"], row["correction_uncertainty"])
     return {"packing_fraction": row["packing_fraction"], **entries({"diffusion": infinite / enskog})}
 
 

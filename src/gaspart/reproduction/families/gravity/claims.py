@@ -6,8 +6,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import rows
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.table import Row, Table, each
 from gaspart.theory.gravity import ideal_heat_capacity
 
 HYDROSTATICS = "hydrostatics dP/dz = -m g rho"
@@ -20,78 +19,77 @@ IDEAL = 0.01
 
 def barometric(ds: xr.Dataset) -> list[Claim]:
     """The barometric formula, the equation of state from the weight of the column, and one temperature."""
-    claims = []
-    for row in rows(ds, "point"):
-        if _is_source(row):
-            claims += _source_column(row)
-            continue
-        at, discs = _at(row), row.isel(species=0)
-        if row["column"] == "later":
-            # Heat takes as long to cross it as a stretch lasts: only what is local is independent in each.
-            claims += [_balance(row, at), *_pressures(row, at)]
-            continue
-        claims += [
-            _slope(discs, "discs", at, 0.005 if _dilute(row) else 0.01),
-            Claim(
-                claim=f"temperature against height, d ln T / dz over -1/(scale height), {at}",
-                measured=-Estimate.of(row, "temperature_gradient"),
-                expected=0.5 / float(row["count"]),
-                required=0.005,
-                source="an isothermal column ([Maxwell 1867]); at fixed energy 1/C_V more, 2Nk in a high one",
-                fails_if="a column that is warmer at one end: not in equilibrium, or an engine that heats",
-            ),
-            _balance(row, at),
-        ]
-        claims += [_mean_height(discs, "discs", at)] if _dilute(row) else _pressures(row, at)
-    return claims
+    return [claim for column in Table(ds, "point") for claim in _of_one_kind(column)]
 
 
 def separation(ds: xr.Dataset) -> list[Claim]:
     """Each species has its own scale height in a dilute gas; their ratio is exponential at any density."""
-    claims = []
-    for row in rows(ds, "point"):
-        at = _at(row)
-        claims += [_species_temperature(row, at), _balance(row, at)]
-        if _is_source(row):
-            claims += _source_mixture(row)
-            continue
-        claims.append(
-            Claim(
-                claim=f"slope of ln(heavy/light) over -(M - m) g / kT, {at}",
-                measured=Estimate.of(row, "exchange_ratio"),
-                expected=1.0,
-                required=0.01 if _dilute(row) else 0.02,
-                source=EXCHANGE,
-                fails_if="species that do not separate according to their weights, or runs too short for it",
-            )
+    return [claim for column in Table(ds, "point") for claim in _of_two_kinds(column)]
+
+
+def _of_one_kind(row: Row) -> list[Claim]:
+    if row.column == "source":
+        return _source_column(row)
+    at = _at(row)
+    if row.column == "later":
+        # Heat takes as long to cross it as a stretch lasts: only what is local is independent in each.
+        return [_balance(row, at), *_pressures(row, at)]
+    discs = Table(row.dataset, "species")[0]
+    return [
+        _slope(discs, "discs", at, 0.005 if _dilute(row) else 0.01),
+        Claim(
+            claim=f"temperature against height, d ln T / dz over -1/(scale height), {at}",
+            measured=-row.temperature_gradient,
+            expected=0.5 / row.count,
+            required=0.005,
+            source="an isothermal column ([Maxwell 1867]); at fixed energy 1/C_V more, 2Nk in a high one",
+            fails_if="a column that is warmer at one end: not in equilibrium, or an engine that heats",
+        ),
+        _balance(row, at),
+        *([_mean_height(discs, "discs", at)] if _dilute(row) else _pressures(row, at)),
+    ]
+
+
+def _of_two_kinds(row: Row) -> list[Claim]:
+    at = _at(row)
+    claims = [_species_temperature(row, at), _balance(row, at)]
+    if row.column == "source":
+        return claims + _source_mixture(row)
+    claims.append(
+        Claim(
+            claim=f"slope of ln(heavy/light) over -(M - m) g / kT, {at}",
+            measured=row.exchange_ratio,
+            expected=1.0,
+            required=0.01 if _dilute(row) else 0.02,
+            source=EXCHANGE,
+            fails_if="species that do not separate according to their weights, or runs too short for it",
         )
-        if _dilute(row):
-            species = list(zip(rows(row, "species"), ("light", "heavy"), strict=True))
-            claims += [_slope(one, name, at, 0.005) for one, name in species]
-            claims += [_mean_height(one, name, at) for one, name in species]
-        else:
-            claims += _pressures(row, at)
-    return claims
+    )
+    if not _dilute(row):
+        return claims + _pressures(row, at)
+    species = list(zip(Table(row.dataset, "species"), ("light", "heavy"), strict=True))
+    claims += [_slope(one, name, at, 0.005) for one, name in species]
+    return claims + [_mean_height(one, name, at) for one, name in species]
 
 
-def _source_column(row: xr.Dataset) -> list[Claim]:
+def _source_column(row: Row) -> list[Claim]:
     """Source C's column where it samples it: the same state, and not yet in equilibrium."""
     return [
         _collisions(row),
         Claim.within(
             claim="temperature of the source's column over the source's, in its sample",
             kind="reproduction",
-            measured=Estimate.of(row, "temperature") / row.attrs["source_temperature"],
+            measured=row.temperature / row.source_temperature,
             expected=1.0,
             half_width=0.02,
-            source=f"{C}, gravity: {row.attrs['source_temperature']:g}, fitted to ten bins of speeds, of a "
+            source=f"{C}, gravity: {row.source_temperature:g}, fitted to ten bins of speeds, of a "
             "sample that is shorter than a period of the oscillation",
             fails_if="a column that falls, bounces or heats up otherwise",
         ),
         Claim.at_most(
             claim="amplitude of the oscillation of the temperature in the source's sample, in per cent",
             kind="reproduction",
-            measured=Estimate.of(row, "ringing") * 100.0,
+            measured=row.ringing * 100.0,
             bound=1.0,
             required=0.3,
             source=f"{C}, gravity: takes the column to be in equilibrium after its collisions",
@@ -102,23 +100,22 @@ def _source_column(row: xr.Dataset) -> list[Claim]:
     ]
 
 
-def _source_mixture(row: xr.Dataset) -> list[Claim]:
+def _source_mixture(row: Row) -> list[Claim]:
     """Source C's mixture at the end of its run: as far separated as the source's, and not in equilibrium."""
-    reported = np.array(row.attrs["source_shares"])
-    measured, error = estimates(row, "share")
+    reported = Estimate(row.source_shares, row.share.error)
     return [
         _collisions(row),
         Claim.joint(
             claim="share of light discs in ten layers, over the source's",
             kind="reproduction",
-            deviations=(measured - reported) / (np.sqrt(2.0) * error),
+            deviations=(row.share - reported).deviation,
             source=f"{C}, separation, last picture: as many discs in a layer, so the error is as large",
             fails_if="discs that diffuse through each other, or fall, faster or more slowly",
         ),
         Claim.at_most(
             claim="slope of ln(heavy/light) over -(M - m) g / kT, the source's mixture at the end of its run",
             kind="reproduction",
-            measured=Estimate.of(row, "exchange_ratio"),
+            measured=row.exchange_ratio,
             bound=0.9,
             required=0.05,
             source=f"{EXCHANGE}; {C}, separation, does not state that its run has arrived there",
@@ -127,10 +124,9 @@ def _source_mixture(row: xr.Dataset) -> list[Claim]:
     ]
 
 
-def _collisions(row: xr.Dataset) -> Claim:
+def _collisions(row: Row) -> Claim:
     """Collisions of the source's own run until its end; one run, whose collisions are counted."""
-    reported = row.attrs["source_collisions"]
-    count = float(row["collisions"])
+    reported, count = row.source_collisions, row.collisions
     return Claim.within(
         claim=f"collisions until the source's {reported:.1e}, over them",
         kind="reproduction",
@@ -142,10 +138,10 @@ def _collisions(row: xr.Dataset) -> Claim:
     )
 
 
-def _species_temperature(row: xr.Dataset, at: str) -> Claim:
+def _species_temperature(row: Row, at: str) -> Claim:
     return Claim(
         claim=f"temperature of the heavy over that of the light discs, {at}",
-        measured=Estimate.of(row.isel(species=-1), "species_temperature_ratio"),
+        measured=row.species_temperature_ratio[-1],
         expected=1.0,
         required=0.01,
         source="equipartition",
@@ -153,25 +149,21 @@ def _species_temperature(row: xr.Dataset, at: str) -> Claim:
     )
 
 
-def _is_source(row: xr.Dataset) -> bool:
-    return bool(row["column"] == "source")
+def _dilute(row: Row) -> bool:
+    return bool(row.packing_fraction.value.max() < IDEAL)
 
 
-def _dilute(row: xr.Dataset) -> bool:
-    return float(row["packing_fraction"].max()) < IDEAL
-
-
-def _at(row: xr.Dataset) -> str:
+def _at(row: Row) -> str:
     density = "dilute" if _dilute(row) else "dense"
-    whose = "the source's " if _is_source(row) else ""
-    return f"{whose}{density} column of {float(row['count']):g} discs"
+    whose = "the source's " if row.column == "source" else ""
+    return f"{whose}{density} column of {row.count:g} discs"
 
 
-def _slope(one: xr.Dataset, name: str, at: str, required: float) -> Claim:
+def _slope(one: Row, name: str, at: str, required: float) -> Claim:
     """The slope of the chemical potential of one species."""
     return Claim(
         claim=f"slope of the chemical potential of the {name} over -m g / kT, {at}",
-        measured=Estimate.of(one, "slope_ratio"),
+        measured=one.slope_ratio,
         expected=1.0,
         required=required,
         source="ln rho + mu_excess(rho) + m g z / kT is uniform in equilibrium; in a dilute gas ln rho alone",
@@ -179,12 +171,12 @@ def _slope(one: xr.Dataset, name: str, at: str, required: float) -> Claim:
     )
 
 
-def _mean_height(one: xr.Dataset, name: str, at: str) -> Claim:
+def _mean_height(one: Row, name: str, at: str) -> Claim:
     """The mean height of one species."""
     return Claim(
         claim=f"mean height of the {name} over the ideal gas's, {at}",
-        measured=Estimate.of(one, "mean_height_ratio"),
-        expected=1.0 + float(one["packing_fraction"].max()),
+        measured=one.mean_height_ratio,
+        expected=1.0 + one.packing_fraction.value.max(),
         required=0.01,
         source="<z> = kT/mg - H/(exp(mgH/kT) - 1); B2 raises it by the packing fraction at the floor (first "
         "order, high column)",
@@ -192,28 +184,26 @@ def _mean_height(one: xr.Dataset, name: str, at: str) -> Claim:
     )
 
 
-def _pressures(row: xr.Dataset, at: str) -> list[Claim]:
-    return [
-        Claim(
-            claim="pressure that carries the weight above over rho kT Z(eta), "
-            f"eta from {low:g} to {high:g}, {at}",
-            measured=Estimate.of(part, "range_ratio"),
-            expected=1.0,
-            required=0.01,
-            source=f"{HYDROSTATICS}, Z of the {REFERENCE}",
-            fails_if="a density profile that is not the equation of state's",
-        )
-        for part in rows(row, "range")
-        if np.isfinite(part["range_ratio"])
-        for low, high in [(float(part["range_low"]), float(part["range_high"]))]
-    ]
+def _pressures(row: Row, at: str) -> list[Claim]:
+    ranges = Table(row.dataset, "range")
+    ranges = ranges[np.isfinite(ranges.range_ratio.value)]
+    return each(
+        ranges,
+        "pressure that carries the weight above over rho kT Z(eta), "
+        f"eta from {{range_low:g}} to {{range_high:g}}, {at}",
+        measured=ranges.range_ratio,
+        expected=1.0,
+        required=0.01,
+        source=f"{HYDROSTATICS}, Z of the {REFERENCE}",
+        fails_if="a density profile that is not the equation of state's",
+    )
 
 
-def _balance(row: xr.Dataset, at: str) -> Claim:
+def _balance(row: Row, at: str) -> Claim:
     return Claim.at_most(
         claim=f"(floor - ceiling - weight - gain of momentum) over the weight, {at}",
         kind="identity",
-        measured=Estimate(row["imbalance"], 1e-9),
+        measured=Estimate(row.imbalance, 1e-9),
         bound=1e-8,
         required=1e-8,
         source="balance of momentum (exact)",
@@ -223,38 +213,34 @@ def _balance(row: xr.Dataset, at: str) -> Claim:
 
 def heat_capacity(ds: xr.Dataset) -> list[Claim]:
     """Heat capacity from neighbouring energies and from fluctuations."""
-    claims = []
-    for row in rows(ds, "pair"):
-        x = abs(float(row["x"]))
-        kind, at = "test" if x else "identity", f"gravity {float(row['gravity']):g}"
-        ideal = f"d/2 + 1 - x^2 e^x/(e^x - 1)^2 = {float(ideal_heat_capacity(x, 2)):.4f}"
-        finite = f"{ideal}, here for {ds.attrs['count']} particles at the runs' energies"
-        claims.append(
-            Claim(
-                claim=f"heat capacity C_V/Nk as dE/dT, {at}",
-                kind=kind,
-                measured=_rounded(row, "slope"),
-                expected=row["slope_expected"],
-                required=0.02,
-                source=finite,
-                fails_if="an energy that is not distributed over height and motion by Boltzmann's factor",
-            )
-        )
-        for number, run in enumerate(rows(row, "run"), start=1):
-            claims.append(
-                Claim(
-                    claim=f"heat capacity C_V/Nk from fluctuations, {at}, run {number}",
-                    kind=kind,
-                    measured=_rounded(run, "fluctuation"),
-                    expected=run["fluctuation_expected"],
-                    required=0.03,
-                    source=f"[Lebowitz 1967]; {finite}",
-                    fails_if="fluctuations that are not the microcanonical ones: not ergodic, or energy lost",
-                )
-            )
-    return claims
+    return [claim for pair in Table(ds, "pair") for claim in _capacities(pair)]
 
 
-def _rounded(row: xr.Dataset, name: str) -> Estimate:
-    """An estimate whose error is at least that of rounding: without gravity it is exact."""
-    return Estimate.of(row, name) + Estimate(0.0, 1e-9)
+def _capacities(pair: Row) -> list[Claim]:
+    x = abs(pair.x)
+    kind, at = "test" if x else "identity", f"gravity {pair.gravity:g}"
+    ideal = f"d/2 + 1 - x^2 e^x/(e^x - 1)^2 = {float(ideal_heat_capacity(x, 2)):.4f}"
+    finite = f"{ideal}, here for {pair.count} particles at the runs' energies"
+    rounding = Estimate(0.0, 1e-9)  # without gravity both are exact but for it
+    runs = Table(pair.dataset, "run").assign(number=[1, 2])
+    return [
+        Claim(
+            claim=f"heat capacity C_V/Nk as dE/dT, {at}",
+            kind=kind,
+            measured=pair.slope + rounding,
+            expected=pair.slope_expected,
+            required=0.02,
+            source=finite,
+            fails_if="an energy that is not distributed over height and motion by Boltzmann's factor",
+        ),
+        *each(
+            runs,
+            f"heat capacity C_V/Nk from fluctuations, {at}, run {{number}}",
+            kind=kind,
+            measured=runs.fluctuation + rounding,
+            expected=runs.fluctuation_expected,
+            required=0.03,
+            source=f"[Lebowitz 1967]; {finite}",
+            fails_if="fluctuations that are not the microcanonical ones: not ergodic, or energy lost",
+        ),
+    ]

@@ -7,8 +7,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from gaspart.analysis.estimate import Estimate
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.families.gravity.claims import IDEAL
+from gaspart.reproduction.table import Row, Table
 from gaspart.theory.gravity import ideal_heat_capacity, ideal_profile
 from gaspart.theory.state import compressibility_factor
 
@@ -24,50 +26,41 @@ def barometric(ds: xr.Dataset) -> Figure:
     top, ratio, warm, state, off = axes[:5]
     for kind, row in enumerate(_named(ds, "dilute", "dense")):
         expected = _expected(row, 0)
-        name = _name(row)
-        _density(top, row, kind, f"{name}, {'hydrostatics' if kind else 'ideal gas'}", name)
-        density = estimates(row.isel(species=0), "density")
-        seen = (density[1] < KNOWN * density[0]) & row["used"].values
-        _percent(ratio, row["height"].values[seen], (density / expected)[:, seen], kind)
+        _density(top, row, kind, f"{row.column}, {'hydrostatics' if kind else 'ideal gas'}", row.column)
+        density = row.density[0]
+        seen = _known(density) & row.used
+        _percent(ratio, row.height[seen], (density / expected)[seen], kind)
         _temperature(warm, row, kind)
     [dense] = _named(ds, "dense")
-    used = dense["used"].values
-    eta = dense["packing_fraction"].values[used]
+    eta = dense.packing_fraction.value[dense.used]
     line = np.linspace(0.0, 1.05 * eta.max(), 200)
     state.plot(line, compressibility_factor(line, 2), color=style.DATA, label="virial series to $B_{10}$")
-    factor = estimates(dense, "compressibility")[:, used]
     label = "weight above / $\\rho kT$"
-    style.measured(state, eta, factor, kind=1, hollow=True, label=label)
-    _percent(off, eta, estimates(dense, "pressure_ratio")[:, used], 1)
+    style.points(state, eta, dense.compressibility[dense.used], kind=1, hollow=True, label=label)
+    _percent(off, eta, dense.pressure_ratio[dense.used], 1)
     top.set_yscale("log")
-    top.set_ylim(0.04, 12.0)
-    top.set_ylabel(r"density $\rho/\bar\rho$")
+    style.labelled(top, y=r"density $\rho/\bar\rho$", ylim=(0.04, 12.0))
     top.legend(loc="upper right", ncol=2, columnspacing=0.8)
-    ratio.set_ylabel(r"$\rho/\rho_\mathrm{th} - 1$ (%)")
-    warm.set_ylabel(r"$T(z)/T - 1$ (%)")
-    state.set_ylabel(r"$Z = P/\rho kT$")
-    state.legend(loc="upper left")
-    off.set_ylabel(r"$Z/Z_\mathrm{ref} - 1$ (%)")
-    warm.set_xlabel("height $z$ (length)")
-    off.set_xlabel(r"packing fraction $\eta$")
+    style.labelled(ratio, y=r"$\rho/\rho_\mathrm{th} - 1$ (%)")
+    style.labelled(warm, "height $z$ (length)", r"$T(z)/T - 1$ (%)")
+    style.labelled(state, y=r"$Z = P/\rho kT$", legend="upper left")
+    style.labelled(off, r"packing fraction $\eta$", r"$Z/Z_\mathrm{ref} - 1$ (%)")
     if of_source:
         _source_columns(axes[5], axes[6], of_source)
     style.letters(top, ratio, warm, state, *axes[5:6])
     return figure
 
 
-def _source_columns(top: Axes, bottom: Axes, columns: list[xr.Dataset]) -> None:
+def _source_columns(top: Axes, bottom: Axes, columns: list[Row]) -> None:
     """Density and temperature of the source's column, in the source's sample and later."""
     for kind, row in enumerate(columns, start=2):
-        name = {"later": "later", "source": "source's sample"}[_name(row)]
+        name = {"later": "later", "source": "source's sample"}[row.column]
         _density(top, row, kind, None if kind > 2 else "hydrostatics", name)
         _temperature(bottom, row, kind)
-    top.set_ylabel(r"density $\rho/\bar\rho$")
     top.set_ylim(0.0)
-    top.legend(loc="upper right")
-    bottom.set_ylabel(r"$T(z)/T - 1$ (%)")
-    bottom.set_ylim(-6.0, 12.0)
-    bottom.set_xlabel("height $z$ (length) in the source's column")
+    style.labelled(top, y=r"density $\rho/\bar\rho$", legend="upper right")
+    place = "height $z$ (length) in the source's column"
+    style.labelled(bottom, place, r"$T(z)/T - 1$ (%)", ylim=(-6.0, 12.0))
 
 
 def separation(ds: xr.Dataset) -> Figure:
@@ -80,30 +73,12 @@ def separation(ds: xr.Dataset) -> Figure:
         for kind, name in enumerate(names):
             _density(axis, row, kind, None, name)
             if n:
-                ideal = _ideal(row, kind) / float(row["mean_density"])
-                axis.plot(row["height"], ideal, color=style.COLOURS[kind], ls=":", label=f"{name} if ideal")
+                ideal = _ideal(row, kind) / row.mean_density
+                axis.plot(row.height, ideal, color=style.COLOURS[kind], ls=":", label=f"{name} if ideal")
         axis.set_yscale("log")
-        axis.set_ylim(0.01, 20.0)
-        axis.set_ylabel(r"density $\rho_i/\bar\rho$")
-        axis.set_xlabel("height $z$ (length)")
+        style.labelled(axis, "height $z$ (length)", r"density $\rho_i/\bar\rho$", ylim=(0.01, 20.0))
         axis.legend(loc="upper right", ncol=2, columnspacing=0.8)
-    style.band(axes[3], -3.0, 3.0)
-    style.level(axes[3], 0.0)
-    for n, row in enumerate(columns):
-        error = row["log_ratio_error"].values
-        seen = np.isfinite(error) & (error < 0.3)
-        height, value, expected = (
-            row[key].values[seen] for key in ("height", "log_ratio", "log_ratio_expected")
-        )
-        style.points(axes[2], height, value, error[seen], kind=2 + n, hollow=True, label=_name(row))
-        axes[2].plot(height, expected, color=style.COLOURS[2 + n], zorder=4)
-        style.points(axes[3], height, (value - expected) / error[seen], kind=2 + n, markersize=2.5)
-    axes[2].set_ylabel(r"$\ln(\rho_\mathrm{heavy}/\rho_\mathrm{light})$")
-    axes[2].legend(loc="upper right")
-    axes[3].set_ylabel(r"residual ($\sigma$)")
-    axes[3].set_ylim(-4.5, 4.5)
-    axes[3].set_yticks([-3, 0, 3])
-    axes[3].set_xlabel("height $z$ (length)")
+    _exchange(axes[2], axes[3], columns)
     for axis, row in zip(axes[4:], of_source, strict=True):
         _shares(axis, row)
     titled = (*axes[:3], *axes[4:])
@@ -112,102 +87,99 @@ def separation(ds: xr.Dataset) -> Figure:
     return figure
 
 
-def _shares(axis: Axes, row: xr.Dataset) -> None:
+def _exchange(top: Axes, bottom: Axes, columns: list[Row]) -> None:
+    """The ratio of the two densities against height, with the line of the exact slope, and the residuals."""
+    style.band(bottom, -3.0, 3.0)
+    style.level(bottom, 0.0)
+    for kind, row in enumerate(columns, start=2):
+        error = row.log_ratio.error
+        seen = np.isfinite(error) & (error < 0.3)
+        height, ratio, expected = row.height[seen], row.log_ratio[seen], row.log_ratio_expected[seen]
+        style.points(top, height, ratio, kind=kind, hollow=True, label=row.column)
+        top.plot(height, expected, color=style.COLOURS[kind], zorder=4)
+        style.points(bottom, height, (ratio.value - expected) / ratio.error, kind=kind, markersize=2.5)
+    style.labelled(top, y=r"$\ln(\rho_\mathrm{heavy}/\rho_\mathrm{light})$", legend="upper right")
+    style.labelled(bottom, "height $z$ (length)", r"residual ($\sigma$)", ylim=(-4.5, 4.5), yticks=[-3, 0, 3])
+
+
+def _shares(axis: Axes, row: Row) -> None:
     """Shares of the light discs in the source's mixture: in its run, in ours, and in equilibrium."""
-    reported = np.array(row.attrs["source_shares"])
-    edges = np.linspace(0.0, float(row["top"]), len(reported) + 1)
+    reported = np.array(row.source_shares)
+    edges = np.linspace(0.0, row.top, len(reported) + 1)
     axis.stairs(reported, edges, baseline=None, color=style.GREY, label="source's run")
-    middles = 0.5 * (edges[1:] + edges[:-1])
-    style.measured(axis, middles, estimates(row, "share"), kind=1, label="the same, here")
-    light, heavy = row["hydrostatic"].values
-    axis.plot(row["height"], light / (light + heavy), color=style.REFERENCE, label="equilibrium at its $T$")
-    axis.set_ylabel("share of light discs")
-    axis.set_xlabel("height $z$ (length) in the source's mixture")
-    axis.set_ylim(0.0, 1.0)
-    axis.legend(loc="upper left")
+    style.points(axis, 0.5 * (edges[1:] + edges[:-1]), row.share, kind=1, label="the same, here")
+    light, heavy = row.hydrostatic
+    axis.plot(row.height, light / (light + heavy), color=style.REFERENCE, label="equilibrium at its $T$")
+    place = "height $z$ (length) in the source's mixture"
+    style.labelled(axis, place, "share of light discs", "upper left", ylim=(0.0, 1.0))
 
 
-def _named(ds: xr.Dataset, *names: str) -> list[xr.Dataset]:
+def _named(ds: xr.Dataset, *names: str) -> list[Row]:
     """The columns of these names, in this order; those that there are."""
-    columns = {_name(row): row for row in (ds.isel(point=n) for n in range(ds.sizes["point"]))}
+    columns = {row.column: row for row in Table(ds, "point")}
     return [columns[name] for name in names if name in columns]
 
 
-def _name(row: xr.Dataset) -> str:
-    return str(row["column"].values)
-
-
-def _density(axis: Axes, row: xr.Dataset, kind: int, theory: str | None, label: str) -> None:
+def _density(axis: Axes, row: Row, kind: int, theory: str | None, label: str) -> None:
     """Density over its mean against height, with theory; of species number `kind` if there are several."""
-    species = kind if row.sizes["species"] > 1 else 0
-    height, mean = row["height"].values, float(row["mean_density"])
-    density, error = estimates(row.isel(species=species), "density")
-    seen = error < KNOWN * density
-    where = (axis, height[seen], density[seen] / mean, error[seen] / mean)
-    style.points(*where, kind=kind, hollow=True, label=label)
-    axis.plot(height, _expected(row, species) / mean, color=style.COLOURS[kind], label=theory, zorder=4)
+    species = kind if len(row.density) > 1 else 0
+    density, mean = row.density[species], row.mean_density
+    seen = _known(density)
+    style.points(axis, row.height[seen], density[seen] / mean, kind=kind, hollow=True, label=label)
+    axis.plot(row.height, _expected(row, species) / mean, color=style.COLOURS[kind], label=theory, zorder=4)
 
 
-def _temperature(axis: Axes, row: xr.Dataset, kind: int) -> None:
+def _known(density: Estimate) -> np.ndarray:
+    """(B,) where there are particles enough."""
+    return np.asarray(density.error < KNOWN * density.value)
+
+
+def _temperature(axis: Axes, row: Row, kind: int) -> None:
     """The temperature at each height over that of all, where there are particles enough."""
-    density, error = estimates(row.isel(species=0), "density")
-    seen = error < KNOWN * density
-    _percent(axis, row["height"].values[seen], estimates(row, "temperature_ratio")[:, seen], kind)
+    seen = _known(row.density[0])
+    _percent(axis, row.height[seen], row.temperature_ratio[seen], kind)
 
 
 def heat_capacity(ds: xr.Dataset) -> Figure:
     """Heat capacity against x, from neighbouring energies and from fluctuations, and its deviation."""
     figure, (top, bottom) = style.new((2.6, 1.2))
-    end = 1.15 * float(max(ds["x"].max(), ds["run_x"].max()))
+    pairs, runs = Table(ds, "pair"), Table(ds.stack(each=("pair", "run")), "each")
+    end = 1.15 * max(pairs.x.max(), runs.run_x.max())
     x = np.linspace(0.0, end, 300)
     top.plot(x, ideal_heat_capacity(x, 2), color=style.DATA, label="canonical, ideal gas")
     style.level(top, 1.0, ls="--")
     style.level(top, 2.0, ls="--")
     style.level(bottom, 0.0)
     series = (
-        ("slope", "x", "from $dE/dT$"),
-        ("fluctuation", "run_x", "from fluctuations"),
+        (pairs.x, pairs.slope, pairs.slope_expected, "from $dE/dT$"),
+        (runs.run_x, runs.fluctuation, runs.fluctuation_expected, "from fluctuations"),
     )
-    for kind, (name, axis, label) in enumerate(series):
-        at, value, error, expected = (
-            ds[key].values.ravel() for key in (axis, name, f"{name}_error", f"{name}_expected")
-        )
-        style.points(top, at, value, error, kind=kind, hollow=bool(kind), label=label)
-        style.points(
-            bottom,
-            at,
-            100.0 * (value / expected - 1.0),
-            100.0 * error / expected,
-            kind=kind,
-            hollow=bool(kind),
-        )
-    top.set_ylabel(r"heat capacity $C_V/Nk$")
-    top.set_ylim(0.9, 2.1)
-    top.legend(loc="lower right")
-    bottom.set_ylabel("deviation from\nexact (%)")
-    bottom.set_xlim(-0.03 * end, end)
-    bottom.set_ylim(-4.5, 4.5)
-    bottom.set_xlabel(r"height of the box $x = mgH/kT$")
+    for kind, (at, capacity, expected, label) in enumerate(series):
+        look: dict = {"kind": kind, "hollow": bool(kind)}
+        style.points(top, at, capacity, **look, label=label)
+        style.points(bottom, at, 100.0 * (capacity / expected - 1.0), **look)
+    style.labelled(top, y=r"heat capacity $C_V/Nk$", legend="lower right", ylim=(0.9, 2.1))
+    place, deviation = r"height of the box $x = mgH/kT$", "deviation from\nexact (%)"
+    style.labelled(bottom, place, deviation, xlim=(-0.03 * end, end), ylim=(-4.5, 4.5))
     style.letters(top, bottom)
     return figure
 
 
-def _expected(row: xr.Dataset, kind: int) -> np.ndarray:
+def _expected(row: Row, kind: int) -> np.ndarray:
     """(B,) density: an ideal gas's where the column is dilute, hydrostatics elsewhere."""
-    dilute = float(row["packing_fraction"].max()) < 0.01
-    return _ideal(row, kind) if dilute else row["hydrostatic"].isel(species=kind).values
+    dilute = row.packing_fraction.value.max() < IDEAL
+    return _ideal(row, kind) if dilute else np.asarray(row.hydrostatic[kind])
 
 
-def _ideal(row: xr.Dataset, kind: int) -> np.ndarray:
+def _ideal(row: Row, kind: int) -> np.ndarray:
     """(B,) density of an ideal gas of as many particles at the column's temperature."""
-    own = row.isel(species=kind)
-    weight = float(own["mass"] * own["strength"] / own["temperature"])
-    number = float(own["density"].mean()) * float(own["top"])
-    return number * ideal_profile(own["height"].values, float(own["top"]), weight)
+    weight = row.mass[kind] * row.strength / row.temperature.value
+    number = row.density.value[kind].mean() * row.top
+    return np.asarray(number * ideal_profile(row.height, row.top, weight))
 
 
-def _percent(axis: Axes, x: np.ndarray, ratio: np.ndarray, kind: int) -> None:
-    """The distance of a ratio, (2, ...) with its error, from 1 in per cent, with its zero line."""
+def _percent(axis: Axes, x: np.ndarray, ratio: Estimate, kind: int) -> None:
+    """The distance of a ratio from 1 in per cent, with its zero line."""
     style.level(axis, 0.0)
-    style.points(axis, x, 100.0 * (ratio[0] - 1.0), 100.0 * ratio[1], kind=kind, hollow=True, markersize=2.5)
+    style.points(axis, x, 100.0 * (ratio - 1.0), kind=kind, hollow=True, markersize=2.5)
     axis.set_ylim(-4.5, 4.5)

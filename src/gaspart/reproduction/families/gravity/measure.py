@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.bins import Grid
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import jackknife
 from gaspart.reproduction.families.gravity import source
@@ -21,9 +23,9 @@ from gaspart.reproduction.families.shared.columns import (
     profile,
     stretches,
 )
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 from gaspart.state.initial import initial_state
 from gaspart.theory.geometry import particle_volume
 from gaspart.theory.gravity import (
@@ -73,10 +75,12 @@ def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], d
     them is heavy has no other energy.
     """
     names = {experiment: name for name, experiment in settings["columns"].items()}
-    rows = [_column(point, settings) for point in points]
-    for row, point in zip(rows, points, strict=True):
-        if names.get(point.experiment) == "source":
-            row |= {"collisions": source.collisions(point)} | of_source(point)
+
+    def column(point: Point) -> dict[str, Any]:
+        name = names.get(point.experiment, "")
+        own = {"collisions": source.collisions(point), **of_source(point)} if name == "source" else {}
+        return {"column": name, **_column(point, settings), **own}
+
     by_bin = ("temperature_ratio", "packing_fraction", "compressibility", "pressure_ratio")
     by_bin += ("height", "used", "log_ratio", "log_ratio_expected")
     by_species = ("mass", "slope_ratio", "mean_height_ratio", "species_temperature_ratio")
@@ -88,16 +92,9 @@ def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], d
         "share": ("layer",),
     }
     low, high = np.array(settings["ranges"], dtype=float).T
-    dataset = from_rows("point", rows, axes).assign_coords(
-        column=("point", [names.get(point.experiment, "") for point in points]),
-        range_low=("range", low),
-        range_high=("range", high),
-    )
-    return dataset.assign_attrs(clear=settings["clear"])
-
-
-_PARTS = ("", "_error", "_freedom")
-"""Suffixes of the names of the variables that are an estimate."""
+    made = table("point", points, column, inner=axes).set_coords("column")
+    made = made.assign_coords(range_low=("range", low), range_high=("range", high))
+    return made.assign_attrs(clear=settings["clear"])
 
 
 @dataclass(frozen=True)
@@ -118,8 +115,8 @@ class Bins:
     @classmethod
     def of(cls, place: Field, number: int, clear: float) -> Bins:
         """`number` bins, of which those within `clear` diameters of floor and ceiling are not used."""
-        width = place.height / number
-        height = (np.arange(number) + 0.5) * width
+        grid = Grid.line(0.0, place.height, number)
+        height, width = grid.middles[0], grid.volume
         margin = clear * place.diameter + 0.5 * width
         masses = [place.masses[place.species == n][0] for n in range(int(place.species.max()) + 1)]
         used = (height > margin) & (height < place.height - margin)
@@ -187,7 +184,7 @@ class Bins:
         return float(np.polyfit(self.height[seen], y[seen], 1, w=np.sqrt(weight[seen]))[0])
 
 
-def _column(point: Point, settings: dict) -> dict:
+def _column(point: Point, settings: dict) -> dict[str, Any]:
     """The numbers of one point."""
     place, found = field(point), stretches(point, settings["blocks"])
     bins = Bins.of(place, settings["bins"], settings["clear"])
@@ -223,8 +220,9 @@ def _column(point: Point, settings: dict) -> dict:
             "mean_height_ratio": jackknife(bins.mean_height_ratio, heights, warm),
             "species_temperature_ratio": jackknife(lambda k: k / k[0], kinetic),
         }
-    row = entries(made, len(found) - 1)
-    return row | {
+    numbers = {name: Estimate(*one, len(found) - 1) for name, one in made.items()}
+    temperature = numbers["temperature"].value
+    return numbers | {
         "height": bins.height,
         "used": bins.used,
         "mass": bins.masses,
@@ -232,8 +230,8 @@ def _column(point: Point, settings: dict) -> dict:
         "top": place.height,
         "count": len(place.masses),
         "mean_density": len(place.masses) / (place.width * place.height),
-        "hydrostatic": bins.hydrostatics(row["density"], row["temperature"]),
-        "log_ratio_expected": bins.exchange_line(*made["log_ratio"], row["temperature"]),
+        "hydrostatic": bins.hydrostatics(numbers["density"].value, temperature),
+        "log_ratio_expected": bins.exchange_line(*made["log_ratio"], temperature),
         "imbalance": max(abs(s.floor - s.ceiling - place.weight - s.gain) / place.weight for s in found),
     }
 
@@ -251,31 +249,30 @@ def heat_capacity(points: list[Point], settings: dict) -> xr.Dataset:
         raise ValueError(f"points: {len(points)} (must be pairs)")
     ends = [_energies(point, settings["blocks"]) for point in points]
     pairs = list(zip(ends[::2], ends[1::2], strict=True))
-    if (
-        any(one["gravity"] != other["gravity"] for one, other in pairs)
-        or len({end["count"] for end in ends}) > 1
-    ):
+    if any(a["gravity"] != b["gravity"] for a, b in pairs) or len({end["count"] for end in ends}) > 1:
         raise ValueError("points: the two of a pair must differ in their energy only")
-    rows = [_pair(*pair) for pair in pairs]
-    return from_rows("pair", rows, ("run",)).assign_attrs(count=ends[0]["count"])
+    return table("pair", pairs, _pair, inner=("run",)).assign_attrs(count=ends[0]["count"])
 
 
-def _pair(colder: dict, warmer: dict) -> dict:
+def _pair(ends: tuple[dict, dict]) -> dict[str, Any]:
     """The variables of two runs at two energies, and C = dE/dT from both."""
-    row = {
-        name: np.array([colder[name], warmer[name]]) for name in colder if name not in ("count", "gravity")
+    cold, warm = ends
+    both = {
+        name: np.array([end[name] for end in ends]) for name in ("energy", "temperature_expected", "run_x")
     }
-    rise = np.diff(row["energy"])[0] / colder["count"]
-    cold, warm = (Estimate(*(run[f"temperature{part}"] for part in _PARTS)) for run in (colder, warmer))
-    return row | {
-        **entries({"slope": Estimate(rise) / (warm - cold)}),
-        "slope_expected": rise / np.diff(row["temperature_expected"])[0],
-        "x": row["run_x"].mean(),
-        "gravity": colder["gravity"],
+    rise = np.diff(both["energy"])[0] / cold["count"]
+    return both | {
+        "temperature": Estimate.stack([end["temperature"] for end in ends]),
+        "fluctuation": Estimate.stack([end["fluctuation"] for end in ends]),
+        "fluctuation_expected": np.array([end["fluctuation_expected"] for end in ends]),
+        "slope": Estimate(rise) / (warm["temperature"] - cold["temperature"]),
+        "slope_expected": rise / np.diff(both["temperature_expected"])[0],
+        "x": both["run_x"].mean(),
+        "gravity": cold["gravity"],
     }
 
 
-def _energies(point: Point, blocks: int) -> dict:
+def _energies(point: Point, blocks: int) -> dict[str, Any]:
     """Temperature and fluctuations, measured and expected, of one point of a single replica."""
     place, scene = field(point), point.scene
     if point.replicas != 1 or place.across:
@@ -295,14 +292,15 @@ def _energies(point: Point, blocks: int) -> dict:
         (parts - shift).mean(axis=1),
         ((parts - shift) ** 2).mean(axis=1),
     )
-    temperature = jackknife(lambda mean: mean, parts.mean(axis=1))
+    temperature = Estimate(*jackknife(lambda mean: mean, parts.mean(axis=1)), blocks - 1)
     mean, variance = ideal_energy_moments(float(energy), count, place.height, force, 2)
     return {
         "count": count,
         "gravity": place.strength,
         "energy": energy,
-        **entries({"temperature": temperature, "fluctuation": fluctuation}, blocks - 1),
+        "temperature": temperature,
+        "fluctuation": Estimate(*fluctuation, blocks - 1),
         "temperature_expected": mean / count,
-        "run_x": force * place.height / float(temperature[0]),
+        "run_x": force * place.height / temperature.value,
         "fluctuation_expected": lebowitz_percus_verlet(mean, variance, count, 2),
     }

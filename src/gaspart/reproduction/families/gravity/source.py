@@ -9,6 +9,7 @@ import numpy as np
 from scipy.optimize import curve_fit
 
 from gaspart.analysis.bins import Grid
+from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.shared.columns import field, stretches
 from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.reading import open_trajectory
@@ -24,7 +25,7 @@ def collisions(point: Point) -> float:
         return float(frame["collisions"] + frame["wall_hits"].sum())
 
 
-def ringing(point: Point) -> dict[str, float]:
+def ringing(point: Point) -> dict[str, Estimate]:
     """Amplitude of the oscillation of the kinetic energy where the sample begins, over its mean.
 
     Of a fit of mean + e^{-t / decay} (a cos w t + b sin w t) to all frames after the fall, with t from where
@@ -45,14 +46,11 @@ def ringing(point: Point) -> dict[str, float]:
     (_, a, b, _, _), covariance = curve_fit(model, time, kinetic, start)
     amplitude = float(np.hypot(a, b))
     direction = np.array([a, b]) / amplitude
-    return {
-        "ringing": amplitude,
-        "ringing_error": float(np.sqrt(direction @ covariance[1:3, 1:3] @ direction)),
-        "ringing_freedom": len(time) - len(start),
-    }
+    error = np.sqrt(direction @ covariance[1:3, 1:3] @ direction)
+    return {"ringing": Estimate(amplitude, error, len(time) - len(start))}
 
 
-def shares(point: Point, layers: int) -> dict[str, np.ndarray]:
+def shares(point: Point, layers: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Share of the first species in equal layers of the container, (layers,).
 
     Its error is the binomial one of a single frame: the frames of one sample are close to each other, and so
@@ -63,4 +61,4 @@ def shares(point: Point, layers: int) -> dict[str, np.ndarray]:
     cells = grid.cells(sample.heights[..., None])
     first, second = (grid.sums(cells[:, place.species == kind]) / len(cells) for kind in (0, 1))
     share = first / (first + second)
-    return {"share": share, "share_error": np.sqrt(share * (1.0 - share) / (first + second))}
+    return {"share": (share, np.sqrt(share * (1.0 - share) / (first + second)))}

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import rows
+from gaspart.reproduction.table import Row, Table
 from gaspart.theory.heat import ELEMENTARY_JUMP, METAL_BEND, METAL_BEND_ERROR, METAL_GAP, TEMPERATURE_JUMP
 
 FREE = 100.0
@@ -22,27 +22,27 @@ that fly from wall to wall add w/a (sqrt(1 + (L/w)^2) - L/w) = 0.008 of the flux
 def heat_conduction_gas(ds: xr.Dataset) -> list[Claim]:
     """A steady flux, its two limits, the profile between them, and the source's rule."""
     claims = []
-    for row in rows(ds, "point"):
+    for row in Table(ds, "point"):
         at = _at(row)
         claims += _steady(row, at)
-        if row["knudsen"] > FREE:
+        if row.knudsen > FREE:
             claims.append(_free(row, at))
-        if np.isfinite(row["slab_flux"]):
+        if np.isfinite(row.slab_flux):
             claims += _fluid(row, at)
     return claims
 
 
-def _at(row: xr.Dataset) -> str:
-    rule = "normal component only" if row["normal"] else "full accommodation"
-    return f"{int(row['dimension'])}D, {rule}, Knudsen number {float(row['knudsen']):.2g}"
+def _at(row: Row) -> str:
+    rule = "normal component only" if row.normal else "full accommodation"
+    return f"{row.dimension}D, {rule}, Knudsen number {row.knudsen:.2g}"
 
 
-def _steady(row: xr.Dataset, at: str) -> list[Claim]:
+def _steady(row: Row, at: str) -> list[Claim]:
     """The heat from the hot wall goes into the cold one, early and late."""
     conserved = Claim.at_most(
         claim=f"|heat from the walls - energy of the particles| over the transferred heat, {at}",
         kind="identity",
-        measured=Estimate(row["imbalance"], 1e-7),
+        measured=Estimate(row.imbalance, 1e-7),
         bound=1e-6,
         required=1e-6,
         source="conservation of energy (exact)",
@@ -52,7 +52,7 @@ def _steady(row: xr.Dataset, at: str) -> list[Claim]:
         Claim(
             claim=f"{text}, {at}",
             kind=kind,
-            measured=Estimate.of(row, name),
+            measured=row[name],
             expected=1.0,
             required=required,
             source="a steady state",
@@ -77,26 +77,26 @@ def _steady(row: xr.Dataset, at: str) -> list[Claim]:
     ]
 
 
-def _free(row: xr.Dataset, at: str) -> Claim:
-    share = f"{2 if row['normal'] else int(row['dimension']) + 1}/{int(row['dimension']) + 1}"
+def _free(row: Row, at: str) -> Claim:
+    share = f"{2 if row.normal else row.dimension + 1}/{row.dimension + 1}"
     return Claim(
         claim=f"flux over n (d + 1) sqrt(T1 T2 / 2 pi m) (sqrt T1 - sqrt T2), {at}",
-        measured=Estimate.of(row, "flux") / row["full"],
-        expected=row["free"] / row["full"],
+        measured=row.flux / row.full,
+        expected=row.free / row.full,
         required=0.01,
         source=f"particles that collide with walls only: {share} (exact)",
         fails_if="outgoing velocities that are not weighted by the flux, or a component that is not drawn",
     )
 
 
-def _fluid(row: xr.Dataset, at: str) -> list[Claim]:
+def _fluid(row: Row, at: str) -> list[Claim]:
     theory = "Fourier's law with Enskog's conductivity and temperature jumps ([Sone 1989])"
-    square = float(row["knudsen"]) ** 2
+    square = row.knudsen**2
     neglected = "the square of the Knudsen number, which an asymptotic theory of first order in it neglects"
     return [
         Claim(
             claim=f"flux over that of theory, {at}",
-            measured=Estimate.of(row, "flux") / row["slab_flux"],
+            measured=row.flux / row.slab_flux,
             expected=Estimate(1.0, square),
             required=0.02,
             source=theory,
@@ -105,7 +105,7 @@ def _fluid(row: xr.Dataset, at: str) -> list[Claim]:
         ),
         Claim(
             claim=f"temperature away from the walls over that of theory, {at}",
-            measured=Estimate.of(row, "profile_ratio"),
+            measured=row.profile_ratio,
             expected=Estimate(1.0, square),
             required=0.01,
             source=theory,
@@ -114,7 +114,7 @@ def _fluid(row: xr.Dataset, at: str) -> list[Claim]:
         ),
         Claim(
             claim=f"temperature jump over mean free path times slope, {at}",
-            measured=Estimate.of(row, "jump"),
+            measured=row.jump,
             expected=Estimate(TEMPERATURE_JUMP, TEMPERATURE_JUMP * square),
             required=0.3,
             source="[Sone 1989], linear in the slope",
@@ -127,21 +127,22 @@ def _fluid(row: xr.Dataset, at: str) -> list[Claim]:
 
 def heat_conduction_metal(ds: xr.Dataset) -> list[Claim]:
     """Equipartition among electrons and modes, the law of Dulong and Petit, and what a grid changes."""
-    law = f"N_e d/2 + N_s = {float(ds['expected'][0]):g} (classical statistical mechanics, exact)"
+    points = Table(ds, "point")
+    law = f"N_e d/2 + N_s = {points.expected[0]:g} (classical statistical mechanics, exact)"
     claims, conducting = [], {}
-    for row in rows(ds, "point"):
-        if row["hot"] == row["cold"]:
+    for row in points:
+        if row.hot == row.cold:
             claims += _isothermal(row, law)
         else:
-            claims += [_local(row)] if row["regular"] else [_local(row), *_linear(row)]
-            conducting[bool(row["regular"])] = row
+            claims += [_local(row)] if row.regular else [_local(row), *_linear(row)]
+            conducting[bool(row.regular)] = row
     if len(conducting) == 2:
         claims.append(_channels(conducting[True], conducting[False]))
     return [
         *claims,
         Claim(
             claim="heat capacity dE/dT from runs at several temperatures",
-            measured=Estimate.of(ds, "slope"),
+            measured=points.slope,
             expected=1.0,
             required=0.02,
             source=law,
@@ -150,10 +151,10 @@ def heat_conduction_metal(ds: xr.Dataset) -> list[Claim]:
     ]
 
 
-def _channels(regular: xr.Dataset, random: xr.Dataset) -> Claim:
+def _channels(regular: Row, random: Row) -> Claim:
     return Claim.within(
         claim="flux among scatterers on the source's grid over that at random places",
-        measured=Estimate.of(regular, "flux") / Estimate.of(random, "flux"),
+        measured=regular.flux / random.flux,
         expected=1.0 + 0.5 * CHANNELS,
         half_width=0.5 * CHANNELS,
         source="channels between the rows of a grid lengthen flights, few of which reach from wall to wall",
@@ -161,11 +162,11 @@ def _channels(regular: xr.Dataset, random: xr.Dataset) -> Claim:
     )
 
 
-def _local(row: xr.Dataset) -> Claim:
-    places = "on a grid" if row["regular"] else "at random places"
+def _local(row: Row) -> Claim:
+    places = "on a grid" if row.regular else "at random places"
     return Claim.within(
         claim=f"energy of a mode over the temperature of the electrons around it, scatterers {places}",
-        measured=Estimate.of(row, "share"),
+        measured=row.share,
         expected=1.0,
         half_width=0.05,
         source="local equilibrium, to the square of the slope over a mean free path",
@@ -173,20 +174,19 @@ def _local(row: xr.Dataset) -> Claim:
     )
 
 
-def _linear(row: xr.Dataset) -> list[Claim]:
+def _linear(row: Row) -> list[Claim]:
     """The bend of the temperature against position; in a gas T^(3/2) would be linear. Nothing is claimed of a
     grid: where channels let electrons fly far, their temperature is not a local one; nor of walls and
     gaps for which theory has not been computed."""
-    if row["hot"] != 2.0 * row["cold"] or abs(row["gap_over_path"] / METAL_GAP - 1.0) > 0.1:
+    if row.hot != 2.0 * row.cold or abs(row.gap_over_path / METAL_GAP - 1.0) > 0.1:
         return []
-    slope, level = np.polyfit(row["position"].values[1:-1], row["electrons"].values[1:-1], 1)
-    cold = float(row["cold"])
+    slope, level = np.polyfit(row.position[1:-1], row.electrons.value[1:-1], 1)
     return [
         Claim(
             claim="second-order coefficient of the electrons' temperature against position over the gap",
-            measured=Estimate.of(row, "bend"),
-            expected=Estimate(cold * METAL_BEND, cold * METAL_BEND_ERROR),
-            required=0.1 * cold,
+            measured=row.bend,
+            expected=Estimate(row.cold * METAL_BEND, row.cold * METAL_BEND_ERROR),
+            required=0.1 * row.cold,
             source="the Boltzmann equation of electrons and modes (gaspart.theory.electrons)",
             allowance_source="the statistical error of its direct simulation",
             alternative=-0.25 * slope**2 / (level + 0.5 * slope),
@@ -195,11 +195,11 @@ def _linear(row: xr.Dataset) -> list[Claim]:
     ]
 
 
-def _isothermal(row: xr.Dataset, law: str) -> list[Claim]:
+def _isothermal(row: Row, law: str) -> list[Claim]:
     return [
         Claim(
-            claim=f"{text}, T = {float(row['hot']):g}",
-            measured=Estimate.of(row, name),
+            claim=f"{text}, T = {row.hot:g}",
+            measured=row[name],
             expected=1.0,
             required=required,
             source=source,
@@ -211,12 +211,12 @@ def _isothermal(row: xr.Dataset, law: str) -> list[Claim]:
         )
     ] + [
         Claim(
-            claim=f"ln of var E / T^2 over the heat capacity, T = {float(row['hot']):g}",
-            measured=Estimate.of(row, "log_fluctuation"),
+            claim=f"ln of var E / T^2 over the heat capacity, T = {row.hot:g}",
+            measured=row.log_fluctuation,
             expected=0.0,
             required=0.1,
             source=law,
-            alternative=math.log(float(row["electrons_part"])),
+            alternative=math.log(row.electrons_part),
             fails_if="modes whose energies do not fluctuate",
         )
     ]

@@ -6,25 +6,25 @@ errors are the jackknife's.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import fit_polynomial, jackknife
 from gaspart.reproduction.families.heat.approach import NO_APPROACH, approach
-from gaspart.reproduction.families.heat.gap import (
-    Gap,
-    averages,
-)
-from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.families.heat.gap import Averages, Gap, averages
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import Table, table
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
 from gaspart.state.insertion import per_particle
 from gaspart.theory.enskog import mean_free_path
 from gaspart.theory.geometry import packing_fraction
-from gaspart.theory.heat import conducting_slab, dilute_fourier_flux, free_molecular_flux
+from gaspart.theory.heat import Slab, conducting_slab, dilute_fourier_flux, free_molecular_flux
 
 FLUID = 0.1
 """Knudsen number up to which a gas is compared with Fourier's law."""
@@ -49,28 +49,20 @@ def heat_conduction_gas(points: list[Point], settings: dict) -> xr.Dataset:
     them. Of these gases, over `frame`, how they come to the steady state (see `approach`): approach_time,
     approach, and expected_approach.
     """
-    return from_rows("point", [_gas(point, settings) for point in points], INNER)
+    return table("point", points, _gas, settings, inner=INNER)
 
 
-def _gas(point: Point, settings: dict) -> dict:
+def _gas(point: Point, settings: dict) -> dict[str, Any]:
     """The numbers of one point."""
     scene = point.scene
     gap, diameter = Gap.of(scene), 2.0 * scene.smallest_radius
     found = averages(point, gap, settings["blocks"], settings["bins"])
-    position = (np.arange(settings["bins"]) + 0.5) * gap.length / settings["bins"]
+    position, half = gap.grid(settings["bins"]).middles[0], len(found.given) // 2
     number = scene.species[0].count / (gap.area * gap.length)
     path = float(mean_free_path(packing_fraction(number, gap.dimension, diameter), gap.dimension, diameter))
-    components = thermal_face(scene, "x_low").components
-    half = len(found.given) // 2
-    estimates = {
-        "flux": found.flux(),
-        "wall_ratio": found.wall_ratio(),
-        "half_ratio": found.flux(slice(half, None)) / found.flux(slice(half)),
-    }
-    profiles = {
-        "density": jackknife(lambda n: n, found.density),
-        "temperature": jackknife(lambda e, n: e / n, found.energy, found.density),
-    }
+    clear, components = settings["clear"] * path, thermal_face(scene, "x_low").components
+    unknown = Estimate(np.nan, np.nan, len(found.given) - 1)
+    spheres = gap.dimension == 3
     row = {
         "dimension": gap.dimension,
         "normal": components == "normal",
@@ -80,31 +72,45 @@ def _gas(point: Point, settings: dict) -> dict:
         "hot": gap.hot,
         "cold": gap.cold,
         "imbalance": found.imbalance,
+        "flux": found.flux(),
+        "wall_ratio": found.wall_ratio(),
+        "half_ratio": found.flux(slice(half, None)) / found.flux(slice(half)),
+        "density": jackknife(lambda n: n, found.density),
+        "temperature": jackknife(lambda e, n: e / n, found.energy, found.density),
         "free": free_molecular_flux(number, gap.hot, gap.cold, gap.dimension, components=components),
         "full": free_molecular_flux(number, gap.hot, gap.cold, gap.dimension),
-        "fourier": np.nan,
-        "slab_flux": np.nan,
+        "fourier": dilute_fourier_flux(gap.length, gap.hot, gap.cold, diameter) if spheres else np.nan,
         "position": position,
-        "slab_temperature": np.full(position.shape, np.nan),
-        "slab_density": np.full(position.shape, np.nan),
-        "used": (position > settings["clear"] * path) & (position < gap.length - settings["clear"] * path),
-    } | NO_APPROACH
-    made = dict.fromkeys(("profile_ratio", "jump"), (np.nan, np.nan))
-    if gap.dimension == 3:
-        row["fourier"] = dilute_fourier_flux(gap.length, gap.hot, gap.cold, diameter)
-    if row["knudsen"] < FLUID and gap.dimension == 3 and components == "all":
+        "used": (position > clear) & (position < gap.length - clear),
+        "slab_flux": np.nan,
+        **dict.fromkeys(("slab_temperature", "slab_density"), np.full(position.shape, np.nan)),
+        **dict.fromkeys(("profile_ratio", "jump"), unknown),
+        **NO_APPROACH,
+    }
+    if path / gap.length < FLUID and spheres and components == "all":
         slab = conducting_slab(gap.length, number, gap.hot, gap.cold, diameter)
-        row |= {"slab_flux": slab.flux, **approach(point, slab)}
-        for name in ("temperature", "density"):
-            row[f"slab_{name}"] = np.interp(position, slab.position, getattr(slab, name))
-        used = row["used"]
-        made["profile_ratio"] = jackknife(
-            lambda e, n: (e / n / row["slab_temperature"])[used].mean(), found.energy, found.density
-        )
-        made["jump"] = jackknife(
-            lambda e, n: _jump(gap, position[used], e[used], n[used], diameter), found.energy, found.density
-        )
-    return row | entries(estimates) | entries(profiles) | entries(made, len(found.given) - 1)
+        return row | _against(slab, gap, found, row["used"], diameter) | approach(point, slab)
+    return row
+
+
+def _against(slab: Slab, gap: Gap, found: Averages, used: np.ndarray, diameter: float) -> dict[str, Any]:
+    """What is compared with Fourier's law with jumps, in the bins that are `used`."""
+    position, freedom = gap.grid(used.size).middles[0], len(found.given) - 1
+    temperature = np.interp(position, slab.position, slab.temperature)
+
+    def ratio(energy: np.ndarray, density: np.ndarray) -> float:
+        return float((energy / density / temperature)[used].mean())
+
+    def jump(energy: np.ndarray, density: np.ndarray) -> float:
+        return _jump(gap, position[used], energy[used], density[used], diameter)
+
+    return {
+        "slab_flux": slab.flux,
+        "slab_temperature": temperature,
+        "slab_density": np.interp(position, slab.position, slab.density),
+        "profile_ratio": Estimate(*jackknife(ratio, found.energy, found.density), freedom),
+        "jump": Estimate(*jackknife(jump, found.energy, found.density), freedom),
+    }
 
 
 def _jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarray, diameter: float) -> float:
@@ -135,14 +141,15 @@ def heat_conduction_metal(points: list[Point], settings: dict) -> xr.Dataset:
     through the points in equilibrium, of which there must be two. `regular` are points whose scatterers are
     given one by one, on a grid, instead of placed at random.
     """
-    ds = from_rows("point", [_metal(point, settings) for point in points], ("bin",))
-    still = ds.isel(point=np.flatnonzero(ds["hot"] == ds["cold"]))
-    warm, energy = still["hot"].values, (still["energy_ratio"] * still["hot"]).values
-    fit = fit_polynomial(warm, energy, still["energy_ratio_error"].values * warm, powers=(0, 1))
+    ds = table("point", points, _metal, settings, inner=("bin",))
+    metals = Table(ds, "point")
+    still = metals[metals.hot == metals.cold]
+    energy = still.energy_ratio * still.hot
+    fit = fit_polynomial(still.hot, energy.value, energy.error, powers=(0, 1))
     return ds.assign(slope=fit.values[1], slope_error=fit.errors[1])
 
 
-def _metal(point: Point, settings: dict) -> dict:
+def _metal(point: Point, settings: dict) -> dict[str, Any]:
     """The numbers of one point."""
     scene = point.scene
     gap, fixed = Gap.of(scene), per_particle(scene, "fixed").astype(bool)
@@ -187,14 +194,14 @@ def _metal(point: Point, settings: dict) -> dict:
         "mode_ratio": jackknife(lambda e: e / warm, mode),
         "log_fluctuation": jackknife(lambda q: np.log(q / (capacity * warm**2)), square),
     }
-    return entries(made, len(total) - 1) | {
+    return {name: Estimate(*one, len(total) - 1) for name, one in made.items()} | {
         "electrons_part": 1.0 - np.sum(fixed) / capacity,
         "expected": capacity,
         "gap_over_path": gap.length / _path(scene, gap, fixed),
         "regular": bool(scene.particles),
         "hot": gap.hot,
         "cold": gap.cold,
-        "position": (np.arange(bins) + 0.5) / bins,
+        "position": grid.middles[0] / gap.length,
     }
 
 

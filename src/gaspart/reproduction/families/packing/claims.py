@@ -6,23 +6,27 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import rows
+from gaspart.reproduction.table import Row, Table
 
 
 def densest_fill(dataset: xr.Dataset) -> list[Claim]:
     """Grown until they jam, spheres are denser than 0.60 and have six contacts each; inserted, they end
     below saturation."""
     claims = []
-    for one in rows(dataset, "packing"):
-        claims += _compressed(one) if str(one["rule"].values) == "compressed" else [_inserted(one)]
+    for one in Table(dataset, "packing"):
+        claims += _compressed(one) if one.rule == "compressed" else [_inserted(one)]
     return claims
 
 
-def _compressed(one: xr.Dataset) -> list[Claim]:
+def _packing_fraction(one: Row) -> Estimate:
+    return Estimate(one.packing_fraction, one.error, one.freedom)
+
+
+def _compressed(one: Row) -> list[Claim]:
     return [
         Claim.at_least(
             claim="packing fraction of spheres grown until they jam",
-            measured=Estimate(one["packing_fraction"], one["error"], one["freedom"]),
+            measured=_packing_fraction(one),
             bound=0.60,
             required=5e-3,
             source="[Lubachevsky 1990]: random packings end at 0.60 to 0.65",
@@ -30,7 +34,7 @@ def _compressed(one: xr.Dataset) -> list[Claim]:
         ),
         Claim.within(
             claim="contacts per sphere that does not rattle, in a jammed packing",
-            measured=Estimate(one["contacts"], one["contacts_error"], one["freedom"]),
+            measured=Estimate(one.contacts.value, one.contacts.error, one.freedom),
             expected=6.0,
             half_width=0.5,
             source="[Donev 2005]: isostatic, 2d contacts",
@@ -41,13 +45,13 @@ def _compressed(one: xr.Dataset) -> list[Claim]:
     ]
 
 
-def _inserted(one: xr.Dataset) -> Claim:
-    rule, side = str(one["rule"].values), float(one["length"][0]) / (2.0 * float(one["radius"]))
-    saturation = theory.insertion_saturation(3, side, rule)
+def _inserted(one: Row) -> Claim:
+    side = one.length[0] / (2.0 * one.radius)
+    saturation = theory.insertion_saturation(3, side, one.rule)
     return Claim.at_most(
-        claim=f"packing fraction of random insertion, {rule.replace('_', ' ')} (L/σ = {side:.3g}), "
+        claim=f"packing fraction of random insertion, {one.rule.replace('_', ' ')} (L/σ = {side:.3g}), "
         "over saturation",
-        measured=Estimate(one["packing_fraction"], one["error"], one["freedom"]) / saturation,
+        measured=_packing_fraction(one) / saturation,
         bound=1.0,
         required=0.02,
         source="[Zhang 2013], with the wall excess of fill_failures",

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from scipy.spatial import cKDTree
 
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 
 TOUCH = 1e-4
 """Gap, in diameters, up to which two particles of a jammed packing count as touching: contacts that carry the
@@ -24,32 +26,30 @@ def densest_fill(points: list[Point], settings: dict) -> xr.Dataset:
     not rattle, NaN for insertions; rule (packing,); position (packing, particle, axis), radius (packing,),
     length (packing, axis). freedom: that of the errors.
     """
-    rows = []
-    for point in points:
-        made = xr.load_dataset(point.path)
-        fractions, positions, radii = (
-            made[name].values for name in ("packing_fraction", "position", "radius")
-        )
-        length, compressed = made["length"].values, point.settings.get("arrangement") == "compressed"
-        rule = "centres_to_walls" if point.settings.get("centres_to_walls") else point.settings["boundary"]
-        touching = [np.nan]
-        if compressed:
-            touching = [contacts(*one, length) for one in zip(positions, radii, strict=True)]
-        fraction, error = _mean(fractions)
-        rows.append(
-            {
-                "rule": "compressed" if compressed else rule,
-                "packing_fraction": fraction,
-                "error": error,
-                "freedom": max(1, fractions.size - 1),
-                **entries({"contacts": _mean(np.array(touching))}),
-                "position": positions[0],
-                "radius": float(radii[0]),
-                "length": length,
-            }
-        )
     inner = {"position": ("particle", "axis"), "length": ("axis",)}
-    return from_rows("packing", rows, inner, dict.fromkeys(("position", "radius", "length"), "length"))
+    units = dict.fromkeys(("position", "radius", "length"), "length")
+    return table("packing", points, _packing, inner=inner, units=units)
+
+
+def _packing(point: Point) -> dict[str, Any]:
+    made = xr.load_dataset(point.path)
+    fractions, positions, radii = (made[name].values for name in ("packing_fraction", "position", "radius"))
+    length, compressed = made["length"].values, point.settings.get("arrangement") == "compressed"
+    rule = "centres_to_walls" if point.settings.get("centres_to_walls") else point.settings["boundary"]
+    touching = [np.nan]
+    if compressed:
+        touching = [contacts(*one, length) for one in zip(positions, radii, strict=True)]
+    fraction, error = _mean(fractions)
+    return {
+        "rule": "compressed" if compressed else rule,
+        "packing_fraction": fraction,
+        "error": error,
+        "freedom": max(1, fractions.size - 1),
+        "contacts": _mean(np.array(touching)),
+        "position": positions[0],
+        "radius": float(radii[0]),
+        "length": length,
+    }
 
 
 def _mean(values: np.ndarray) -> tuple[float, float]:

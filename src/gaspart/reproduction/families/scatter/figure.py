@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from scipy import stats
 
 from gaspart.rendering import style
+from gaspart.reproduction.table import Table
 
 FURTHEST = 5.0
 """Deviations beyond are drawn at the edge."""
@@ -16,20 +17,19 @@ FURTHEST = 5.0
 
 def claims_scatter(ds: xr.Dataset) -> Figure:
     """Two panels: the distribution of the deviations, with the Gaussian; and those of each figure."""
-    shown = ds.isel(name=np.unique(ds["figure"].values))
-    rows = max(1, shown.sizes["name"])
-    figure, (upper, lower) = style.new((2.2,), (0.5 + 0.155 * rows,))
-    _distribution(upper, ds)
-    _figures(lower, ds, shown)
+    claims, names = Table(ds, "claim"), Table(ds, "name")
+    shown = np.unique(claims.figure)
+    figure, (upper, lower) = style.new((2.2,), (0.5 + 0.155 * max(1, shown.size),))
+    _distribution(upper, claims.deviation[claims.scattered])
+    _figures(lower, claims, names.assign(figure=np.arange(len(names)))[shown])
     style.letters(upper, lower)
     return figure
 
 
-def _distribution(axis: Axes, ds: xr.Dataset) -> None:
+def _distribution(axis: Axes, alone: np.ndarray) -> None:
     """Density of the deviations without an allowance, and the standard Gaussian."""
     z = np.linspace(-FURTHEST, FURTHEST, 400)
     axis.plot(z, stats.norm.pdf(z), color=style.REFERENCE, label="Gaussian")
-    alone = ds["deviation"].values[ds["scattered"].values]
     if alone.size:
         inside = np.clip(alone, -FURTHEST, FURTHEST)
         rms = np.sqrt(np.mean(alone**2))
@@ -41,31 +41,24 @@ def _distribution(axis: Axes, ds: xr.Dataset) -> None:
             alpha=0.5,
             label=f"{alone.size}, rms {rms:.2f}",
         )
-    axis.set_ylabel("density")
-    axis.set_xlabel("deviation / standard deviations")
-    axis.set_ylim(0.0, 0.6)
-    axis.legend(loc="upper right")
+    style.labelled(axis, "deviation / standard deviations", "density", "upper right", ylim=(0.0, 0.6))
 
 
-def _figures(axis: Axes, ds: xr.Dataset, shown: xr.Dataset) -> None:
+def _figures(axis: Axes, claims: Table, figures: Table) -> None:
     """A row for each figure: its deviations (hollow: with an allowance), and the probability of a smaller
     chi-square."""
     axis.axvspan(-3.0, 3.0, color=style.GREY, alpha=0.18, linewidth=0, zorder=0)
-    names = list(shown["name"].values)
-    for row, name in enumerate(names):
-        own = ds["figure"].values == list(ds["name"].values).index(name)
+    for place, figure in enumerate(figures):
+        own = claims[claims.figure == figure.figure]
         for hollow in (True, False):
-            chosen = own & (ds["scattered"].values != hollow)
-            z = np.clip(ds["deviation"].values[chosen], -FURTHEST, FURTHEST)
-            style.points(axis, z, np.full(z.size, row), hollow=hollow, kind=0, markersize=2.5, alpha=0.8)
-        at = shown.isel(name=row)
-        if int(at["number"]):
-            chance = stats.chi2.cdf(float(at["chi_square"]), int(at["number"]))
+            z = np.clip(own.deviation[own.scattered != hollow], -FURTHEST, FURTHEST)
+            style.points(axis, z, np.full(z.size, place), hollow=hollow, kind=0, markersize=2.5, alpha=0.8)
+        if figure.number:
+            chance = stats.chi2.cdf(figure.chi_square, figure.number)
             axis.annotate(
-                f"{chance:.3f}", (1.0, row), xycoords=("axes fraction", "data"), xytext=(3, 0),
+                f"{chance:.3f}", (1.0, place), xycoords=("axes fraction", "data"), xytext=(3, 0),
                 textcoords="offset points", va="center",
             )  # fmt: skip
-    axis.set_yticks(range(len(names)), names)
-    axis.set_ylim(max(1, len(names)) - 0.5, -0.5)
-    axis.set_xlim(-FURTHEST - 0.2, FURTHEST + 0.2)
-    axis.set_xlabel("deviation / standard deviations")
+    axis.set_yticks(range(len(figures)), figures.name)
+    axis.set_ylim(max(1, len(figures)) - 0.5, -0.5)
+    style.labelled(axis, "deviation / standard deviations", xlim=(-FURTHEST - 0.2, FURTHEST + 0.2))

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.tradeoff.uniform import OBSERVABLES
+from gaspart.reproduction.table import Row, Table
 
 SEEN = 3.5
 """An error counts as seen if it is so many standard errors from 0."""
@@ -19,31 +21,27 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
     ``best_seconds`` per exact collision (NaN if none is known to reach it), ``best_ratio`` of it to the
     event-driven engine's with ``best_ratio_error``, ``best_step``, ``best_setting``.
     """
-    gases = list(dict.fromkeys(zip(dataset.dimension.values, dataset.packing_fraction.values, strict=True)))
-    shape = (len(gases), dataset.sizes["observable"], dataset.sizes["accuracy"])
+    errors, steady = Table(dataset, "row"), Table(dataset, "steady")
+    gases = list(dict.fromkeys(zip(errors.dimension, errors.packing_fraction, strict=True)))
+    shape = (len(gases), len(errors.observable), len(errors.accuracy))
     found = {name: np.full(shape, np.nan) for name in ("seconds", "ratio", "ratio_error", "step")}
     chosen = np.full(shape, "none", dtype=object)
     for g, (dimension, fraction) in enumerate(gases):
-        of = dataset.isel(
-            row=np.flatnonzero((dataset.dimension == dimension) & (dataset.packing_fraction == fraction))
-        )
-        within = (np.abs(of.bias) + 2.0 * of.bias_error).values
-        built_up = [_built_up(dataset, of.isel(row=k)) for k in range(of.sizes["row"])]
-        within[:, OBSERVABLES.index("Z")] += np.array(built_up)[:, None]
-        cost = of.seconds.values
-        for o in range(shape[1]):
-            for a, accuracy in enumerate(dataset.accuracy.values):
-                fit = np.where((within[:, o] <= accuracy) & np.isfinite(cost), cost, np.inf)
-                best = np.unravel_index(np.argmin(fit), fit.shape)
-                if not np.isfinite(fit[best]):
-                    continue
-                event, event_error = (float(of[name][best[0]]) for name in ("event_seconds", "event_error"))
-                ratio = cost[best] / event
-                spread = np.hypot(float(of.seconds_error.values[best]) / cost[best], event_error / event)
-                values = (cost[best], ratio, ratio * spread, float(of.time_step.values[best]))
-                for name, value in zip(found, values, strict=True):
-                    found[name][g, o, a] = value
-                chosen[g, o, a] = str(of.setting.values[best[0]])
+        of = errors[(errors.dimension == dimension) & (errors.packing_fraction == fraction)]
+        within = np.abs(of.bias.value) + 2.0 * of.bias.error  # row, observable, step
+        within[:, OBSERVABLES.index("Z")] += np.array([_built_up(steady, row) for row in of])[:, None]
+        cost = of.seconds.value
+        for o, a in np.ndindex(shape[1:]):
+            fit = np.where((within[:, o] <= errors.accuracy[a]) & np.isfinite(cost), cost, np.inf)
+            best = np.unravel_index(np.argmin(fit), fit.shape)
+            if not np.isfinite(fit[best]):
+                continue
+            event = Estimate(of.event_seconds[best[0]], of.event_error[best[0]])
+            ratio = of.seconds[best] / event
+            values = (cost[best], ratio.value, ratio.error, of.time_step[best])
+            for name, value in zip(found, values, strict=True):
+                found[name][g, o, a] = value
+            chosen[g, o, a] = of.setting[best[0]]
     axes = ("gas", "observable", "accuracy")
     return xr.Dataset(
         {f"best_{name}": (axes, values) for name, values in found.items()}
@@ -55,14 +53,14 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
     )
 
 
-def _built_up(dataset: xr.Dataset, at: xr.Dataset) -> float:
+def _built_up(steady: Table, row: Row) -> float:
     """The largest error of Z of a gas and setting that builds up over many steps, 0 if none is seen."""
-    if "steady" not in dataset.dims:
+    if not steady:
         return 0.0
-    same = (
-        (dataset.steady_dimension == at.dimension)
-        & (dataset.steady_packing_fraction == at.packing_fraction)
-        & (dataset.steady_setting == at.setting)
-        & (np.abs(dataset.build_up) > SEEN * dataset.build_up_error)
-    )
-    return float(np.abs(dataset.build_up).where(same, 0.0).max())
+    own = steady[
+        (steady.steady_dimension == row.dimension)
+        & (steady.steady_packing_fraction == row.packing_fraction)
+        & (steady.steady_setting == row.setting)
+    ]
+    size = np.abs(own.build_up.value)
+    return float(size[size > SEEN * own.build_up.error].max(initial=0.0))

@@ -7,8 +7,8 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import rows
 from gaspart.reproduction.families.tradeoff.relaxation import relaxation_time
+from gaspart.reproduction.table import Row, Table, each
 
 THIN, THICK = 0.0011, 0.29
 """Packing fractions: up to which a gas is called dilute here, and from which dense."""
@@ -25,34 +25,36 @@ def of_map(ds: xr.Dataset) -> list[Claim]:
     return [*_dilute(ds), *_dense(ds), *_flows(ds), *_relaxation(ds), *_cells(ds)]
 
 
+def _by_engine(at: Row, name: str) -> dict[str, Estimate]:
+    """A column over the engines."""
+    return dict(zip(at.solver.tolist(), at[name], strict=True))
+
+
 def _dilute(ds: xr.Dataset) -> list[Claim]:
     """In a dilute gas DSMC is much cheaper, the more so the more dilute."""
     claims = []
-    rate = ds.sel(quantity="collision_rate")
-    for at in rows(rate.isel(fraction=(rate.fraction <= THIN).values), "fraction"):
-        for wanted in rows(at.isel(accuracy=np.isclose(at.accuracy, 0.01)), "accuracy"):
-            if not np.isfinite(wanted.cost.sel(solver="event")):
+    gases = Table(ds.sel(quantity="collision_rate"), "fraction")
+    for at in gases[gases.fraction <= THIN]:
+        accuracies = Table(at.dataset, "accuracy")
+        for wanted in accuracies[np.isclose(accuracies.accuracy, 0.01)]:
+            cost = _by_engine(wanted, "cost")
+            if not np.isfinite(cost["event"].value):
                 continue
-            boltzmann, event = (
-                Estimate.of(wanted.sel(solver=name), "cost") for name in ("boltzmann", "event")
-            )
             claims.append(
                 Claim.at_most(
                     claim="time of DSMC over that of events for 1 % of the collision rate, packing fraction "
-                    f"{float(at.fraction):g}",
-                    measured=boltzmann / event,
+                    f"{at.fraction:g}",
+                    measured=cost["boltzmann"] / cost["event"],
                     bound=0.1,
                     required=0.03,
                     source="between two collisions a particle crosses many boxes by events, and none by DSMC",
                     fails_if="a collision of DSMC costs as much as tens of box crossings",
                 )
             )
-    thin, other = (ds.isel(fraction=np.isclose(ds.fraction, eta)) for eta in (1e-4, 1e-2))
-    if thin.sizes["fraction"] and other.sizes["fraction"]:
+    thin, other = (gases[np.isclose(gases.fraction, eta)] for eta in (1e-4, 1e-2))
+    if thin and other:
         ratio = [
-            Estimate.of(at.isel(fraction=0).sel(solver="event"), "each")
-            / Estimate.of(at.isel(fraction=0).sel(solver="boltzmann"), "each")
-            for at in (thin, other)
+            one["event"] / one["boltzmann"] for one in (_by_engine(of[0], "each") for of in (thin, other))
         ]
         claims.append(
             Claim.at_least(
@@ -69,23 +71,22 @@ def _dilute(ds: xr.Dataset) -> list[Claim]:
 
 def _dense(ds: xr.Dataset) -> list[Claim]:
     """In a dense gas the Enskog model costs more than events, and has another D."""
-    claims = []
-    for at in rows(ds.isel(fraction=(ds.fraction >= THICK).values), "fraction"):
-        where = f"packing fraction {float(at.fraction):g}"
-        event, enskog = (Estimate.of(at.sel(solver=name), "each") for name in ("event", "enskog"))
+    claims, gases = [], Table(ds, "fraction")
+    for at in gases[gases.fraction >= THICK]:
+        where, seconds = f"packing fraction {at.fraction:g}", _by_engine(at, "each")
         claims.append(
             Claim.at_least(
                 claim=f"time of a collision by the Enskog model over that by events, {where}",
-                measured=enskog / event,
+                measured=seconds["enskog"] / seconds["event"],
                 bound=1.0,
                 required=0.2,
                 source="the model tries several pairs for one that collides; by events few are tested",
                 fails_if="a search for contacts costs more than random trials",
             )
         )
-        if float(at.fraction) > 0.35:  # beyond, D / Enskog's falls again and passes through 1
+        if at.fraction > 0.35:  # beyond, D / Enskog's falls again and passes through 1
             continue
-        model = float(at.error.sel(quantity="D", solver="enskog", part="model").isel(accuracy=0))
+        model = float(at.dataset.error.sel(quantity="D", solver="enskog", part="model").isel(accuracy=0))
         claims.append(
             Claim.at_least(
                 claim=f"error of the Enskog model in D, {where}",
@@ -104,33 +105,30 @@ def _flows(ds: xr.Dataset) -> list[Claim]:
     """Fluxes and relaxation are within the bounds by which `gaspart advise` chooses."""
     claims = []
     for quantity in ds.flow_quantity.values:
-        for at in rows(ds.sel(flow_quantity=quantity), "fraction"):
-            event = Estimate.of(at.sel(solver="event"), "flow")
-            for solver in ("step", "boltzmann", "enskog"):
-                of = at.sel(solver=solver)
-                bound = float(of.flow_bound)
-                if not TESTED <= bound < 1.0:
-                    continue
-                claims.append(
-                    Claim.within(
-                        claim=f"{FLOW_NAMES[quantity]} by {SOLVERS[solver]} over that by events, packing "
-                        f"fraction {float(at.fraction):g}",
-                        measured=Estimate.of(of, "flow") / event,
-                        expected=1.0,
-                        half_width=bound,
-                        source="gaspart.accuracy.candidates: excluded volume, memory, cells, steps",
-                        fails_if="a bound leaves out what makes an error",
-                    )
+        for at in Table(ds.sel(flow_quantity=quantity), "fraction"):
+            flow, bounds = _by_engine(at, "flow"), dict(zip(at.solver, at.flow_bound, strict=True))
+            claims += [
+                Claim.within(
+                    claim=f"{FLOW_NAMES[quantity]} by {name} over that by events, packing fraction "
+                    f"{at.fraction:g}",
+                    measured=flow[solver] / flow["event"],
+                    expected=1.0,
+                    half_width=bounds[solver],
+                    source="gaspart.accuracy.candidates: excluded volume, memory, cells, steps",
+                    fails_if="a bound leaves out what makes an error",
                 )
+                for solver, name in SOLVERS.items()
+                if TESTED <= bounds[solver] < 1.0
+            ]
     return claims
 
 
 def _relaxation(ds: xr.Dataset) -> list[Claim]:
     """Speeds relax by both models as by one, on clocks that differ by the contact value."""
     claims = []
-    for at in rows(ds.sel(flow_quantity="relaxation"), "fraction"):
-        boltzmann, enskog = (Estimate.of(at.sel(solver=name), "flow") for name in ("boltzmann", "enskog"))
-        eta = float(at.fraction)
+    for at in Table(ds.sel(flow_quantity="relaxation"), "fraction"):
+        flow, eta = _by_engine(at, "flow"), at.fraction
+        boltzmann, enskog = flow["boltzmann"], flow["enskog"]
         if eta < 0.05 or not np.isfinite(boltzmann.value + enskog.value):
             continue
         exact, later = (relaxation_time(factor) for factor in (1.0, float(theory.contact_value(eta, 3))))
@@ -151,16 +149,17 @@ def _relaxation(ds: xr.Dataset) -> list[Claim]:
 
 def _cells(ds: xr.Dataset) -> list[Claim]:
     """The Enskog model loses no more collisions to its cells than `gaspart advise` allows for."""
-    return [
-        Claim.within(
-            claim="collision rate of the Enskog model in default cells over that of its equation, packing "
-            f"fraction {float(at.fraction):g}",
-            measured=Estimate.of(at, "cells"),
-            expected=1.0,
-            half_width=float(at.cells_bound),
-            source="docs/dsmc.md: at most 0.5 over the particles in a cell",
-            fails_if="pairs that approach become rarer in a cell than they are",
-        )
-        for at in rows(ds.isel(fraction=(ds.fraction <= KNOWN).values), "fraction")
-        if np.isfinite(at.cells) and at.cells_bound > 0.0  # a single cell loses nothing
-    ]
+    gases = Table(ds, "fraction")
+    measured = np.isfinite(gases.cells.value) & (gases.cells_bound > 0.0)  # a single cell loses nothing
+    known = gases[measured & (gases.fraction <= KNOWN)]
+    return each(
+        known,
+        "collision rate of the Enskog model in default cells over that of its equation, packing fraction "
+        "{fraction:g}",
+        form=Claim.within,
+        measured=known.cells,
+        expected=1.0,
+        half_width=known.cells_bound,
+        source="docs/dsmc.md: at most 0.5 over the particles in a cell",
+        fails_if="pairs that approach become rarer in a cell than they are",
+    )

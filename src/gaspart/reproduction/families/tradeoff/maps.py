@@ -10,10 +10,10 @@ import xarray as xr
 from gaspart.accuracy.table import PRECISIONS
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.shared.accuracy import costs
-from gaspart.reproduction.families.shared.rows import entries
 from gaspart.reproduction.families.tradeoff import flows, uniform
 from gaspart.reproduction.families.tradeoff.choices import ENGINES, PARTS, Choice, cheapest
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import entries
 
 QUANTITIES = (*uniform.OBSERVABLES, *flows.FLOWS)
 
@@ -149,10 +149,10 @@ def _speeds(timed: list[dict], cells: dict[float, uniform.Cells], fractions: lis
         rate = float(same["event"]["collisions"][0])
         for e, engine in enumerate(ENGINES):
             if engine in same:
-                best = min(uniform.each_of(same[engine], rate), key=lambda one: one.value)
+                seconds = uniform.each_of(same[engine], rate)
+                best = seconds[np.argmin(seconds.value)]
                 each[:, f, e] = best.value, best.error
-    columns = entries({"cells": tuple(np.array([(one.value, one.error) for one in rates]).T)})
-    columns["cells_freedom"] = np.array([one.freedom for one in rates])
+    columns = entries({"cells": Estimate.stack(rates)})
     columns["cells_bound"] = np.array([one.bound if one else np.nan for one in found])
     return xr.Dataset(
         {name: ("fraction", values, {"units": "1"}) for name, values in columns.items()}

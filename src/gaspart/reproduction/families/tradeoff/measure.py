@@ -7,7 +7,7 @@ forgets its velocity, taken from the memory after about one collision per partic
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -19,9 +19,9 @@ from gaspart.accuracy.noise import required
 from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS, REFERENCE, STEP
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
+from gaspart.reproduction import table as tables
 from gaspart.reproduction.families.shared.accuracy import costs, setting_name
 from gaspart.reproduction.families.shared.pressure import pressure
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.tradeoff.frontier import SEEN, frontier
 from gaspart.reproduction.families.tradeoff.maps import maps
 from gaspart.reproduction.families.tradeoff.uniform import (
@@ -64,19 +64,22 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     rows = compared(points, timed)
     rows = sorted(rows, key=lambda row: (-row["dimension"], row["packing_fraction"]))
     inner = {name: ("observable", "step")[2 - np.ndim(value) :] for name, value in rows[0].items()}
-    dataset = from_rows("row", rows, inner).assign_coords(
+    dataset = tables.from_rows("row", rows, inner).assign_coords(
         observable=list(OBSERVABLES), accuracy=settings["accuracies"]
     )
     orders = np.array([_orders(row, settings["order_up_to"]) for row in rows])
     dataset["order"] = (("row", "observable"), orders[..., 0])
     dataset["order_error"] = (("row", "observable"), orders[..., 1])
-    long = (point for point in points if point.job == "simulate")
-    steady = [_steady(point, rows) for point in long if point.experiment not in settings["cells"]]
-    dataset = dataset.assign(from_rows("steady", steady)).merge(frontier(dataset))
-    dataset = dataset.assign(from_rows("timed", [_timed(one) for one in timed if one["setting"] == "event"]))
+    long = [
+        point for point in points if point.job == "simulate" and point.experiment not in settings["cells"]
+    ]
+    dataset = dataset.assign(tables.table("steady", long, _steady, rows)).merge(frontier(dataset))
+    events = [one for one in timed if one["setting"] == "event"]
+    dataset = dataset.assign(tables.table("timed", events, _timed))
     cells = cells_by_fraction(points, settings["cells"])
-    steps = dict.fromkeys(("dsmc_step", "dsmc_step_seconds", "dsmc_step_seconds_error"), ("part",))
-    return dataset.assign(from_rows("dsmc", list(_models(timed, cells)), steps))
+    models = _models(events, timed, cells)
+    steps = dict.fromkeys(("dsmc_step", "dsmc_step_seconds"), ("part",))
+    return dataset.assign(tables.table("dsmc", models, _model, cells, inner=steps))
 
 
 def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
@@ -194,33 +197,44 @@ def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
     return found
 
 
-def _models(timed: list[dict], cells: dict[float, Cells]) -> Iterator[dict]:
-    """The costs and the errors of Z of the models of the DSMC engine, with the cheapest step, on which Z does
-    not depend, in the gases in which the event-driven engine was timed; of the Enskog model those whose error
-    by cells was measured, of spheres."""
-    for event in (one for one in timed if one["setting"] == "event"):
-        dimension, fraction = event["gas"]
-        of_cells = {"boltzmann": 0.0}
-        if dimension == 3 and fraction in cells:
-            of_cells["enskog"] = cells[fraction].error
-        for one in timed:
-            model = one["setting"]
-            if one["gas"] == event["gas"] and model in of_cells:
-                every = each_of(one, float(event["collisions"][0]))
-                each = min(every, key=lambda each: each.value)
-                yield {
-                    "dsmc_model": model,
-                    "dsmc_dimension": dimension,
-                    "dsmc_packing_fraction": fraction,
-                    **entries({"dsmc_seconds": (each.value, each.error)}),
-                    "dsmc_step": one["step_parts"],
-                    "dsmc_step_seconds": np.array([each.value for each in every]),
-                    "dsmc_step_seconds_error": np.array([each.error for each in every]),
-                    "dsmc_bias": model_error(fraction, dimension, model, "Z") + of_cells[model],
-                }
+def _models(events: list[dict], timed: list[dict], cells: dict[float, Cells]) -> list[tuple[dict, dict]]:
+    """(timing of the event-driven engine, of a model of the DSMC engine) in one gas; of the Enskog model
+    those whose error by cells was measured, of spheres."""
+    return [
+        (event, one)
+        for event in events
+        for one in timed
+        if one["gas"] == event["gas"]
+        and (one["setting"] == "boltzmann" or (one["setting"] == "enskog" and _cells(one, cells)))
+    ]
 
 
-def _timed(run: dict) -> dict:
+def _cells(timed: dict, cells: dict[float, Cells]) -> Cells | None:
+    """What is known of the cells of the Enskog model in the gas of a timing."""
+    dimension, fraction = timed["gas"]
+    return cells.get(fraction) if dimension == 3 else None
+
+
+def _model(timings: tuple[dict, dict], cells: dict[float, Cells]) -> dict[str, Any]:
+    """The cost and the error of Z of a model of the DSMC engine, with the cheapest step, on which Z does not
+    depend."""
+    event, one = timings
+    (dimension, fraction), model, known = one["gas"], one["setting"], _cells(one, cells)
+    seconds = each_of(one, float(event["collisions"][0]))
+    cheapest = seconds[np.argmin(seconds.value)]
+    of_cells = known.error if known and model == "enskog" else 0.0
+    return {
+        "dsmc_model": model,
+        "dsmc_dimension": dimension,
+        "dsmc_packing_fraction": fraction,
+        "dsmc_seconds": (cheapest.value, cheapest.error),
+        "dsmc_step": one["step_parts"],
+        "dsmc_step_seconds": (seconds.value, seconds.error),
+        "dsmc_bias": model_error(fraction, dimension, model, "Z") + of_cells,
+    }
+
+
+def _timed(run: dict) -> dict[str, Any]:
     """The time of a collision of the event-driven engine, in the gas of a timing."""
     dimension, fraction = run["gas"]
     return {
@@ -231,7 +245,7 @@ def _timed(run: dict) -> dict:
     }
 
 
-def _steady(point: Point, rows: list[dict]) -> dict:
+def _steady(point: Point, rows: list[dict]) -> dict[str, Any]:
     """The error of Z in a long run of the time-stepped engine, minus that of the paired runs of its gas."""
     own = point.settings
     long, fraction, dimension = pressure(point).z, own["packing_fraction"], own["dimension"]
@@ -239,13 +253,13 @@ def _steady(point: Point, rows: list[dict]) -> dict:
     gas = (dimension, fraction, name)
     row = next(row for row in rows if (row["dimension"], row["packing_fraction"], row["setting"]) == gas)
     at = int(np.argmin(np.abs(row["time_step"] - own["time_step"])))
+    paired = Estimate(row["bias"][OBSERVABLES.index("Z"), at], row["bias_error"][OBSERVABLES.index("Z"), at])
     exact = float(theory.compressibility_factor(fraction, dimension))
-    count = point.extents[0]
-    exact += float(theory.finite_size_correction(fraction, dimension, count, ensemble="canonical"))
+    exact += float(theory.finite_size_correction(fraction, dimension, point.extents[0], ensemble="canonical"))
     return {
         "steady_dimension": dimension,
         "steady_packing_fraction": fraction,
         "steady_setting": name,
         "steady_step": own["time_step"],
-        **entries({"build_up": long / exact - Estimate(1.0 + row["bias"][1, at], row["bias_error"][1, at])}),
+        "build_up": long / exact - (1.0 + paired),
     }

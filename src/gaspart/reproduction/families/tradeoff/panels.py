@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 
 from gaspart.rendering import style
 from gaspart.reproduction.families.tradeoff.choices import ENGINES
+from gaspart.reproduction.table import Row
 
 TITLES = {
     "collision_rate": "collision rate",
@@ -58,21 +59,20 @@ def duration(seconds: float) -> str:
 def cheapest_engine(ds: xr.Dataset) -> Iterator[tuple[int, int, str, float]]:
     """(fraction, accuracy, engine, cost), the first two by position, of one quantity where any engine was
     measured; engine "" and cost infinite where none reaches the accuracy."""
-    for f in range(ds.sizes["fraction"]):
-        for a in range(ds.sizes["accuracy"]):
-            costs = ds["cost"].isel(fraction=f, accuracy=a).values
-            if np.isnan(costs).all():
-                continue
-            best = int(np.nanargmin(costs))
-            yield f, a, ENGINES[best] if np.isfinite(costs[best]) else "", float(costs[best])
+    cost = Row(ds).cost.value  # fraction, accuracy, solver
+    for f, a in np.ndindex(*cost.shape[:2]):
+        if not np.isnan(cost[f, a]).all():
+            best = int(np.nanargmin(cost[f, a]))
+            least = float(cost[f, a, best])
+            yield f, a, ENGINES[best] if np.isfinite(least) else "", least
 
 
 def map_of(axis: Axes, ds: xr.Dataset) -> None:
     """One quantity: a field for each density and accuracy, in the colour of the cheapest engine, with its
     cost."""
-    fields = list(cheapest_engine(ds))
+    gas, fields = Row(ds), list(cheapest_engine(ds))
     columns = sorted({f for f, *_ in fields})
-    colours = np.ones((ds.sizes["accuracy"], max(1, len(columns)), 3))
+    colours = np.ones((len(gas.accuracy), max(1, len(columns)), 3))
     for f, a, engine, seconds in fields:
         x, y = columns.index(f), a
         colours[y, x] = tint(engine) if engine else (1.0, 1.0, 1.0)
@@ -81,12 +81,11 @@ def map_of(axis: Axes, ds: xr.Dataset) -> None:
     axis.pcolormesh(
         *map(np.arange, np.add(colours.shape[1::-1], 1)), colours, edgecolor="white", linewidth=0.5
     )
-    axis.set_xticks(np.arange(len(columns)) + 0.5, [_fraction(ds.fraction.values[f]) for f in columns])
-    percent = [f"{100.0 * value:g}" for value in ds.accuracy.values]
+    axis.set_xticks(np.arange(len(columns)) + 0.5, [_fraction(gas.fraction[f]) for f in columns])
+    percent = [f"{100.0 * value:g}" for value in gas.accuracy]
     axis.set_yticks(np.arange(len(percent)) + 0.5, percent)
     axis.tick_params(length=0)
-    axis.set_xlabel(r"packing fraction $\eta$")
-    axis.set_ylabel("accuracy (%)")
+    style.labelled(axis, r"packing fraction $\eta$", "accuracy (%)")
 
 
 def _fraction(value: float) -> str:
@@ -94,14 +93,14 @@ def _fraction(value: float) -> str:
     return rf"$10^{{{round(math.log10(value))}}}$" if value < 0.005 else f"{value:g}"
 
 
-def places(ds: xr.Dataset) -> list[xr.Dataset]:
+def places(ds: xr.Dataset) -> list[Row]:
     """The `PLACES` that were measured."""
     found = []
     for quantity, fraction, accuracy in PLACES:
         near = np.isclose(ds.fraction, fraction)
         if near.any():
             of = ds.sel(quantity=quantity).isel(fraction=int(np.argmax(near)))
-            found.append(of.isel(accuracy=int(np.argmin(np.abs(ds.accuracy.values - accuracy)))))
+            found.append(Row(of.isel(accuracy=int(np.argmin(np.abs(ds.accuracy.values - accuracy))))))
     return found
 
 
@@ -110,15 +109,15 @@ def breakdown(axis: Axes, ds: xr.Dataset) -> None:
     rows: list[tuple[float, str]] = []
     for p, at in enumerate(places(ds)):
         top = -(len(ENGINES) + 1.5) * p
-        title = rf"${at.quantity.item()}$ to {100 * float(at.accuracy):g} % at $\eta={float(at.fraction):g}$"
+        title = rf"${at.quantity}$ to {100 * at.accuracy:g} % at $\eta={at.fraction:g}$"
         axis.text(0.03, top, title, va="center")
-        for e, engine in enumerate(ENGINES):
+        for e, (engine, parts) in enumerate(zip(at.solver, at.error, strict=True)):
             y = top - 1.0 - e
             rows.append((y, NAMES[engine]))
-            _stack(axis, y, list(at.sel(solver=engine)["error"].values / float(at.accuracy)))
+            _stack(axis, y, list(parts / at.accuracy))
     line = axis.axvline(1.0, color="black", linewidth=0.8, label="required")
-    parts = [Patch(facecolor=style.COLOURS[kind], label=name) for kind, name in enumerate(PART_NAMES)]
-    axis.legend(handles=[*parts, line], loc="center right", fontsize=7)
+    patches = [Patch(facecolor=style.COLOURS[kind], label=name) for kind, name in enumerate(PART_NAMES)]
+    axis.legend(handles=[*patches, line], loc="center right", fontsize=7)
     axis.set_yticks(*zip(*rows, strict=True) if rows else ([], []))
     axis.set_ylim(rows[-1][0] - 0.7 if rows else -1.0, 0.7)
     axis.set_xticks([0.0, 0.5, 1.0, 1.5])

@@ -173,10 +173,9 @@ def choices(
             yield gas.choice(model, observable, both, each, own)
 
 
-def each_of(timed: dict, rate: float) -> list[Estimate]:
-    """Processor time per contact with each time step of a timing; rate: contacts per time."""
-    pairs = zip(timed["seconds"], timed["error"], strict=True)
-    return [Estimate(float(seconds), float(error)) / rate for seconds, error in pairs]
+def each_of(timed: dict, rate: float) -> Estimate:
+    """Processor time per contact with each time step of a timing, (T,); rate: contacts per time."""
+    return Estimate(timed["seconds"], timed["error"]) / rate
 
 
 def compared(points: list[Point], timed: list[dict]) -> list[dict]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import xarray as xr
 
+from gaspart.analysis.statistics import combine_estimates
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import ENSKOG_LIMIT, PARTICLES, rows, weighted_mean
+from gaspart.reproduction.families.shared.claims import ENSKOG_LIMIT, PARTICLES
+from gaspart.reproduction.table import Row, Table
 
 DILUTE_BAND = 0.01
 """Most that a coefficient of such a gas differs from Enskog's, as a part of it: at 0.02 a particle meets a
@@ -18,58 +20,63 @@ FEW_PER_CENT = 0.05
 
 def viscosity(ds: xr.Dataset) -> list[Claim]:
     """The shear and the bulk viscosity of spheres and discs."""
-    return _claims(ds, "viscosity") + [_bulk(row) for row in rows(ds, "point")]
+    gases = Table(ds, "point")
+    return _claims(gases, "viscosity") + [_bulk(gas) for gas in gases]
 
 
 def conductivity(ds: xr.Dataset) -> list[Claim]:
     """The conductivity of heat of spheres and discs."""
-    return _claims(ds, "conductivity")
+    return _claims(Table(ds, "point"), "conductivity")
 
 
-def _bulk(row: xr.Dataset) -> Claim:
+def _is_within(gas: Row, packing_fraction: float) -> bool:
+    """Whether a gas is at most so dense, but for rounding."""
+    return bool(gas.packing_fraction <= packing_fraction * (1.0 + 1e-6))
+
+
+def _which(gas: Row) -> str:
+    particles = PARTICLES[gas.dimension]
+    return f"{particles}, packing fraction {gas.packing_fraction:.3g}, {gas.count} particles"
+
+
+def _bulk(gas: Row) -> Claim:
     """The bulk viscosity."""
-    eta, dimension = float(row["packing_fraction"]), int(row["dimension"])
-    known = {2: ENSKOG_LIMIT, 3: ACCURATE}[dimension] * (1.0 + 1e-6)
     unknown = {
         2: "of discs its integral grows with the logarithm of time",
         3: "what correlated collisions do near freezing is not known",
-    }[dimension]
+    }[gas.dimension]
     return Claim.within(
-        claim=f"bulk viscosity over Enskog's, {PARTICLES[dimension]}, packing fraction {eta:.3g}, "
-        f"{int(row['count'])} particles",
-        measured=Estimate.of(row, "bulk"),
+        claim=f"bulk viscosity over Enskog's, {_which(gas)}",
+        measured=gas.bulk,
         expected=1.0,
         half_width=FEW_PER_CENT,
         source="[Chapman 1970]; expansion changes what passes at contacts at once, and kinetic parts not",
-        no_verdict="" if eta <= known else unknown,
+        no_verdict="" if _is_within(gas, {2: ENSKOG_LIMIT, 3: ACCURATE}[gas.dimension]) else unknown,
         fails_if="a pressure that is not that of the contacts",
     )
 
 
-def _claims(ds: xr.Dataset, name: str) -> list[Claim]:
+def _claims(gases: Table, name: str) -> list[Claim]:
     claims = []
-    for row in rows(ds, "point"):
-        eta, dimension = float(row["packing_fraction"]), int(row["dimension"])
-        where = f"{PARTICLES[dimension]}, packing fraction {eta:.3g}, {int(row['count'])} particles"
-        value = Estimate.of(row, "value")
-        if eta <= ENSKOG_LIMIT * (1.0 + 1e-6):
+    for gas in gases:
+        if _is_within(gas, ENSKOG_LIMIT):
             claims.append(
                 Claim.within(
-                    claim=f"{name} over Chapman and Enskog's, {where}",
-                    measured=value / float(row["finite"]),
+                    claim=f"{name} over Chapman and Enskog's, {_which(gas)}",
+                    measured=gas.value / gas.finite,
                     expected=1.0,
                     half_width=DILUTE_BAND,
                     source=ENSKOG,
                     fails_if="a wrong flux, correlations cut too early, or a wrong effect of finite numbers",
                 )
             )
-        elif dimension == 3 and eta <= ACCURATE * (1.0 + 1e-6):
+        elif gas.dimension == 3 and _is_within(gas, ACCURATE):
             claims.append(
                 Claim.within(
-                    claim=f"{name} over Enskog's, {where}",
-                    measured=value,
+                    claim=f"{name} over Enskog's, {_which(gas)}",
+                    measured=gas.value,
                     expected=1.0,
-                    half_width=FEW_PER_CENT + 1.0 - float(row["finite"]),
+                    half_width=FEW_PER_CENT + 1.0 - gas.finite,
                     source=f"{ENSKOG}; correlated collisions change it by a few per cent [Alder 1970b], the "
                     "finite number as in a dilute gas",
                     fails_if="a collisional part of the flux that is wrong or missing",
@@ -77,9 +84,9 @@ def _claims(ds: xr.Dataset, name: str) -> list[Claim]:
             )
         claims.append(
             Claim.within(
-                claim=f"growth by Helfand over Green and Kubo's integral, {name}, {where}",
+                claim=f"growth by Helfand over Green and Kubo's integral, {name}, {_which(gas)}",
                 kind="identity",
-                measured=Estimate.of(row, "difference") + 1.0,
+                measured=gas.difference + 1.0,
                 expected=1.0,
                 half_width=0.01,
                 source="both are one double integral (exact), but for pairs at the ends of the runs",
@@ -91,11 +98,16 @@ def _claims(ds: xr.Dataset, name: str) -> list[Claim]:
 
 def logarithmic_growth(ds: xr.Dataset) -> list[Claim]:
     """The growth of discs' coefficients with the logarithm of time."""
+    gases = Table(ds, "point")
+    growths = {
+        "viscosity": (gases.viscosity_growth, gases.viscosity_short_waves),
+        "conductivity": (gases.conductivity_growth, gases.conductivity_short_waves),
+    }
     return [
         Claim(
             claim=f"growth of the {name}'s integral with time over that of the containers' modes",
-            measured=weighted_mean([Estimate.of(row, f"{name}_growth") for row in rows(ds, "point")]),
-            expected=Estimate(1.0, float(ds[f"{name}_short_waves"].max())),
+            measured=combine_estimates(growth),
+            expected=Estimate(1.0, short_waves.max()),
             required=0.25,
             source="mode coupling [Ernst 1971] with delayed vertices and relaxing fluxes, the modes of the "
             "containers (gaspart.theory.mode_pairs)",
@@ -103,5 +115,5 @@ def logarithmic_growth(ds: xr.Dataset) -> list[Claim]:
             alternative=0.0,
             fails_if=f"a flux without a 1/t tail, so that the {name} exists",
         )
-        for name in ("viscosity", "conductivity")
+        for name, (growth, short_waves) in growths.items()
     ]

@@ -18,8 +18,8 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import mean_of, means_of
 from gaspart.analysis.transport import green_kubo, helfand
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 from gaspart.scene.gas import plain_gas
 from gaspart.trajectory.reading import open_trajectory
 
@@ -32,29 +32,22 @@ LATE = 0.5
 """Part of the longest lag from which on the squared change of Helfand's sum is taken to grow evenly."""
 
 
+UNITS = {"time": "collisions per particle"}
+
+
 def viscosity(points: list[Point], settings: dict) -> xr.Dataset:
-    """Shear viscosity; see `_dataset`; and `bulk`, the bulk viscosity over Enskog's by Green and Kubo."""
-    found = _dataset(points, "shear", theory.enskog_viscosity)
-    return found.merge(from_rows("point", [entries({"bulk": _bulk(point)}) for point in points]))
+    """Shear viscosity; see `coefficient`; and `bulk`, the bulk viscosity over Enskog's by Green and Kubo."""
+    return table("point", points, _viscosities, inner=("lag",), units=UNITS)
 
 
 def conductivity(points: list[Point], settings: dict) -> xr.Dataset:
-    """Conductivity of heat; see `_dataset`."""
-    return _dataset(points, "heat", theory.enskog_conductivity)
+    """Conductivity of heat; see `coefficient`."""
+    of = "heat", theory.enskog_conductivity
+    return table("point", points, coefficient, *of, inner=("lag",), units=UNITS)
 
 
-def _dataset(points: list[Point], flux: str, enskog: Callable[..., Any]) -> xr.Dataset:
-    """Coefficients over Enskog's, by point.
-
-    `value`, the integral of the correlation until the longest lag, and `growth`, half of the slope of
-    Helfand's squared change between lags `LATE` and 1 of the longest; `difference`, growth over the mean of
-    the integral between these lags, minus 1, from the same runs; each with `_error` and `_freedom`, the
-    degrees of freedom of the error. running (lag,), the integral until each lag, its `_error`, and `time`,
-    `end` of the integral. dimension, packing_fraction, count; `finite`, what a dilute gas of so many
-    particles has over an infinite one.
-    """
-    rows = [coefficient(point, flux, enskog) for point in points]
-    return from_rows("point", rows, ("lag",), {"time": "collisions per particle"})
+def _viscosities(point: Point) -> dict[str, Any]:
+    return coefficient(point, "shear", theory.enskog_viscosity) | {"bulk": _bulk(point)}
 
 
 def _bulk(point: Point) -> Estimate:
@@ -71,8 +64,15 @@ def _bulk(point: Point) -> Estimate:
     return mean_of(samples) / float(theory.enskog_bulk_viscosity(**gas.parameters))
 
 
-def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict:
-    """One point of `_dataset`, of the flux of `trajectory.correlator.STRESS` with this name."""
+def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict[str, Any]:
+    """A coefficient of a point over Enskog's, by the flux of `trajectory.correlator.STRESS` of this name.
+
+    `value`, the integral of the correlation until the longest lag, and `growth`, half of the slope of
+    Helfand's squared change between lags `LATE` and 1 of the longest; `difference`, growth over the mean of
+    the integral between these lags, minus 1, from the same runs; running (lag,), the integral until each lag;
+    all estimates. `time`, `end` of the integral. dimension, packing_fraction, count; `finite`, what a dilute
+    gas of so many particles has over an infinite one.
+    """
     gas = plain_gas(point.scene)
     exact, rate = float(enskog(**gas.parameters)), float(theory.collision_rate(**gas.parameters))
     curves, growths = [], []
@@ -85,19 +85,16 @@ def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict:
     samples, freedom = np.array(curves), len(curves) - 1
     value, growth = samples[:, -1], np.array(growths)
     meanwhile = samples[:, _half(lags) : -1].mean(axis=1)  # exactly the growth, but for pairs at the ends
-    numbers = {
-        "value": means_of(value),
-        "growth": means_of(growth),
-        "difference": means_of((growth - meanwhile) / meanwhile.mean()),
-    }
     return {
         "dimension": gas.dimension,
         "packing_fraction": gas.packing_fraction,
         "count": gas.count,
         "finite": theory.transport_finite_size_factor(gas.count, gas.dimension, QUANTITIES[flux]),
-        **entries(numbers, freedom),
+        "value": Estimate(*means_of(value), freedom),
+        "growth": Estimate(*means_of(growth), freedom),
+        "difference": Estimate(*means_of((growth - meanwhile) / meanwhile.mean()), freedom),
         "time": rate * end(lags),
-        **entries({"running": means_of(samples)}),
+        "running": means_of(samples),
     }
 
 
@@ -132,11 +129,10 @@ def logarithmic_growth(points: list[Point], settings: dict) -> xr.Dataset:
     not 1.
     """
     starts = {"viscosity": settings["viscosity_from"], "conductivity": settings["conductivity_from"]}
-    rows = [_growing(point, starts) for point in points]
-    return from_rows("point", rows, ("lag",), {"time": "collisions per particle"})
+    return table("point", points, _growing, starts, inner=("lag",), units=UNITS)
 
 
-def _growing(point: Point, starts: dict[str, float]) -> dict:
+def _growing(point: Point, starts: dict[str, float]) -> dict[str, Any]:
     """One point of `logarithmic_growth`."""
     gas, lengths = plain_gas(point.scene), point.scene.container.lengths
     if gas.dimension != 2 or gas.diameter != 1.0 or gas.temperature != 1.0:
@@ -159,8 +155,8 @@ def _growing(point: Point, starts: dict[str, float]) -> dict:
         drawn = np.full(len(time), np.nan)
         drawn[late] = modes + np.mean(values[late] - modes)
         row |= {
-            **entries({f"{name}_growth": mean_of((grown[:, -1] - grown[:, 0]) / (modes[-1] - modes[0]))}),
-            **entries({name: (values, errors)}),
+            f"{name}_growth": mean_of((grown[:, -1] - grown[:, 0]) / (modes[-1] - modes[0])),
+            name: (values, errors),
             f"{name}_modes": drawn,
             f"{name}_short_waves": 1.0 - (longer[-1] - longer[0]) / (modes[-1] - modes[0]),
         }
