@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from gaspart.engines.dynamics import Dynamics
 from gaspart.engines.engine import (
     ENGINES,
     Engine,
@@ -20,7 +19,6 @@ from gaspart.engines.dsmc.settings import DSMC  # isort: skip
 __all__ = [
     "DSMC",
     "ENGINES",
-    "Dynamics",
     "Engine",
     "EventDriven",
     "TimeStepped",
