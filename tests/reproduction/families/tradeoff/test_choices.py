@@ -54,7 +54,7 @@ def test_the_cheapest_choice_is_the_least_biased_one_where_none_reaches():
 def test_the_boltzmann_equation_lacks_contact_value_and_virial(dimension, order):
     """order: of the contact value, 1 + order x packing fraction."""
     z, contact = (float(f(0.1, dimension)) for f in (theory.compressibility_factor, theory.contact_value))
-    error = partial(models.model_error, dimension=dimension, model="boltzmann")
+    error = partial(models.model_error, dimension=dimension, equation="boltzmann")
     assert error(0.1, observable="Z") == pytest.approx(1.0 - 1.0 / z)
     assert error(0.1, observable="collision_rate") == pytest.approx(1.0 - 1.0 / contact)
     assert error(1e-3, observable="collision_rate") == pytest.approx(1e-3 * order, rel=0.005)
