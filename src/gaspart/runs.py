@@ -23,6 +23,7 @@ from gaspart.engines import Engine
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import is_same_file, output_path
 from gaspart.scene.scene import Scene
+from gaspart.state.optional_tallies import impulse_tallies
 from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
@@ -75,6 +76,7 @@ def run(
     follow: int | None = None,
     correlations: Correlations | None = None,
     pairs: bool = False,
+    impulses: str | None = None,
     initial: State | str | Path | None = None,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
@@ -87,13 +89,14 @@ def run(
     A frame at time 0 and at every sample_interval to the duration, which is an integer multiple of it; with
     `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also the
     spins; with `follow` only so many particles, from the first on (counters are still those of all). With
-    `correlations` each frame has the sums so far of the velocities' correlations, and with `displacements`
-    of the mean-squared displacement, over all pairs of samples, which may lie much closer than frames; with
+    `correlations` each frame has the sums so far of the velocities' correlations, and with `displacements` of
+    the mean-squared displacement, over all pairs of samples, which may lie much closer than frames; with
     `Correlations(stress=True)` those of the stress tensor and the heat flux instead. With `pairs` each frame
-    counts the collisions of each pair of species so far (event-driven engine). A run of the same recipe
-    and program that was cut short is continued, a complete one is not changed. Another trajectory at `path`,
-    or unfinished next to it, is replaced only with `overwrite`; a file of another kind never. With
-    `keep_checkpoint` the state at the end stays in `path.checkpoint.npz`, and `resume` goes on from it.
+    counts the collisions of each pair of species so far; with `impulses`, such as "z:200", it has what a more
+    accurate density along z needs (both event-driven). A run of the same recipe and program that was cut
+    short is continued, a complete one is not changed. Another trajectory at `path`, or unfinished next to it,
+    is replaced only with `overwrite`; a file of another kind never. With `keep_checkpoint` the state at the
+    end stays in `path.checkpoint.npz`, and `resume` goes on from it.
 
     With `initial`, a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`), the run
     starts from it (`Simulation`). Particles and the size of the container must be the scene's; the rest may
@@ -105,7 +108,6 @@ def run(
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
     examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
-
     Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
     SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
     """
@@ -116,11 +118,10 @@ def run(
         displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    start = _start(initial, scene, _required(path))
-    settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations
-    recipe = Recipe(*settings, until=wanted, pairs=pairs, initial=start)
+    settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
+    kept = pairs, _start(initial, scene, _required(path)), impulse_tallies(impulses)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    return trajectory.record(recipe, _required(path), options)
+    return trajectory.record(Recipe(*settings, *kept), _required(path), options)
 
 
 def _start(initial: State | str | Path | None, scene: Scene, path: str | Path) -> State | None:

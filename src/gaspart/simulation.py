@@ -79,7 +79,7 @@ class Simulation:
             raise SceneError("engine", engine, f"must be an engine: {constructors()}")
         self.scene, self.engine, self.seed = scene, engine, seed
         self._asked, self._given = engine, initial
-        self._tallies = (*tallies, *([StressTally()] if stress else []))
+        self.tallies: tuple[OptionalTally, ...] = (*tallies, *([StressTally()] if stress else []))
         self._log: EventLog | None = None
         self._advanced = False
         self._set_up()
@@ -105,9 +105,9 @@ class Simulation:
                 check_apart(self.scene, self._initial)
         self._energy = self._initial.energy
         self._moving = self._initial.kinetic_energy + self._initial.vibrational_energy
-        for tally in self._tallies:
+        for tally in self.tallies:
             self.engine.check_tally(tally, self.scene)
-        self._dynamics = self.engine.start(self.scene, self._initial, self.seed, self._tallies)
+        self._dynamics = self.engine.start(self.scene, self._initial, self.seed, self.tallies)
 
     def add(
         self,
@@ -216,7 +216,7 @@ class Simulation:
         """The sums of the optional tally of this name, as in `tally` but read faster: of "stress" (2 d^2 +
         d,) those of the stress tensor, of its collisional part and of the heat flux. Raises SceneError unless
         it was asked for."""
-        if not any(asked.name == tally for asked in self._tallies):
+        if not any(asked.name == tally for asked in self.tallies):
             raise SceneError(tally, False, "was not asked for when the simulation was made")
         return self._dynamics.sums_of(tally)
 
@@ -249,7 +249,7 @@ class Simulation:
 
     def again(self) -> Simulation:
         """This simulation at its start."""
-        return Simulation(self.scene, self.engine, self.seed, initial=self._given, tallies=self._tallies)
+        return Simulation(self.scene, self.engine, self.seed, initial=self._given, tallies=self.tallies)
 
     def replay(self, by: str = "time", interval: float | None = None) -> Iterator[State]:
         """The states from the start to the present time, by running it again: at every `interval`

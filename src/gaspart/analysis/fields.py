@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from gaspart.analysis.impulses import mixed_density
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.profiles import Cells, with_freedom
 from gaspart.analysis.run import Run, Source, open_run, selected
@@ -30,7 +31,8 @@ def field(
     "velocity", their mean velocity, ("component", "x", "y"); "temperature", twice their kinetic energy per
     degree of freedom about the local flow of mass: in these cells, and across faces that slide; before faces
     that move along their normal in layers of each frame (see `gaspart.analysis.flow`). NaN in cells that were
-    always empty. Errors are as of `profile`. axes: such as "xy", by default the first two;
+    always empty. Errors are as of `profile`, and so is the density along one axis of a run that has kept its
+    impulses. axes: such as "xy", by default the first two;
     cells: their number, of each axis; along the other axes a cell is as long as the container. start: the
     time from which frames count (by default a quarter of the run); species: of one alone, by its number in
     the scene.
@@ -43,7 +45,11 @@ def field(
         numbers = _numbers(cells, len(along))
         members = np.flatnonzero(run.moving)[selected(run, species, None)]
         cells = Cells(run, members, tuple(along), tuple(numbers))
-        found = cells.temperature(local=True) if of == "temperature" else getattr(cells, of)()
+        found = None
+        if of == "density" and len(along) == 1:
+            found = mixed_density(run, along[0], numbers[0], species)
+        if found is None:
+            found = cells.temperature(local=True) if of == "temperature" else getattr(cells, of)()
         coordinates: dict[str, Any] = {}
         if of == "velocity":
             coordinates["component"] = (np.array(list("xyz"[: run.dimension])), {"long_name": "component"})

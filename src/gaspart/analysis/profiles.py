@@ -23,7 +23,7 @@ from gaspart.errors import SceneError
 
 LEAST_FRAMES = 16
 """Frames that an error needs."""
-_BLOCKS = 256
+BLOCKS = 256
 """Blocks of frames: more would cost memory, and their correlation is allowed for."""
 _LEAST_FREEDOM = 2.0
 """Degrees of freedom of an error, below which it is not known: the run is too short for the correlation, or
@@ -98,7 +98,7 @@ class Cells:
         frames = len(self.run.time)
         if frames < LEAST_FRAMES:
             raise SceneError("frames", frames, f"an error needs {LEAST_FRAMES} or more")
-        return np.arange(frames) * min(_BLOCKS, frames) // frames
+        return np.arange(frames) * min(BLOCKS, frames) // frames
 
     @cached_property
     def cells(self) -> np.ndarray:

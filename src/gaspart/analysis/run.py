@@ -24,6 +24,7 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_particle
+from gaspart.state.optional_tallies import tally_to_dict
 from gaspart.state.tally import Tally
 from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.reading import open_trajectory
@@ -338,5 +339,9 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
     along["pair_collisions"] = ("pair",)
     return xr.Dataset(
         {name: (("frame", *along.get(name, ())), values) for name, values in columns.items()},
-        attrs={"scene": dump_yaml(scene.to_dict()), "engine": json.dumps(engine_to_dict(engine))},
+        attrs={
+            "scene": dump_yaml(scene.to_dict()),
+            "engine": json.dumps(engine_to_dict(engine)),
+            "tallies": json.dumps([*map(tally_to_dict, simulation.tallies)]),
+        },
     )

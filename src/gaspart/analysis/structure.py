@@ -9,6 +9,7 @@ import numpy as np
 
 from gaspart.analysis.bins import Grid
 from gaspart.analysis.expected.described import described
+from gaspart.analysis.impulses import default_bins, estimator, mixed_density
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.observables import having, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
@@ -67,7 +68,7 @@ def profile(
     source: Source,
     of: str = "density",
     axis: str | None = None,
-    bins: int = 40,
+    bins: int | None = None,
     start: float | None = None,
     species: int | None = None,
 ) -> Observable:
@@ -78,23 +79,28 @@ def profile(
     moving particles (NaN where there are none): about the local flow between faces that slide, under a force
     along a periodic axis, in a wind and before faces that move, otherwise about the velocity of the centre of
     mass where that is conserved (see `gaspart.analysis.flow`). axis: "x", "y" or "z", by default the last
-    one; species: of one alone, by its number in the scene. Errors are those of correlated series, of each bin
-    for itself; the variable with the suffix _freedom has their degrees of freedom. They are NaN where these
-    are fewer than two, of a run that is too short for the correlation there, and where the value of a bin
-    does not change (0 if nothing moves, or all bins have one value).
+    one; bins: by default 40, of a density those of the impulses that the run has kept along the axis;
+    species: of one alone, by its number in the scene. Errors are those of correlated series, of each bin for
+    itself; the variable with the suffix _freedom has their degrees of freedom. They are NaN where these are
+    fewer than two, of a run that is too short for the correlation there, and where the value of a bin does
+    not change (0 if nothing moves, or all bins have one value). Impulses that the run has kept along the
+    axis, in bins of which each of these has as many, make the density more accurate than counts
+    (`gaspart.analysis.impulses`); the attribute `estimator` says so.
     Theory: the density of equal particles under gravity along this axis, by hydrostatics with the fluid's
     equation of state; a uniform temperature in equilibrium.
     Raises SceneError for an unknown property or axis, a species that does not move, and for too few frames.
     """
     one_of("of", of, having(function="profile"))
-    bins = count_of("bins", bins, least=2)
     with open_run(source, start) as run:
         require_defined(of, run.scene, axis=axis, species=species)
         names = "xyz"[: run.dimension]
         k = names.index(names[-1] if axis is None else axis)
+        bins = default_bins(run, k, of) if bins is None else count_of("bins", bins, least=2)
         edges = np.linspace(0.0, run.scene.container.lengths[k], bins + 1)
+        by_impulses = None
         if of == "density":
-            found = _density(run, k, bins, species)
+            by_impulses = mixed_density(run, k, bins, species)
+            found = by_impulses or _density(run, k, bins, species)
         else:
             members = np.flatnonzero(run.moving)[selected(run, species, None)]
             found = Cells(run, members, (k,), (bins,)).temperature(local=False)
@@ -102,6 +108,8 @@ def profile(
         about = described(of, run, *((k, edges, species) if of == "density" else ()))
         along = {"position": (middle, {"units": "length", "long_name": names[k]})}
         result = observable(of, along, found.values, found.errors, **about)
+        if of == "density":
+            result.attrs |= estimator(run, k, by_impulses is not None)
         return with_freedom(result, found)
 
 
@@ -140,8 +148,7 @@ def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
     members = np.flatnonzero(chosen[:stored])
     cells = Cells(run, members, (axis,), (bins,))
     if np.isfinite(run.masses).all():
-        found = cells.density()
-        return found.times(run.count / stored)
+        return cells.density().times(run.count / stored)
     edges, radii = cells.grid.edges[0], run.radii[members]  # fixed particles leave less room to larger ones
     left = {radius: left_by_obstacles(run, radius, axis, edges) for radius in np.unique(radii)}
     shares = np.array([left[radius] for radius in radii])  # (n, bins)

@@ -124,6 +124,8 @@ def _measure(given: argparse.Namespace) -> None:
             _print_curve(name, observable)
         else:
             _print_scalar(name, observable)
+        if "note" in observable.attrs:
+            print_line(f"({observable.attrs['note']})")
         write(observable)
 
 

@@ -11,7 +11,9 @@ from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.errors import SceneError
+from gaspart.keys.values import count_of, one_of
 from gaspart.scene.driving import has_dragged_faces
+from gaspart.scene.impulses import require_impulses, row_count
 from gaspart.scene.stress import require_tallied
 
 if TYPE_CHECKING:
@@ -48,6 +50,49 @@ class StressTally(OptionalTally):
 
 
 @dataclass(frozen=True)
+class ImpulseTally(OptionalTally):
+    """The momentum that particles carry along an axis, "x", "y" or "z", through planes across it, in so many
+    equal bins of the container, from which their density follows (`analysis.impulses`). Raises SceneError for
+    another axis, and for fewer than 2 bins and more than 100000."""
+
+    axis: str
+    bins: int
+
+    name: ClassVar[str] = "impulses"
+    most: ClassVar[int] = 100_000
+
+    def __post_init__(self) -> None:
+        one_of("impulses.axis", self.axis, ("x", "y", "z"))
+        count_of("impulses.bins", self.bins, least=2, most=self.most)
+
+    @classmethod
+    def from_text(cls, text: str) -> ImpulseTally:
+        """From its axis and number of bins, such as "z:200". Raises SceneError."""
+        axis, _, bins = str(text).partition(":")
+        if not bins.isdecimal():
+            raise SceneError("impulses", text, "must be an axis and a number of bins, such as z:200")
+        return cls(axis, int(bins))
+
+    def to_text(self) -> str:
+        """The form that `from_text` accepts."""
+        return f"{self.axis}:{self.bins}"
+
+    def check(self, scene: Scene) -> None:
+        """Raise SceneError unless the scene has the axis, and is in equilibrium at one temperature."""
+        one_of("impulses.axis", self.axis, tuple("xyz"[: scene.dimension]))
+        require_impulses(scene)
+
+    def axes(self, scene: Scene) -> dict[str, int]:
+        """Species and bins."""
+        return {"species": row_count(scene), "bin": self.bins}
+
+
+def impulse_tallies(text: str | None) -> tuple[OptionalTally, ...]:
+    """What a run asks for that is to keep impulses, if it is. Raises SceneError as `from_text`."""
+    return () if text is None else (ImpulseTally.from_text(text),)
+
+
+@dataclass(frozen=True)
 class WallShearTally(OptionalTally):
     """The momentum that faces are given along themselves."""
 
@@ -58,7 +103,7 @@ class WallShearTally(OptionalTally):
         return {"axis": scene.dimension}
 
 
-ASKED: dict[str, type[OptionalTally]] = {tally.name: tally for tally in (StressTally,)}
+ASKED: dict[str, type[OptionalTally]] = {tally.name: tally for tally in (StressTally, ImpulseTally)}
 """All that a run can ask for, by name."""
 
 

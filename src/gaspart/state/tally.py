@@ -44,7 +44,10 @@ class Tally:
     first and dp the momentum that this gains; collisional_stress_sum (d, d), the latter alone; heat_sum
     (d,), that of the heat flux times the volume, likewise of E v and r dE (Helfand, Phys. Rev. 119, 1
     (1960)); flux_velocity (d,), that of the centre of mass, about which all these velocities are; of a
-    sheared gas about the flow, at time 0.
+    sheared gas about the flow, at time 0. momentum_flux_sum (species, bins): of each species, and last
+    of all single particles, the momentum along an axis that has flown through planes across it with the
+    particles themselves (m v^2 of those that cross, times the time), the mean over the planes of each bin;
+    under gravity less the momentum that this has given to the particles below (`analysis.impulses`).
 
     The time-stepped engine also reports its errors: steps; overlaps_left, pairs that still overlap and
     approach when a step ends; deepest_overlap met, as a fraction of the contact distance;
@@ -84,6 +87,9 @@ class Tally:
     )
     flux_velocity: np.ndarray | None = field(
         default=None, metadata={"along": ("axis",), "units": SPEED, "only": "stress"}
+    )
+    momentum_flux_sum: np.ndarray | None = field(
+        default=None, metadata={"along": ("species", "bin"), "units": IMPULSE, "only": "impulses"}
     )
 
 

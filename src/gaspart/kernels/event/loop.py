@@ -18,6 +18,7 @@ from numpy import int64
 from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.event.all_pairs import first_of_all
 from gaspart.kernels.event.box_lists import move
+from gaspart.kernels.event.impulses import speed_on_arrival, tally_impulse
 from gaspart.kernels.event.islands import wake_island
 from gaspart.kernels.event.monitors import collapse_detected, is_full, record_event
 from gaspart.kernels.event.neighbour_lists import is_room_lacking, renew
@@ -57,6 +58,15 @@ def meet_obstacle(particles, i, face, time, model, tally):
     number of the face or wall, and False if that is no event of the model: at a periodic face, or where the
     particle leaves a wall along which it has slid."""
     bare = without_obstacles(model)
+    before = speed_on_arrival(particles.flights, i, time, bare, model.gravity, tally.impulses)
+    met, happens = _meet(particles, i, face, time, bare, model, tally)
+    tally_impulse(particles.flights, i, before, bare, tally.impulses)
+    return met, happens
+
+
+@inner_helper
+def _meet(particles, i, face, time, bare, model, tally):
+    """`meet_obstacle`, without the tally of the impulse."""
     if face >= WALLS:
         wall = meet_wall(particles.flights, i, face, time, bare, tally, model.walls)
         return -1 - wall, wall != NONE

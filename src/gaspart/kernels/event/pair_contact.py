@@ -1,6 +1,7 @@
 """The contact of two particles in the event-driven engine."""
 
 from gaspart.kernels.compile.policy import inner_helper
+from gaspart.kernels.event.impulses import speed_before, tally_impulse
 from gaspart.kernels.event.jams import free_if_moved, join_jam, squeezed
 from gaspart.kernels.event.pressed_contact import least_parting, part, release_pair
 from gaspart.kernels.event.sheared_contact import fold, unfold
@@ -30,12 +31,16 @@ def collide(flights, i, j, time, model, tally):
     free_if_moved(i, j, rr, rv, model.gravity, model.law)
     joins = squeezed(flights, i, j, model.law)
     note_pair(flights, i, j, space, model.masses, model.law, tally.stress)
+    before_i = speed_before(flights, i, tally.impulses)
+    before_j = speed_before(flights, j, tally.impulses)
     least = least_parting(flights, i, j, space, model.gravity, model.law)
     add(tally.sums, VIRIAL, exchange_momentum(flights, i, j, rr, rv, model, tally, model.law))
     part(flights, i, j, least, model, tally, model.law)
     release_pair(flights, i, j, model, tally, model.gravity, model.law)
     join_jam(flights, joins, i + j - joins, model, tally, model.gravity, model.law)
     tally_contact(flights, i, j, time, model, tally.stress, model.shear)
+    tally_impulse(flights, i, before_i, model, tally.impulses)
+    tally_impulse(flights, j, before_j, model, tally.impulses)
     fold(flights, j, image, model, tally, model.shear)
     sigma = flights[i].radius + flights[j].radius
     tally.worst[0] = max(tally.worst[0], abs(rr / (sigma * sigma) - 1.0))

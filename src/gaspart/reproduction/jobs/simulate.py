@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaspart.keys import Kind, count, described, flag, positive
+from gaspart.keys import TEXT, Kind, count, described, flag, positive
 from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY
 from gaspart.reproduction.jobs.replicas import write_replicas
 
@@ -54,13 +54,18 @@ KEYS: dict[str, Kind] = {
         "with `lags`: correlate the stress tensor and the heat flux instead of velocities", default=False
     ),
     "pairs": flag("count the collisions of each pair of species", default=False),
+    "impulses": described(
+        TEXT,
+        "keep impulses along an axis in so many bins, such as `z:200`, with which densities are measured",
+        default=None,
+    ),
     "follow": count(
         "keep only the first so many particles (single `particles` come first, then `species`); counters and "
         "energies are those of all",
         default=None,
     ),
 }
-_NOT_WITH_UNTIL = ("lags", "frames", "stress", "pairs", "follow")
+_NOT_WITH_UNTIL = ("lags", "frames", "stress", "pairs", "impulses", "follow")
 EXAMINER = "gaspart.accuracy.reached"
 """The module that examines a run with `until`."""
 
@@ -99,7 +104,7 @@ def arguments(point: Point) -> dict:
         "displacements": settings.get("displacements", False),
         "follow": follow,
         "correlations": correlations,
-        **({"pairs": True} if settings.get("pairs") else {}),
+        **{key: settings[key] for key in ("pairs", "impulses") if settings.get(key)},
     }
 
 
@@ -128,12 +133,17 @@ def record(recipe: Recipe, path: Path, overwrite: bool) -> None:
 
 
 def recipes(
-    seeds: Sequence[tuple[int, ...]], correlations: dict | None = None, **settings: Any
+    seeds: Sequence[tuple[int, ...]],
+    correlations: dict | None = None,
+    impulses: str | None = None,
+    **settings: Any,
 ) -> list[Recipe]:
     """The recipe of each replica; settings: the other fields of `Recipe`. Raises SceneError for settings
     that cannot be run."""
+    from gaspart.state.optional_tallies import impulse_tallies
     from gaspart.trajectory.correlator import Correlations
     from gaspart.trajectory.recipe import Recipe
 
+    tallies = impulse_tallies(impulses)
     stated = None if correlations is None else Correlations(**correlations)
-    return [Recipe(seed=seed, correlations=stated, **settings) for seed in seeds]
+    return [Recipe(seed=seed, correlations=stated, tallies=tallies, **settings) for seed in seeds]

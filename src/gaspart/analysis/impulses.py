@@ -1,0 +1,259 @@
+"""Density along an axis from the momentum that particles carry through planes across it.
+
+That momentum follows from impulses without the noise of counting (`Tally.momentum_flux_sum`; docs/
+design-notes.md has the derivation). Its rate at a plane is A rho <m v^2>, and in equilibrium <m v^2> of a
+particle at the plane is known: rho follows. Counting has more noise in a dilute gas and in narrow bins, and
+less for long waves of a dense gas. So both are mixed, each bin with its weight, which comes from the other
+half of the run than that in which it is used, so that it depends on no noise that it acts on.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+
+from gaspart.analysis.profiles import BLOCKS, LEAST_FRAMES, Cells, Means, ratio
+from gaspart.analysis.run import Run
+from gaspart.engines import ENGINES
+from gaspart.errors import SceneError
+from gaspart.scene.impulses import face_temperatures
+from gaspart.state.optional_tallies import ImpulseTally, tally_from_dict
+
+_BINS = 40
+_ROUNDING = 1e-10
+"""Part of the highest density that is attributed to rounding."""
+_GROUPS = 16
+"""Parts of half a run from which a weight is estimated: each longer than the correlation, in a long run."""
+_NEIGHBOURS = 0.02
+"""How far the bins reach, on both sides, that share a weight: a part of the length."""
+
+
+@dataclass(frozen=True)
+class Carried:
+    """The momentum of one species that has flown through the planes of bins, in M intervals.
+
+    flux (M, bins), see `Tally.momentum_flux_sum`; time (M,), of the intervals; count, of the particles;
+    spread (bins,): <m v^2> of a particle in each bin; above (bins,): the part of a bin that is above a
+    particle in it, on average; reached (bins,), whether any particle can be there; width, of a bin; pull: the
+    force on a particle along the axis; walled: whether faces close it.
+    """
+
+    flux: np.ndarray
+    time: np.ndarray
+    count: int
+    spread: np.ndarray
+    above: np.ndarray
+    reached: np.ndarray
+    width: float
+    pull: float
+    walled: bool
+
+    def numbers(self) -> np.ndarray:
+        """(M, bins) particles in each bin, times the time. In each interval their sum over the bins is exact:
+        the number of particles times the time."""
+        if self.pull > 0.0:  # from the face to which they fall, so that no error grows with the density
+            below = self.pull * self.count * self.time[:, None]
+            flipped = Carried(
+                (self.flux + below)[:, ::-1],
+                self.time,
+                self.count,
+                self.spread[::-1],
+                1.0 - self.above[::-1],
+                self.reached[::-1],
+                self.width,
+                -self.pull,
+                self.walled,
+            )
+            return flipped.numbers()[:, ::-1]
+        found = self._fallen() if self.pull else self.flux * (self.width / self.spread)
+        found = np.where(self.reached, found, 0.0)
+        whole = self.count * self.time
+        if self.walled:
+            found *= whole.sum() / found.sum()  # what is missing then is missing in proportion to the density
+            shares = found.sum(axis=0) / whole.sum()
+        else:
+            shares = np.full(found.shape[1], 1.0 / found.shape[1])
+        return found + (whole - found.sum(axis=1))[:, None] * shares
+
+    def _fallen(self) -> np.ndarray:
+        """The same under gravity, which gives momentum to all particles below a plane: those in lower bins,
+        and of its own bin a part, on average over its planes."""
+        found, below = np.empty(self.flux.shape), np.zeros(len(self.flux))
+        shares = self.spread / self.width - self.pull * self.above
+        for k, flux in enumerate(self.flux.T):
+            found[:, k] = (flux + self.pull * below) / shares[k]
+            below += found[:, k]
+        return found
+
+
+def kept(run: Run) -> ImpulseTally | None:
+    """What the file of a run has of impulses."""
+    tallies = map(tally_from_dict, json.loads(run.data.attrs.get("tallies", "[]")))
+    return next((tally for tally in tallies if isinstance(tally, ImpulseTally)), None)
+
+
+def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> np.ndarray | None:
+    """(T - 1, bins) moving particles in each bin times the time, in each interval between frames. None if
+    the run has not kept what it needs."""
+    has = kept(run)
+    if has is None or has.axis != "xyz"[axis] or has.bins % bins:
+        return None
+    rows = [n for n in np.unique(run.species) if species is None or n == species]
+    found = [_carried(run, axis, has.bins, int(row)) for row in rows]
+    if any(one is None for one in found):
+        return None
+    fine = np.asarray(sum(one.numbers() for one in found if one is not None))
+    return fine.reshape(len(fine), bins, -1).sum(axis=2)
+
+
+def _carried(run: Run, axis: int, bins: int, row: int) -> Carried | None:
+    """That of one row of the tally. None for particles of several masses where it would depend on these, and
+    for a file that lacks the particles from which a temperature follows."""
+    members = run.species == row
+    masses = run.masses[members]
+    pull = (run.scene.gravity or (0.0,) * run.dimension)[axis]
+    walled = not run.periodic[axis]
+    if np.ptp(masses) > 0.0 and (pull or not walled):
+        return None
+    if run.followed and not _uniform(run, walled):
+        return None
+    flux = np.diff(run.data["momentum_flux_sum"].values[:, row], axis=0)
+    spread, above = np.ones(bins), np.full(bins, 0.5)
+    if not run.followed:
+        spread, above = _spread(run, axis, bins, members), _above(run, axis, bins, members)
+    width, force = float(run.scene.container.lengths[axis]) / bins, float(masses[0] * pull)
+    time, count = np.diff(run.time), int(members.sum())
+    low, high = (side[axis] for side in run.scene.reach(float(run.radii[members].min())))
+    edges = width * np.arange(bins + 1)
+    reached = (edges[1:] > low) & (edges[:-1] < high)
+    return Carried(flux, time, count, spread, above, reached, width, force, walled)
+
+
+def _uniform(run: Run, walled: bool) -> bool:
+    """Whether the density is simply in proportion to the momentum, whatever the temperature."""
+    return walled and not _has_potential(run)
+
+
+def _has_potential(run: Run) -> bool:
+    """Whether gravity or wells act."""
+    return run.falls or any(face.kind == "well" for face in run.scene.faces.values())
+
+
+def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
+    """(bins,) <m v^2> along an axis of a particle among `members` (N,), of one mass, in each bin.
+
+    Faces at a temperature set it. With the energy of the gas constant, that of motion is what the potential
+    has left of it, and the temperature at a place is the mean over the states with a particle there. Of a
+    momentum that is conserved each particle has its part.
+    """
+    hot = face_temperatures(run.scene)
+    spread = np.full(bins, min(hot) if hot else run.temperature)
+    if _has_potential(run) and not hot:
+        _, cells = _places(run, axis, bins, members)
+        spread = _mean_in(cells, np.broadcast_to(run.temperatures[:, None], cells.shape), spread)
+    if not run.conserved[axis]:
+        return spread
+    whole, mass = run.masses.sum(), run.masses[members][0]
+    drift = float(run.masses @ run.velocities[0, :, axis]) / whole
+    return spread * (1.0 - mass / whole) + mass * drift**2
+
+
+def _above(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
+    """(bins,) the part of each bin that is above a particle in it, on average; half where there was none."""
+    places, cells = _places(run, axis, bins, members)
+    return _mean_in(cells, cells + 1.0 - places, np.full(bins, 0.5))
+
+
+def _places(run: Run, axis: int, bins: int, members: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(T, n) where particles are, counted in bins, and in which."""
+    places = run.positions[:, members, axis] * (bins / run.scene.container.lengths[axis])
+    return places, np.clip(places.astype(np.int64), 0, bins - 1)
+
+
+def _mean_in(cells: np.ndarray, values: np.ndarray, default: np.ndarray) -> np.ndarray:
+    """(bins,) the mean of values (T, n) in each bin; the default of those without any."""
+    number = np.bincount(cells.ravel(), minlength=len(default))
+    total = np.bincount(cells.ravel(), values.ravel(), minlength=len(default))
+    return np.divide(total, number, out=default, where=number > 0)
+
+
+def mixture(counted: np.ndarray, impulses: np.ndarray) -> np.ndarray:
+    """(K, bins) weights of impulses in the mixture with counts, of the blocks (K, bins) of both: those of
+    each half from the other one, from 0 to 1."""
+    half = len(counted) // 2
+    first = _weights(counted[:half], impulses[:half])
+    second = _weights(counted[half:], impulses[half:])
+    return np.where(np.arange(len(counted))[:, None] < half, second, first)
+
+
+def _weights(counted: np.ndarray, impulses: np.ndarray) -> np.ndarray:
+    """(bins,) those with which the means of these blocks have the least variance, shared with the bins near
+    by."""
+    groups = np.arange(len(counted)) * min(_GROUPS, len(counted)) // len(counted)
+    starts = np.flatnonzero(np.diff(groups, prepend=-1))
+    sizes = np.diff(np.append(starts, len(counted)))[:, None]
+    means = [np.add.reduceat(one, starts) / sizes for one in (counted, counted - impulses)]
+    own, apart = (one - one.mean(axis=0) for one in means)
+    reach = max(1, round(_NEIGHBOURS * counted.shape[1]))
+    common, square = (_near(one.sum(axis=0), reach) for one in (own * apart, apart**2))
+    return np.clip(np.divide(common, square, out=np.zeros(len(common)), where=square > 0.0), 0.0, 1.0)
+
+
+def _near(values: np.ndarray, reach: int) -> np.ndarray:
+    """The sum of each value and those up to `reach` places away."""
+    whole = np.concatenate([[0.0], np.cumsum(values)])
+    places = np.arange(len(values))
+    return whole[np.minimum(places + reach + 1, len(values))] - whole[np.maximum(places - reach, 0)]
+
+
+def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means | None:
+    """The density along an axis from counts and impulses, of all particles or one species. None if the run
+    has not kept what the latter need."""
+    frames = len(run.time)
+    if run.followed and len(run.scene.kinds) > 1:
+        return None
+    found = numbers_by_impulses(run, axis, bins, species)
+    if found is None or frames <= LEAST_FRAMES:
+        return None
+    members = np.flatnonzero(run.species == (run.species if species is None else species))
+    stored = members[members < run.data.sizes["atom"]]
+    cells = Cells(run, stored, (axis,), (bins,))
+    blocks = np.arange(frames - 1) * min(BLOCKS, frames - 1) // (frames - 1)
+    starts = np.flatnonzero(np.diff(blocks, prepend=-1))
+    time = np.add.reduceat(np.diff(run.time), starts)[:, None]
+    volume = cells.grid.volume * np.delete(run.scene.container.lengths, axis).prod()
+    impulses = np.add.reduceat(found, starts) / (time * volume)
+    impulses[np.abs(impulses) < _ROUNDING * impulses.max()] = 0.0
+    counts = cells.grid.sums(cells.cells[1:], None, blocks) * (len(members) / len(stored))
+    counted = counts / (np.bincount(blocks)[:, None] * volume)
+    mixed = counted + mixture(counted, impulses) * (impulses - counted)
+    shares = mixed.mean(axis=0) / mixed.mean(axis=0).sum()
+    mixed += (len(members) / volume - mixed.sum(axis=1))[:, None] * shares  # weights differ from bin to bin
+    return ratio(mixed * time, np.broadcast_to(time, mixed.shape))
+
+
+def default_bins(run: Run, axis: int, of: str) -> int:
+    """The number of bins along an axis: of a density those of the impulses that the run has kept."""
+    has = kept(run)
+    return has.bins if of == "density" and has is not None and has.axis == "xyz"[axis] else _BINS
+
+
+def estimator(run: Run, axis: int, by_impulses: bool) -> dict[str, str]:
+    """Attributes of a density: of what it was estimated; and if that was counts alone, where impulses would
+    have served, how a run keeps them."""
+    if by_impulses:
+        return {"estimator": "counts and impulses"}
+    found = {"estimator": "counts"}
+    engine = json.loads(run.data.attrs.get("engine", "{}")).get("name")
+    if engine in ENGINES and ImpulseTally.name in ENGINES[engine].tallies:
+        asked = ImpulseTally("xyz"[axis], 200)
+        try:
+            asked.check(run.scene)
+        except SceneError:
+            return found
+        found["note"] = (
+            f"by counts; a run with --impulses {asked.to_text()} makes it several times as accurate"
+        )
+    return found

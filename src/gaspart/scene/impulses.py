@@ -1,0 +1,65 @@
+"""Scenes in which a density follows from the impulses that particles receive, and how these are summed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.scene.driving import driven_axes
+from gaspart.scene.faces import Thermal, Well
+from gaspart.scene.features import FEATURES
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
+
+_DISTURBING = (
+    "fixed",
+    "thermostat",
+    "sticky",
+    "vibrating",
+    "piston",
+    "lees_edwards",
+    "sliding",
+)
+"""Features with which there is no equilibrium at one temperature, or fixed particles in the way."""
+
+
+def require_impulses(scene: Scene) -> None:
+    """Raise SceneError, with the reason, if the impulses in a scene give no density: where velocities
+    depend on places, as they do but in equilibrium at one temperature."""
+    if len({particle.mass for particle in scene.particles}) > 1:
+        rule = "impulses are summed over all single particles, which must have one mass"
+        raise SceneError("particles.mass", len(scene.particles), rule)
+    if scene.restitution is not None and scene.restitution.dissipative:
+        rule = "impulses give a density in equilibrium: this gas loses energy"
+        raise SceneError("restitution", scene.restitution.normal, rule)
+    for name in _DISTURBING:
+        if FEATURES[name].value(scene) is not None:
+            rule = f"impulses give a density in equilibrium at rest, not with {FEATURES[name].meaning}"
+            raise FEATURES[name].refuse(scene, rule)
+    if driven_axes(scene):
+        raise SceneError("gravity", scene.gravity, "impulses give a density in equilibrium: this gas flows")
+    temperatures = sorted(face_temperatures(scene))
+    if len(temperatures) > 1:
+        rule = "impulses give a density in equilibrium: heat flows between faces"
+        raise SceneError("faces.temperature", temperatures, rule)
+
+
+def rows_of(scene: Scene) -> np.ndarray:
+    """(N,) the row of each particle, whose impulses are summed: the number of its species; single particles
+    have the number after the last, and are the first particles."""
+    counts = [len(scene.particles), *(kind.count for kind in scene.species)]
+    return np.repeat([len(scene.species), *range(len(scene.species))], counts)
+
+
+def row_count(scene: Scene) -> int:
+    """How many rows there are."""
+    return len(scene.species) + bool(scene.particles)
+
+
+def face_temperatures(scene: Scene) -> set[float]:
+    """The temperatures of all faces that have one."""
+    hot = (face for face in scene.faces.values() if isinstance(face, (Thermal, Well)))
+    return {float(face.temperature) for face in hot if face.temperature is not None}

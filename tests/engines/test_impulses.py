@@ -1,0 +1,133 @@
+"""The tally of impulses along an axis: what flows through planes by its definition, flight by flight; its
+bits; the scenes that have none."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import gaspart as gp
+from gaspart.state.optional_tallies import ImpulseTally
+
+BINS = 7
+MIXTURE = [gp.Species(12, 0.3, temperature=1.0), gp.Species(6, 0.2, mass=3.0, temperature=1.0)]
+BOX, FLAT = gp.Container((3.0, 3.0, 4.0)), gp.Container((7.0, 5.0), ("wall", "periodic"))
+ROUGH = gp.Species(15, 0.25, temperature=1.0, polydispersity=0.3)
+FALLING = gp.Scene(BOX, MIXTURE[:1], gravity=(0.0, 0.0, -1.5))
+SCENES = {
+    "wells, mixture": (gp.Scene(FLAT, MIXTURE, faces={"x_low": gp.Well(0.7, 0.9)}), "x"),
+    "periodic, an interior wall": (gp.Scene(FLAT, MIXTURE, walls=[gp.Wall((2.0, 1.0), (3.0, 4.0))]), "y"),
+    "rough, falling": (
+        gp.Scene(BOX, [ROUGH], restitution=gp.Restitution(1.0, 1.0), gravity=(0.0, 0.0, 1.5)),
+        "z",
+    ),
+}
+
+
+def started(scene, axis, search="automatic", tallies=True):
+    """A simulation, which keeps its impulses."""
+    asked = [ImpulseTally(axis, BINS)] if tallies else []
+    return gp.Simulation(scene, gp.EventDriven(search=search), seed=3, tallies=asked)
+
+
+def flown(scene, axis, states):
+    """(species, BINS) the time integral of m v^2 delta(z - z_i), the mean over the planes of each bin, less
+    that at a periodic face and, under gravity, what this has given to the particles below: by small steps."""
+    rows = np.repeat(np.arange(len(scene.species)), [kind.count for kind in scene.species])
+    length, periodic = scene.container.lengths[axis], scene.container.periodic[axis]
+    pull = scene.gravity[axis] if scene.gravity else 0.0
+    found, width = np.zeros((len(scene.species), BINS)), length / BINS
+    edges = np.arange(BINS + 1) * width
+    for before, after in itertools.pairwise(states):
+        steps = 200 if pull else 1
+        dt = (after.time - before.time) / steps
+        for step in range(steps):
+            v = before.velocities[:, axis] + pull * (step + 0.5) * dt
+            x = before.positions[:, axis] + (before.velocities[:, axis] + 0.5 * pull * step * dt) * step * dt
+            for image in (-1, 0, 1) if periodic else (0,):
+                low, high = np.sort([x, x + v * dt], axis=0) + image * length
+                way = np.minimum(high[:, None], edges[1:]) - np.maximum(low[:, None], edges[:-1])
+                crosses = ((low < 0.0) & (high >= 0.0))[:, None] & periodic
+                flux = before.masses[:, None] * np.abs(v[:, None])
+                np.add.at(found, rows, flux * (np.maximum(way, 0.0) / width - crosses))
+            below = np.clip((edges[1:] - x[:, None]) / width, 0.0, 1.0)  # of the planes of each bin
+            np.add.at(found, rows, -before.masses[:, None] * pull * dt * below)
+    return found
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_tally_is_the_momentum_that_particles_carry_through_planes(name):
+    scene, axis = SCENES[name]
+    simulation = started(scene, axis, "pairs")
+    simulation.advance(max_events=80)
+    wanted = flown(scene, "xyz".index(axis), list(simulation.replay(by="event")))
+    found = simulation.tally.momentum_flux_sum
+    assert found == pytest.approx(wanted, abs=(5e-3 if scene.gravity else 1e-10) * np.abs(wanted).max())
+
+
+def test_the_tally_changes_no_bit_and_has_the_same_bits_however_a_run_is_made():
+    bare, whole = started(FALLING, "z", tallies=False), started(FALLING, "z")
+    for simulation in (bare, whole):
+        simulation.advance(until=20.0)
+    assert whole.state.positions.tobytes() == bare.state.positions.tobytes()
+    assert bare.tally.momentum_flux_sum is None
+    wanted = whole.tally.momentum_flux_sum
+    for search in ("automatic", "pairs"):
+        first, second = started(FALLING, "z", search), started(FALLING, "z", search)
+        first.advance(until=7.3)
+        assert first.tally.momentum_flux_sum.shape == (1, BINS)  # to read it changes nothing
+        second.restore(first.checkpoint())
+        second.advance(until=20.0)
+        assert second.tally.momentum_flux_sum.tobytes() == wanted.tobytes()
+    second.reset_tally()
+    second.advance(duration=0.0)
+    assert np.abs(second.tally.momentum_flux_sum).max() < 1e-12
+
+
+def test_halves_of_a_gas_add_up_to_it_in_any_order_of_its_particles():
+    start = started(FALLING, "z").initial_state
+    halves = replace(FALLING, species=[replace(MIXTURE[0], count=8), replace(MIXTURE[0], count=4)])
+    order = np.random.default_rng(2).permutation(12)
+    found = []
+    for scene, turn in ((FALLING, np.arange(12)), (halves, np.arange(12)), (FALLING, order)):
+        initial = replace(start, positions=start.positions[turn], velocities=start.velocities[turn])
+        simulation = gp.Simulation(
+            scene, gp.EventDriven(search="pairs"), initial=initial, tallies=[ImpulseTally("z", BINS)]
+        )
+        simulation.advance(max_events=60)
+        found.append(simulation.tally.momentum_flux_sum)
+    assert found[1].shape == (2, BINS) and found[1].any(axis=1).all()
+    assert found[1].sum(axis=0) == pytest.approx(found[0][0], rel=1e-9)
+    assert found[2] == pytest.approx(found[0], rel=1e-9)
+
+
+FIXED = gp.Particle((1.5, 1.5, 2.0), (0.0,) * 3, 0.3, fixed=True)
+HOT = {"z_low": gp.Thermal(1.0), "z_high": gp.Thermal(2.0)}
+REFUSED = {
+    "loses energy": replace(FALLING, restitution=gp.Restitution(0.9)),
+    "fixed particles": replace(FALLING, particles=(FIXED,)),
+    "heat flows": replace(FALLING, gravity=None, faces=HOT),
+    "sticky": replace(FALLING, gravity=None, faces={"z_low": gp.Sticky(1.0)}),
+    "vibrating": replace(FALLING, faces={"z_low": gp.Vibrating(0.1, 1.0)}),
+    "one mass": replace(
+        FALLING, particles=[replace(FIXED, fixed=False, mass=m, position=(1.5, 1.5, m)) for m in (1.0, 3.0)]
+    ),
+}
+
+
+@pytest.mark.parametrize("reason", REFUSED)
+def test_scenes_without_equilibrium_at_one_temperature_are_refused(reason):
+    with pytest.raises(gp.SceneError, match=reason):
+        gp.Simulation(REFUSED[reason], gp.EventDriven(), tallies=[ImpulseTally("z", BINS)])
+
+
+def test_other_engines_axes_and_numbers_of_bins_are_refused():
+    asked = [ImpulseTally("z", BINS)]
+    with pytest.raises(gp.SceneError, match='needs the "event" engine'):
+        gp.Simulation(replace(FALLING, gravity=None), gp.TimeStepped(0.01), tallies=asked)
+    with pytest.raises(gp.SceneError, match="impulses.axis"):
+        gp.Simulation(SCENES["wells, mixture"][0], gp.EventDriven(), tallies=asked)
+    for text in ("z", "z:", "z:1", "z:1000000", "w:10", "z:1.5"):
+        with pytest.raises(gp.SceneError, match="impulses"):
+            ImpulseTally.from_text(text)
