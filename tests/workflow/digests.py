@@ -8,7 +8,7 @@ from pathlib import Path
 from netCDF4 import Dataset
 
 PHYSICS = ["time", "coordinates", "velocities", "collisions", "virial_sum", "displacements"]
-PHYSICS += ["stress_sum", "heat_sum", "pair_collisions"]
+PHYSICS += ["stress_sum", "heat_sum", "pair_collisions", "momentum_flux_sum"]
 
 
 def digest(path):

@@ -1,0 +1,47 @@
+"""Claims about estimators of the density."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from gaspart.reproduction.claims import Claim
+from gaspart.reproduction.table import Table, each
+
+_DILUTE, _NARROW = 0.1, 0.15
+
+
+def estimators(dataset: xr.Dataset) -> list[Claim]:
+    """Counts and impulses agree; the mixture has the smaller variance, by far in a dilute gas."""
+    cases = Table(dataset, "case")
+    narrow = cases[cases.width < _NARROW]
+    return [
+        *each(
+            cases,
+            "mean square of counts less impulses over errors, at {packing_fraction:.2g} in bins of {width:g}",
+            measured=cases.mean_square,
+            expected=1.0,
+            required=0.4,
+            source="both are unbiased; errors by blocks, Student's distribution",
+            fails_if="impulses are missed, or the temperature of a particle depends on its place",
+        ),
+        *each(
+            narrow[narrow.packing_fraction < _DILUTE],
+            "variance of counts over that of the mixture, at {packing_fraction:.2g} in bins of {width:g}",
+            Claim.at_least,
+            measured=narrow[narrow.packing_fraction < _DILUTE].mixture,
+            bound=20.0,
+            required=4.0,
+            source="the noise of counting is absent (requirement)",
+            fails_if="impulses have noise of their own, or weights are too small",
+        ),
+        *each(
+            narrow,
+            "variance of counts over that of the mixture, at {packing_fraction:.2g} in bins of {width:g}",
+            Claim.at_least,
+            measured=narrow.mixture,
+            bound=1.3,
+            required=0.2,
+            source="a mixture is never worse than counts (requirement)",
+            fails_if="weights are chosen by noise",
+        ),
+    ]
