@@ -17,6 +17,6 @@ def measured(**changed):
     } | changed
     ds = xr.Dataset({name: ("case", np.array(values)) for name, values in columns.items()})
     for name in ("mixture", "impulses", "at_walls", "mean_square", "additions"):
-        ds[f"{name}_error"] = 0.05 * ds[name]
-        ds[f"{name}_freedom"] = "case", np.full(4, 3.0)
+        ds[f"{name}_error"] = 0.02 * ds[name]
+        ds[f"{name}_freedom"] = "case", np.full(4, 7.0)
     return ds

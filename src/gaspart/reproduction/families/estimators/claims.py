@@ -14,6 +14,7 @@ def estimators(dataset: xr.Dataset) -> list[Claim]:
     """Counts and impulses agree; the mixture has the smaller variance, by far in a dilute gas."""
     cases = Table(dataset, "case")
     narrow = cases[cases.width < _NARROW]
+    dilute, dense = narrow[narrow.packing_fraction < _DILUTE], narrow[narrow.packing_fraction >= _DILUTE]
     return [
         *each(
             cases,
@@ -25,20 +26,20 @@ def estimators(dataset: xr.Dataset) -> list[Claim]:
             fails_if="impulses are missed, or the temperature of a particle depends on its place",
         ),
         *each(
-            narrow[narrow.packing_fraction < _DILUTE],
+            dilute,
             "variance of counts over that of the mixture, at {packing_fraction:.2g} in bins of {width:g}",
             Claim.at_least,
-            measured=narrow[narrow.packing_fraction < _DILUTE].mixture,
+            measured=dilute.mixture,
             bound=20.0,
             required=4.0,
             source="the noise of counting is absent (requirement)",
             fails_if="impulses have noise of their own, or weights are too small",
         ),
         *each(
-            narrow,
+            dense,
             "variance of counts over that of the mixture, at {packing_fraction:.2g} in bins of {width:g}",
             Claim.at_least,
-            measured=narrow.mixture,
+            measured=dense.mixture,
             bound=1.3,
             required=0.2,
             source="a mixture is never worse than counts (requirement)",
