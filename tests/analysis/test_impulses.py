@@ -9,8 +9,10 @@ import pytest
 import gaspart as gp
 from gaspart.analysis.impulses import Carried, mixture, numbers_by_impulses
 from gaspart.analysis.run import measured
+from gaspart.cli.run import run_options
 from gaspart.state.optional_tallies import ImpulseTally
 from gaspart.trajectory.reading import open_trajectory
+from gaspart.trajectory.recipe import read_recipe
 
 A = gp.analysis
 RISE = np.random.default_rng(3)
@@ -123,3 +125,4 @@ def test_a_run_that_is_extended_keeps_its_impulses(tmp_path):
         scene, gp.EventDriven(), 1, 10.0, 1.0, tmp_path / "short.nc", impulses="z:10", keep_checkpoint=True
     )
     assert gp.resume(short, duration=20.0).read_bytes() == whole.read_bytes()
+    assert "--impulses z:10" in " ".join(run_options(whole, read_recipe(whole)))
