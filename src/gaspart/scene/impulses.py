@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from gaspart.errors import SceneError
 from gaspart.scene.driving import driven_axes
 from gaspart.scene.faces import Thermal, Well
@@ -47,15 +45,8 @@ def require_impulses(scene: Scene) -> None:
         raise SceneError("faces.temperature", temperatures, rule)
 
 
-def rows_of(scene: Scene) -> np.ndarray:
-    """(N,) the row of each particle, whose impulses are summed: the number of its species; single particles
-    have the number after the last, and are the first particles."""
-    counts = [len(scene.particles), *(kind.count for kind in scene.species)]
-    return np.repeat([len(scene.species), *range(len(scene.species))], counts)
-
-
 def row_count(scene: Scene) -> int:
-    """How many rows there are."""
+    """In how many rows impulses are summed: one for each species, and one for all single particles."""
     return len(scene.species) + bool(scene.particles)
 
 

@@ -10,10 +10,17 @@ from gaspart.engines.features.part import TallyPart
 from gaspart.kernels.event import impulses as kernels
 from gaspart.kernels.model import Model
 from gaspart.kernels.physics.flight import advance_all
-from gaspart.scene.impulses import row_count, rows_of
+from gaspart.scene.impulses import row_count
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import ImpulseTally, OptionalTally
 from gaspart.state.state import State
+
+
+def rows_of(scene: Scene) -> np.ndarray:
+    """(N,) the row of each particle: the number of its species; single particles have the number after the
+    last, and are the first particles."""
+    counts = [len(scene.particles), *(kind.count for kind in scene.species)]
+    return np.repeat([len(scene.species), *range(len(scene.species))], counts)
 
 
 class ImpulsesPart(TallyPart):

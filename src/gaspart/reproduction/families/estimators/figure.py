@@ -15,9 +15,9 @@ def estimators(dataset: xr.Dataset) -> Figure:
     cases = Table(dataset, "case")
     for kind, (width, rows) in enumerate(cases.by("width")):
         rows = rows.sorted_by("packing_fraction")
-        colour, name = style.COLOURS[kind], f"bins of {width:g} diameters"
+        name = f"bins of {width:g} diameters"
         for axis, found in zip(axes, (rows.mixture, rows.at_walls), strict=True):
-            style.points(axis, rows.packing_fraction, found, color=colour, label=name)
+            style.points(axis, rows.packing_fraction, found, kind=kind, label=name)
     for axis, where in zip(axes, ("all bins", "bins at the walls"), strict=True):
         style.level(axis, 1.0)
         axis.set_yscale("log")
