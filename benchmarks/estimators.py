@@ -24,7 +24,7 @@ from scipy import stats
 
 import gaspart as gp
 from gaspart.analysis.impulses import mixture, numbers_by_impulses
-from gaspart.analysis.run import Run, measured
+from gaspart.analysis.run import Run, open_run
 from gaspart.state.optional_tallies import ImpulseTally
 
 BLOCKS = 32
@@ -126,7 +126,7 @@ def scenes(given: argparse.Namespace) -> None:
                 duration, path = case.interval * (given.frames - 1), Path(folder) / "run.nc"
                 kept = f"{case.axis}:{FINE}"
                 gp.run(case.scene, gp.EventDriven(), seed, duration, case.interval, path, impulses=kept)
-                run = stack.enter_context(measured(path, 50.0))
+                run = stack.enter_context(open_run(path, 50.0))
                 for bins, rows in found.items():
                     rows.append(compared(run, "xyz".index(case.axis), bins))
         texts = []

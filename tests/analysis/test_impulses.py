@@ -8,7 +8,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.analysis.impulses import Carried, mixture, numbers_by_impulses
-from gaspart.analysis.run import measured
+from gaspart.analysis.run import open_run
 from gaspart.cli.run import run_options
 from gaspart.state.optional_tallies import ImpulseTally
 from gaspart.trajectory.reading import open_trajectory
@@ -78,7 +78,7 @@ def test_the_density_of_a_run_has_less_error_with_impulses(column):
 
 @pytest.mark.parametrize("bins", [16, 80])
 def test_counts_and_impulses_agree(column, bins):
-    with open_trajectory(column) as data, measured(data, 120.0) as run:
+    with open_trajectory(column) as data, open_run(data, 120.0) as run:
         found = numbers_by_impulses(run, 2, bins, None)
         places = run.positions[1:, :, 2]
     counts = np.stack([np.histogram(frame, bins, (0.0, 8.0))[0] for frame in places])

@@ -117,11 +117,11 @@ def _carried(run: Run, axis: int, bins: int, row: int) -> Carried | None:
     walled = not run.periodic[axis]
     if np.ptp(masses) > 0.0 and (pull or not walled):
         return None
-    if run.followed and not _uniform(run, walled):
+    if run.is_subset and not _uniform(run, walled):
         return None
     flux = np.diff(run.data["momentum_flux_sum"].values[:, row], axis=0)
     spread, above = np.ones(bins), np.full(bins, 0.5)
-    if not run.followed:
+    if not run.is_subset:
         spread, above = _spread(run, axis, bins, members), _above(run, axis, bins, members)
     width, force = float(run.scene.container.lengths[axis]) / bins, float(masses[0] * pull)
     time, count = np.diff(run.time), int(members.sum())
@@ -138,7 +138,7 @@ def _uniform(run: Run, walled: bool) -> bool:
 
 def _has_potential(run: Run) -> bool:
     """Whether gravity or wells act."""
-    return run.falls or any(face.kind == "well" for face in run.scene.faces.values())
+    return run.has_gravity or any(face.kind == "well" for face in run.scene.faces.values())
 
 
 def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
@@ -212,7 +212,7 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
     """The density along an axis from counts and impulses, of all particles or one species. None if the run
     has not kept what the latter need."""
     frames = len(run.time)
-    if run.followed and len(run.scene.kinds) > 1:
+    if run.is_subset and len(run.scene.kinds) > 1:
         return None
     found = numbers_by_impulses(run, axis, bins, species)
     if found is None or frames <= LEAST_FRAMES:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.run import measured
+from gaspart.analysis.run import open_run
 from gaspart.reproduction.families.estimators.measure import blocks_of
 from gaspart.trajectory.reading import open_trajectory
 
@@ -16,7 +16,7 @@ def run(tmp_path_factory):
     scene = gp.Scene(container, [gp.Species(20, 0.4, temperature=1.0)], gravity=(0.0, 0.0, -0.5))
     path = tmp_path_factory.mktemp("falling") / "run.nc"
     gp.run(scene, gp.EventDriven(), 5, 65.0, 0.5, path, impulses="z:16")
-    with open_trajectory(path) as data, measured(data, 0.0) as found:
+    with open_trajectory(path) as data, open_run(data, 0.0) as found:
         yield found
 
 
