@@ -9,6 +9,7 @@ from scenes import centred
 from gaspart import theory
 from gaspart.analysis.correlations import correlate
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import from_rows
 from gaspart.trajectory.correlator import SUMS
 
 
@@ -93,36 +94,15 @@ def _curves(eta, dimension, interval, lags):
     }
 
 
-ABSENT = dict.fromkeys(
-    ("integral_difference", "integral_difference_error", "diffusion", "diffusion_error", "correction",
-     "correction_uncertainty", "logarithmic_slope", "logarithmic_slope_error", "slope_expected",
-     "fit_from", "fit_to"),
-    math.nan,
-)  # fmt: skip
-
-
-def _table(rows, dimension, **extra):
-    lags = max(len(row["time"]) for row in rows)
-    ds = xr.Dataset(attrs={"dimension": dimension})
-    for name in dict.fromkeys(key for row in rows for key in row):
-        if any(np.ndim(row.get(name)) for row in rows):
-            values = [
-                np.pad(row.get(name, np.empty(0)), (0, lags - len(row.get(name, ()))), constant_values=np.nan)
-                for row in rows
-            ]
-            ds[name] = (("point", "lag"), np.array(values))
-        else:
-            ds[name] = ("point", [row[name] for row in rows])
-    for name, value in extra.items():
-        ds[name] = value
-    return ds
+def _table(rows, dimension, **more):
+    return from_rows("point", rows, ("lag",)).assign(more).assign_attrs(dimension=dimension)
 
 
 def _short(eta, dimension, **more):
     curves = _curves(eta, dimension, 0.25, 100)
     integral = {"integral": curves["running"], "integral_error": np.full(100, 1e-4)}
     difference = {"integral_difference": 0.001, "integral_difference_error": 0.002}
-    return {**ABSENT, **curves, **integral, **difference, **more}
+    return {**curves, **integral, **difference, **more}
 
 
 def spheres():
@@ -134,7 +114,6 @@ def spheres():
         diffusion = float(theory.erpenbeck_wood_diffusion(eta))
         rows.append(
             {
-                **ABSENT,
                 **_curves(eta, 3, 2.0, 40),
                 "count": count,
                 "side": side,
@@ -169,6 +148,6 @@ def discs():
         fit = {"fit_from": curves["time"][5], "fit_to": curves["time"][25]}
         slope = {"logarithmic_slope": expected, "logarithmic_slope_error": 0.05 * expected}
         slope["slope_expected"] = expected
-        rows.append({**ABSENT, **curves, **fit, **slope, "count": 4096, "side": 100.0})
+        rows.append({**curves, **fit, **slope, "count": 4096, "side": 100.0})
     rows.append(_short(0.3, 2, count=1024, side=50.0))
     return _table(rows, 2)

@@ -3,8 +3,10 @@
 import numpy as np
 import xarray as xr
 
+from gaspart.reproduction.families.gravity.measure import INNER
 from gaspart.reproduction.families.shared.columns import Field, Stretch
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 from gaspart.theory import gravity
 
 
@@ -34,55 +36,32 @@ def ideal_column(rng, frames, masses, height=4.0, width=3.0, strength=1.0, tempe
 
 def columns(kinds=1, error=0.002):
     """What `measure.gravity.profiles` gives of a dilute and a dense column if theory is right."""
-    bins, top, strength, temperature = 30, 60.0, 0.05, 1.0
-    masses = np.array([1.0, 3.0])[:kinds]
+    bins, top, strength, masses = 30, 60.0, 0.05, np.array([1.0, 3.0])[:kinds]
     height = (np.arange(bins) + 0.5) * top / bins
-    shape = (2, kinds, bins)
-    density = np.empty(shape)
-    for n, number in enumerate((0.01, 16.0)):
-        density[n] = gravity.hydrostatic_profiles(
-            height, [number / kinds] * kinds, masses * strength / temperature, 2
-        )
-    ones = np.ones((2, bins))
-    eta = density.sum(axis=1) * np.pi / 4.0
-    lines = np.tile(-2.0 * strength * height, (2, 1))
-    ranges = np.array([[np.nan] * 2, [1.0] * 2])
-    by_bin, by_species = ("point", "bin"), ("point", "species")
-    values = {
-        "density": (("point", "species", "bin"), density),
-        "packing_fraction": (by_bin, eta),
-        "temperature": ("point", np.full(2, temperature)),
-        "temperature_ratio": (by_bin, ones),
-        "temperature_gradient": ("point", np.zeros(2)),
-        "compressibility": (by_bin, ones),
-        "pressure_ratio": (by_bin, ones),
-        "range_ratio": (("point", "range"), ranges),
-        "slope_ratio": (by_species, np.ones((2, kinds))),
-        "exchange_ratio": ("point", np.ones(2)),
-        "log_ratio": (by_bin, lines),
-        "mean_height_ratio": (by_species, np.ones((2, kinds))),
-        "species_temperature_ratio": (by_species, np.ones((2, kinds))),
-    }
-    values |= {f"{name}_error": (axes, np.full(value.shape, error)) for name, (axes, value) in values.items()}
-    values["density_error"] = (("point", "species", "bin"), error * density)
-    values |= {
-        "height": (by_bin, np.tile(height, (2, 1))),
-        "used": (by_bin, ones.astype(bool)),
-        "hydrostatic": (("point", "species", "bin"), density),
-        "log_ratio_expected": (by_bin, lines),
-        "mass": (by_species, np.tile(masses, (2, 1))),
-        "imbalance": ("point", np.full(2, 1e-11)),
-    }
-    for name, value in {"strength": strength, "top": top, "count": 1000, "mean_density": 0.2}.items():
-        values[name] = ("point", np.full(2, value))
-    return xr.Dataset(
-        values,
-        coords={
-            "column": ("point", ["dilute", "dense"]),
-            "range_low": ("range", [0.1, 0.2]),
-            "range_high": ("range", [0.2, 0.3]),
-        },
-    )
+    line, of_bin, of_species = -2.0 * strength * height, np.ones(bins), np.ones(kinds)
+
+    def column(stated):
+        name, number, range_ratio = stated
+        density = gravity.hydrostatic_profiles(height, [number / kinds] * kinds, masses * strength, 2)
+        values = {
+            "packing_fraction": density.sum(axis=0) * np.pi / 4.0,
+            "temperature": 1.0,
+            "temperature_gradient": 0.0,
+            **dict.fromkeys(("temperature_ratio", "compressibility", "pressure_ratio"), of_bin),
+            **dict.fromkeys(("slope_ratio", "mean_height_ratio", "species_temperature_ratio"), of_species),
+            "range_ratio": np.full(2, range_ratio),
+            "exchange_ratio": 1.0,
+            "log_ratio": line,
+        }
+        facts = {"column": name, "height": height, "used": of_bin > 0.0, "mass": masses, "imbalance": 1e-11}
+        facts |= {"strength": strength, "top": top, "count": 1000, "mean_density": 0.2}
+        measured = {name: (value, np.full(np.shape(value), error)) for name, value in values.items()}
+        expected = {"density": (density, error * density), "hydrostatic": density, "log_ratio_expected": line}
+        return facts | measured | expected
+
+    made = table("point", [("dilute", 0.01, np.nan), ("dense", 16.0, 1.0)], column, inner=INNER)
+    ranges = {"range_low": ("range", [0.1, 0.2]), "range_high": ("range", [0.2, 0.3])}
+    return made.set_coords("column").assign_coords(ranges)
 
 
 def with_source(ds):

@@ -45,7 +45,7 @@ def test_coefficients_are_near_enskogs(tmp_path, monkeypatch):
 
 
 def test_growth_is_the_integrals_own(tmp_path, monkeypatch):
-    """Dilute discs in two small containers: growths are noise, the curves those of `_dataset`."""
+    """Dilute discs in two small containers: growths are noise, the curves those of `coefficient`."""
     monkeypatch.chdir(tmp_path)
     points = []
     for count in (36, 64):

@@ -36,6 +36,21 @@ GREEN_KUBO_FROM, GREEN_KUBO_TO = 8.0, 16.0
 """Collisions per particle between which the integral is compared with the slope of the msd."""
 LOGARITHM_FROM = 30.0
 """Collisions per particle after which hydrodynamic modes describe discs' velocity autocorrelation."""
+ABSENT = Estimate(math.nan, math.nan, math.nan)
+"""What a point does not measure."""
+ABOUT = {"reduced_time": "diameter sqrt(mass / temperature)"}
+UNITS = {
+    "side": "diameter",
+    "mean_free_path": "diameter",
+    "msd": "diameter^2",
+    **dict.fromkeys(("time", "fit_from", "fit_to", "shear_time", "sound_time"), "reduced time"),
+    **dict.fromkeys(
+        ("running", "integral", "diffusion", "correction", "correction_uncertainty", "logarithmic_slope"),
+        "diameter^2 / reduced time",
+    ),
+    "collision_rate": "1 / reduced time",
+    "interval": "collisions per particle",
+}
 
 
 def replicas(point: Point, longest: float) -> list[Curves]:
@@ -236,20 +251,3 @@ def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict[str, 
 def _mean(samples: Sequence[Any]) -> Estimate:
     """Mean over replicas."""
     return Estimate(*means_of(samples), len(samples) - 1)
-
-
-ABSENT = Estimate(math.nan, math.nan, math.nan)
-"""What a point does not measure."""
-ABOUT = {"reduced_time": "diameter sqrt(mass / temperature)"}
-UNITS = {
-    "side": "diameter",
-    "mean_free_path": "diameter",
-    "msd": "diameter^2",
-    **dict.fromkeys(("time", "fit_from", "fit_to", "shear_time", "sound_time"), "reduced time"),
-    **dict.fromkeys(
-        ("running", "integral", "diffusion", "correction", "correction_uncertainty", "logarithmic_slope"),
-        "diameter^2 / reduced time",
-    ),
-    "collision_rate": "1 / reduced time",
-    "interval": "collisions per particle",
-}

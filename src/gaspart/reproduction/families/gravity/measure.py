@@ -37,6 +37,18 @@ from gaspart.theory.gravity import (
 from gaspart.theory.potential import excess_chemical_potential
 from gaspart.theory.state import compressibility_factor
 
+_BY_BIN = ("temperature_ratio", "packing_fraction", "compressibility", "pressure_ratio")
+_BY_BIN += ("height", "used", "log_ratio", "log_ratio_expected")
+_BY_SPECIES = ("mass", "slope_ratio", "mean_height_ratio", "species_temperature_ratio")
+INNER = {
+    **dict.fromkeys(("density", "hydrostatic"), ("species", "bin")),
+    **dict.fromkeys(_BY_BIN, ("bin",)),
+    **dict.fromkeys(_BY_SPECIES, ("species",)),
+    "range_ratio": ("range",),
+    "share": ("layer",),
+}
+"""The further dimensions of the arrays of `profiles`."""
+
 
 def barometric(points: list[Point], settings: dict) -> xr.Dataset:
     """Density, temperature and pressure against height of one kind of discs; see `profiles`.
@@ -81,18 +93,8 @@ def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], d
         own = {"collisions": source.collisions(point), **of_source(point)} if name == "source" else {}
         return {"column": name, **_column(point, settings), **own}
 
-    by_bin = ("temperature_ratio", "packing_fraction", "compressibility", "pressure_ratio")
-    by_bin += ("height", "used", "log_ratio", "log_ratio_expected")
-    by_species = ("mass", "slope_ratio", "mean_height_ratio", "species_temperature_ratio")
-    axes = {
-        **dict.fromkeys(("density", "hydrostatic"), ("species", "bin")),
-        **dict.fromkeys(by_bin, ("bin",)),
-        **dict.fromkeys(by_species, ("species",)),
-        "range_ratio": ("range",),
-        "share": ("layer",),
-    }
     low, high = np.array(settings["ranges"], dtype=float).T
-    made = table("point", points, column, inner=axes).set_coords("column")
+    made = table("point", points, column, inner=INNER).set_coords("column")
     made = made.assign_coords(range_low=("range", low), range_high=("range", high))
     return made.assign_attrs(clear=settings["clear"])
 
