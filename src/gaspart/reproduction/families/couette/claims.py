@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.analysis.statistics import combine_estimates
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import rows, weighted_mean
 from gaspart.reproduction.families.transport.claims import ACCURATE, ENSKOG, FEW_PER_CENT
+from gaspart.reproduction.table import Row, Table, each
 from gaspart.theory.shear import ELEMENTARY_SLIP, NORMAL_STRESSES, VELOCITY_SLIP
 
 DILUTE_SLIP = 0.03
@@ -23,73 +26,77 @@ SECOND = 4.0
 """Of the square of stress over pressure: a bound of terms of second order, 2.5 times `NORMAL_STRESSES`."""
 
 
+ALLOWED = "terms of second order in stress over pressure a: 4 a^2 as 3 sigma"
+RESPONSE: dict[str, Any] = {
+    "expected": 1.0,
+    "source": "Green and Kubo: the response is linear, its coefficient an integral of fluctuations",
+}
+
+
 def couette(ds: xr.Dataset) -> list[Claim]:
     """Viscosity from the response, slip, free flight, heating and normal stresses."""
-    flows = rows(ds.isel(point=np.flatnonzero(ds["part"].values == "flows")), "point")
-    sheared = rows(ds.isel(point=np.flatnonzero(ds["part"].values == "sheared")), "point")
-    still = rows(ds.isel(point=np.flatnonzero(ds["part"].values == "equilibrium")), "point")
-    narrow = [row for row in flows if float(row["knudsen"]) > FREE]
-    wide = [row for row in flows if float(row["knudsen"]) < SLIP_FLOW]
-    slow = [row for row in wide if float(row["speed"]) < FAST]
-    fast = [row for row in wide if float(row["speed"]) > FAST]
-    dilute = [row for row in slow if float(row["packing_fraction"]) < DILUTE_SLIP]
-    dense = [row for row in slow if float(row["packing_fraction"]) > DILUTE_SLIP]
-    claims = [*(_dilute(row) for row in dilute), _slip(dilute)]
-    claims += [_dense(row) for row in dense if float(row["packing_fraction"]) < ACCURATE + NEAR]
-    claims += _equilibrium(dense, still) + _uniform(sheared, still)
-    claims += [_pressure(row) for row in slow] + [_free(row) for row in narrow]
-    return claims + [claim for row in fast for claim in (_heating(row), *_normal(row))]
+    gases = Table(ds, "point")
+    gases = gases.assign(gas=[_named(gas) for gas in gases])
+    flows, sheared, still = (gases[gases.part == name] for name in ("flows", "sheared", "equilibrium"))
+    narrow, wide = flows[flows.knudsen > FREE], flows[flows.knudsen < SLIP_FLOW]
+    slow, fast = wide[wide.speed < FAST], wide[wide.speed > FAST]
+    dilute, dense = slow[slow.packing_fraction < DILUTE_SLIP], slow[slow.packing_fraction > DILUTE_SLIP]
+    return [
+        *_dilute(dilute),
+        *_dense(dense[dense.packing_fraction < ACCURATE + NEAR]),
+        *_equilibrium(dense, still),
+        *_uniform(sheared, still),
+        *_pressure(slow),
+        *_free(narrow),
+        *(claim for flow in fast for claim in (_heating(flow), *_normal(flow))),
+    ]
 
 
-def _named(row: xr.Dataset) -> str:
-    """Engine and gap or density of a flow."""
-    engine = row["engine"].item()
-    eta = float(row["packing_fraction"])
-    if eta < DILUTE_SLIP:
-        return f"dilute spheres, mean free path {float(row['knudsen']):.2g} of the gap, {engine} engine"
-    return f"spheres at packing fraction {eta:.2f}"
+def _named(gas: Row) -> str:
+    """Engine and gap or density of a gas."""
+    if gas.packing_fraction < DILUTE_SLIP:
+        return f"dilute spheres, mean free path {gas.knudsen:.2g} of the gap, {gas.engine} engine"
+    return f"spheres at packing fraction {gas.packing_fraction:.2f}"
 
 
-def _second(row: xr.Dataset) -> Estimate:
+def _second(flows: Table) -> Estimate:
     """1, with what terms of the second order in the stress may add, as 3 sigma."""
-    return Estimate(1.0, SECOND * float(row["reduced_rate"]) ** 2 / 3.0)
+    return Estimate(1.0, SECOND * flows.reduced_rate.value**2 / 3.0)
 
 
-ALLOWED = "terms of second order in stress over pressure a: 4 a^2 as 3 sigma"
+def _dilute(dilute: Table) -> list[Claim]:
+    """The viscosity of dilute gases, and their slip at the walls, from both engines."""
+    return [
+        *each(
+            dilute,
+            "stress over gradient, over Enskog's viscosity, {gas}",
+            measured=dilute.viscosity,
+            expected=_second(dilute),
+            required=0.015,
+            source=ENSKOG,
+            allowance_source=ALLOWED,
+            alternative=1.0 / (1.0 + 2.0 * VELOCITY_SLIP * dilute.knudsen),
+            fails_if="a wrong stress on the walls, or a gradient that includes the slip",
+        ),
+        Claim(
+            claim="velocity slip of dilute spheres over mean free path and gradient",
+            measured=combine_estimates(dilute.slip),
+            expected=VELOCITY_SLIP,
+            required=0.05,
+            source="the linearised Boltzmann equation of spheres [Ohwada 1989], derived again by moments",
+            alternative=ELEMENTARY_SLIP,
+            fails_if="particles that leave a wall with the distribution of another velocity",
+        ),
+    ]
 
 
-def _dilute(row: xr.Dataset) -> Claim:
-    """The viscosity of a dilute gas."""
-    return Claim(
-        claim=f"stress over gradient, over Enskog's viscosity, {_named(row)}",
-        measured=Estimate.of(row, "viscosity"),
-        expected=_second(row),
-        required=0.015,
-        source=ENSKOG,
-        allowance_source=ALLOWED,
-        alternative=1.0 / (1.0 + 2.0 * VELOCITY_SLIP * float(row["knudsen"])),
-        fails_if="a wrong stress on the walls, or a gradient that includes the slip",
-    )
-
-
-def _slip(dilute: list[xr.Dataset]) -> Claim:
-    """The slip at the walls, from both engines."""
-    return Claim(
-        claim="velocity slip of dilute spheres over mean free path and gradient",
-        measured=weighted_mean([Estimate.of(row, "slip") for row in dilute]),
-        expected=VELOCITY_SLIP,
-        required=0.05,
-        source="the linearised Boltzmann equation of spheres [Ohwada 1989], derived again by moments",
-        alternative=ELEMENTARY_SLIP,
-        fails_if="particles that leave a wall with the distribution of another velocity",
-    )
-
-
-def _dense(row: xr.Dataset) -> Claim:
-    """The viscosity of a dense gas, against Enskog."""
-    return Claim.within(
-        claim=f"stress over gradient, over Enskog's viscosity, {_named(row)}",
-        measured=Estimate.of(row, "viscosity"),
+def _dense(dense: Table) -> list[Claim]:
+    """The viscosity of dense gases, against Enskog."""
+    return each(
+        dense,
+        "stress over gradient, over Enskog's viscosity, {gas}",
+        Claim.within,
+        measured=dense.viscosity,
         expected=1.0,
         half_width=FEW_PER_CENT,
         source=f"{ENSKOG}; correlated collisions change it by a few per cent [Alder 1970b]",
@@ -97,46 +104,28 @@ def _dense(row: xr.Dataset) -> Claim:
     )
 
 
-def _ratios(responses: list[xr.Dataset], still: list[xr.Dataset]) -> dict[str, Estimate]:
+def _over_equilibrium(responses: Table, still: Table) -> dict[str, Estimate]:
     """The viscosity of gases over that from the fluctuations at the same density, if it is known."""
     ratios = {}
-    for row in responses:
-        eta = float(row["packing_fraction"])
-        beside = [one for one in still if abs(float(one["packing_fraction"]) - eta) < NEAR]
-        if beside:
-            nearest = min(beside, key=lambda one: abs(float(one["packing_fraction"]) - eta))
-            ratios[_named(row)] = Estimate.of(row, "viscosity") / Estimate.of(nearest, "viscosity")
+    for gas in responses:
+        apart = np.abs(still.packing_fraction - gas.packing_fraction)
+        if np.any(apart < NEAR):
+            ratios[gas.gas] = gas.viscosity / still[int(apart.argmin())].viscosity
     return ratios
 
 
-def _uniform(sheared: list[xr.Dataset], still: list[xr.Dataset]) -> list[Claim]:
-    """The same of gases that are sheared without walls."""
-    return [
-        Claim(
-            claim=f"viscosity from uniform shear over that from equilibrium, {name}",
-            measured=ratio,
-            expected=1.0,
-            required=0.03,
-            source="Green and Kubo: the response is linear, its coefficient an integral of fluctuations",
-            fails_if="images that slide at another speed, or a stress that contains the flow",
-        )
-        for name, ratio in _ratios(sheared, still).items()
-    ]
-
-
-def _equilibrium(dense: list[xr.Dataset], still: list[xr.Dataset]) -> list[Claim]:
+def _equilibrium(dense: Table, still: Table) -> list[Claim]:
     """The viscosity of dense gases, against that from the fluctuations of the stress: of each, and of all
     together."""
-    ratios = _ratios(dense, still)
+    ratios = _over_equilibrium(dense, still)
     stated = {name: (ratio, 0.03) for name, ratio in ratios.items()}
-    stated["spheres at all densities"] = weighted_mean(list(ratios.values())), 0.015
+    stated["spheres at all densities"] = combine_estimates(list(ratios.values())), 0.015
     return [
         Claim(
             claim=f"viscosity from the response over that from equilibrium, {name}",
             measured=ratio,
-            expected=1.0,
             required=required,
-            source="Green and Kubo: the response is linear, its coefficient an integral of fluctuations",
+            **RESPONSE,
             fails_if="a stress tensor, or momentum on the walls, that is not that of the particles",
             follows=name not in ratios,
         )
@@ -144,13 +133,28 @@ def _equilibrium(dense: list[xr.Dataset], still: list[xr.Dataset]) -> list[Claim
     ]
 
 
-def _pressure(row: xr.Dataset) -> Claim:
+def _uniform(sheared: Table, still: Table) -> list[Claim]:
+    """The same of gases that are sheared without walls."""
+    return [
+        Claim(
+            claim=f"viscosity from uniform shear over that from equilibrium, {name}",
+            measured=ratio,
+            required=0.03,
+            **RESPONSE,
+            fails_if="images that slide at another speed, or a stress that contains the flow",
+        )
+        for name, ratio in _over_equilibrium(sheared, still).items()
+    ]
+
+
+def _pressure(slow: Table) -> list[Claim]:
     """The pressure on the walls against density and temperature in the middle."""
-    first = NORMAL_STRESSES[0] * float(row["reduced_rate"]) ** 2
-    return Claim(
-        claim=f"pressure on the walls over that of the middle's state, {_named(row)}",
-        measured=Estimate.of(row, "pressure"),
-        expected=_second(row) + (first if float(row["packing_fraction"]) < DILUTE_SLIP else 0.0),
+    normal = NORMAL_STRESSES[0] * slow.reduced_rate.value**2
+    return each(
+        slow,
+        "pressure on the walls over that of the middle's state, {gas}",
+        measured=slow.pressure,
+        expected=_second(slow) + np.where(slow.packing_fraction < DILUTE_SLIP, normal, 0.0),
         required=0.005,
         source="no force acts across the gap: the equation of state of the middle, and of dilute gases the "
         "normal stress",
@@ -159,25 +163,26 @@ def _pressure(row: xr.Dataset) -> Claim:
     )
 
 
-def _free(row: xr.Dataset) -> Claim:
+def _free(narrow: Table) -> list[Claim]:
     """The stress of free flight: the first correction is about minus the gap over the mean free path."""
-    return Claim.within(
-        claim=f"shear stress over that of free flight, {_named(row)}",
-        measured=Estimate.of(row, "stress"),
-        expected=1.0 - 0.5 / float(row["knudsen"]),
-        half_width=1.0 / float(row["knudsen"]),
+    return each(
+        narrow,
+        "shear stress over that of free flight, {gas}",
+        Claim.within,
+        measured=narrow.stress,
+        expected=1.0 - 0.5 / narrow.knudsen,
+        half_width=1.0 / narrow.knudsen,
         source="two streams, each with the velocity of the wall that it comes from (exact), less than twice "
         "the gap over the mean free path for collisions",
         fails_if="walls that do not give the whole of their velocity",
     )
 
 
-def _heating(row: xr.Dataset) -> Claim:
+def _heating(flow: Row) -> Claim:
     """The parabola of the temperature."""
-    expected = float(theory.viscous_heating(float(row["packing_fraction"]), 3))
     return Claim(
-        claim=f"-dT/du^2 over half of viscosity over conductivity, walls of speed {float(row['speed']):g}",
-        measured=Estimate.of(row, "heating") / expected,
+        claim=f"-dT/du^2 over half of viscosity over conductivity, walls of speed {flow.speed:g}",
+        measured=flow.heating / float(theory.viscous_heating(flow.packing_fraction, 3)),
         expected=1.0,
         required=0.05,
         source=f"heat made by the stress flows to the walls; {ENSKOG}",
@@ -186,18 +191,16 @@ def _heating(row: xr.Dataset) -> Claim:
     )
 
 
-def _normal(row: xr.Dataset) -> list[Claim]:
+def _normal(flow: Row) -> list[Claim]:
     """Normal stresses, of second order in the rate: on the walls, and in the middle along two axes."""
-    square = float(row["reduced_rate"]) ** 2
+    square = flow.reduced_rate.value**2
     across, along, _ = NORMAL_STRESSES
-    source = (
-        "moments of the Boltzmann equation (gaspart.theory.shear), exact for Maxwell molecules to second "
-    )
-    source += "order [Santos 2009]"
+    source = "moments of the Boltzmann equation (gaspart.theory.shear), exact for Maxwell molecules to "
+    source += "second order [Santos 2009]"
     return [
         Claim.within(
             claim="stress on the walls less pressure, over pressure and squared rate of shear",
-            measured=(Estimate.of(row, "pressure") - Estimate(1.0)) / square,
+            measured=(flow.pressure - 1.0) / square,
             expected=across,
             half_width=0.1 * abs(across),
             source=f"{source}; a tenth for spheres and higher orders",
@@ -205,7 +208,7 @@ def _normal(row: xr.Dataset) -> list[Claim]:
         ),
         Claim.at_least(
             claim="stress along flow less that along gradient, over pressure and squared rate of shear",
-            measured=(Estimate.of(row, "normal_y") - Estimate.of(row, "normal_x")) / square,
+            measured=(flow.normal_y - flow.normal_x) / square,
             bound=0.5 * (along - across),
             required=0.25,
             source=f"{source}; half of it, since the sign and the size are claimed",

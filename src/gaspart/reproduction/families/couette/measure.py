@@ -20,10 +20,10 @@ from gaspart.analysis.series import Blocks, face_pressures
 from gaspart.analysis.statistics import fit_linear, jackknife
 from gaspart.reproduction.families.couette.uniform import uniform
 from gaspart.reproduction.families.heat.gap import Gap
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.transport.measure import coefficient
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
 from gaspart.theory.dsmc import cell_factor, step_factor
@@ -46,26 +46,29 @@ def couette(points: list[Point], settings: dict) -> xr.Dataset:
     flow and temperature by bin. Of sheared gases what `uniform` states. Of equilibrium points
     packing_fraction and `viscosity` by Green and Kubo.
     """
-    rows = []
-    for part, experiments in settings["parts"].items():
-        for point in (point for point in points if point.experiment in experiments):
-            rows.append({"part": part, "engine": point.engine.title, **_row(part, point, settings)})
+    gases = [
+        (part, point)
+        for part, experiments in settings["parts"].items()
+        for point in points
+        if point.experiment in experiments
+    ]
     units = {"place": "gap", "flow": "speed of the walls", "temperature": "temperature of the walls"}
-    return from_rows("point", rows, ("bin",), units)
+    return table("point", gases, _row, settings, inner=("bin",), units=units)
 
 
-def _row(part: str, point: Point, settings: dict) -> dict:
+def _row(gas: tuple[str, Point], settings: dict) -> dict[str, Any]:
     """The numbers of a point of this part."""
+    part, point = gas
+    row = {"part": part, "engine": point.engine.title}
     if part == "flows":
-        return _flow(point, settings)
-    return uniform(point, settings["blocks"]) if part == "sheared" else _equilibrium(point)
+        return row | _flow(point, settings)
+    return row | (uniform(point, settings["blocks"]) if part == "sheared" else _equilibrium(point))
 
 
-def _equilibrium(point: Point) -> dict:
+def _equilibrium(point: Point) -> dict[str, Any]:
     """The viscosity over Enskog's, as of an infinite gas."""
     row = coefficient(point, "shear", theory.enskog_viscosity)
-    viscosity = row["value"] / row["finite"]
-    return {"packing_fraction": row["packing_fraction"], **entries({"viscosity": viscosity})}
+    return {"packing_fraction": row["packing_fraction"], "viscosity": row["value"] / row["finite"]}
 
 
 @dataclass(frozen=True)
@@ -88,7 +91,7 @@ class FlowBetweenPlates:
         scene = point.scene
         gap, diameter, dilute = Gap.of(scene), 2.0 * scene.smallest_radius, point.engine.equation != "exact"
         path = float(_path(scene.count / (gap.length * gap.area), diameter, dilute))
-        place = gap.length * ((np.arange(settings["bins"]) + 0.5) / settings["bins"] - 0.5)
+        place = gap.grid(settings["bins"]).middles[0] - 0.5 * gap.length
         clear = min(settings["clear"] * max(path, 0.0 if dilute else diameter), gap.length / 3.0)
         coarse = _coarseness(point, gap, path) if dilute else 1.0
         middle = np.abs(place) < 0.5 * gap.length - clear
@@ -169,36 +172,31 @@ def _blocks_of(run: Run, gap: Gap, blocks: int, bins: int) -> Averages:
     )
 
 
-def _flow(point: Point, settings: dict) -> dict:
+def _flow(point: Point, settings: dict) -> dict[str, Any]:
     """The numbers of one flow."""
     setting = FlowBetweenPlates.of(point, settings)
-    gap, bins = setting.gap, settings["bins"]
-    blocks = _blocks(point, gap, settings["blocks"], bins)
-    averages = blocks.steady, blocks.pressure, blocks.density, blocks.flow, blocks.squares
+    gap, speed = setting.gap, setting.speed
+    blocks = _blocks(point, gap, settings["blocks"], settings["bins"])
+    profiles = blocks.density, blocks.flow, blocks.squares
 
     def numbers(*means: Any) -> np.ndarray:
         return _numbers(setting, *means)
 
-    values, errors = jackknife(numbers, *averages)
-    freedom = len(blocks.stress) - 1
-    profile, spread = jackknife(lambda *means: np.stack(_profile(*means)[:2]), *averages[2:])
+    found = Estimate(*jackknife(numbers, blocks.steady, blocks.pressure, *profiles), len(blocks.stress) - 1)
+    (flow, temperature), (flow_error, temperature_error) = jackknife(
+        lambda *means: np.stack(_profile(*means)[:2]), *profiles
+    )
     density = point.scene.count / (gap.length * gap.area)
-    free = float(theory.free_molecular_stress(density, setting.speed, gap.hot))
-    parts = zip(("stress", *NUMBERS), values / np.array([free, *[1.0] * len(NUMBERS)]), strict=True)
-    scale = np.array([[setting.speed], [gap.hot]])
-    shown = dict(zip(("flow", "temperature"), zip(profile / scale, spread / scale, strict=True), strict=True))
-    scales = {"stress": free}
     return {
         "packing_fraction": setting.packing_fraction(blocks.density[:, setting.middle].mean()),
         "knudsen": _path(density, setting.diameter, setting.dilute) / gap.length,
-        "speed": setting.speed,
-        **entries({
-            name: Estimate(value, error / scales.get(name, 1.0), freedom)
-            for (name, value), error in zip(parts, errors, strict=True)
-        }),
+        "speed": speed,
+        "stress": found[0] / float(theory.free_molecular_stress(density, speed, gap.hot)),
+        **dict(zip(NUMBERS, found[1:], strict=True)),
         "place": setting.place / gap.length,
-        **entries(shown),
-    }  # fmt: skip
+        "flow": (flow / speed, flow_error / speed),
+        "temperature": (temperature / gap.hot, temperature_error / gap.hot),
+    }
 
 
 def _profile(

@@ -5,6 +5,8 @@ The flow is along the first axis, its gradient along the second; particles have 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from gaspart import theory
@@ -12,14 +14,13 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
 from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import jackknife
-from gaspart.reproduction.families.shared.rows import entries
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
 
 _AXES = {"y": 0, "x": 1, "z": 2}  # of the container, by name as of walls across x: x is that of the gradient
 
 
-def uniform(point: Point, blocks: int) -> dict:
+def uniform(point: Point, blocks: int) -> dict[str, Any]:
     """The numbers of a sheared gas, as of a flow between walls: viscosity, the response over Enskog's at the
     temperature of the time; reduced_rate, stress over pressure; normal_x, _y, _z, the pressure along
     gradient, flow and vorticity over their mean, minus 1. Errors are by leaving out each stretch of time, of
@@ -28,14 +29,9 @@ def uniform(point: Point, blocks: int) -> dict:
     series = [
         np.concatenate(parts) for parts in zip(*(_blocks(run, blocks) for run in runs(point)), strict=True)
     ]
-    values, errors = jackknife(_numbers, *series)
+    found = Estimate(*jackknife(_numbers, *series), len(series[0]) - 1)
     names = ("viscosity", "reduced_rate", *(f"normal_{name}" for name in _AXES))
-    found = zip(names, values, errors, strict=True)
-    freedom = len(series[0]) - 1
-    return {
-        "packing_fraction": scene.packing_fraction,
-        **entries({name: Estimate(value, error, freedom) for name, value, error in found}),
-    }
+    return {"packing_fraction": scene.packing_fraction, **dict(zip(names, found, strict=True))}
 
 
 def _blocks(run: Run, blocks: int) -> tuple[np.ndarray, np.ndarray]:
