@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from gaspart import theory
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import fit_polynomial
 from gaspart.reproduction.families.structure import measure, potential
 from gaspart.reproduction.families.structure.state import POWERS, MeasuredState
@@ -87,16 +88,12 @@ def test_the_thermodynamics_of_a_known_equation_of_state(dimension):
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_the_configuration_integral_of_a_known_chemical_potential(dimension):
-    rows = []
-    for eta in (0.1, 0.2, 0.3, 0.4):
-        mu = float(theory.excess_chemical_potential(eta, dimension))
-        known = {"inserted": mu, "inserted_error": 0.01, "inserted_freedom": 20.0}
-        rows.append({"packing_fraction": eta, "reference": mu, **known})
-    eta = np.linspace(0.05, 0.45, 9)
-    state = MeasuredState(dimension, fit_polynomial(eta, 0.0 * eta, np.full(9, 1e-6), powers=POWERS))
-    potential._add_partition(rows, state)
-    for row in rows:
-        free = float(theory.excess_free_energy(row["packing_fraction"], dimension))
-        assert row["ln_q"] == pytest.approx(free, rel=1e-6) == row["ln_q_integrated"]
-        assert row["ln_q_ratio"] == pytest.approx(1.0, rel=1e-6)
-        assert 0.0 < row["ln_q_error"] < 0.05
+    eta = np.array([0.1, 0.2, 0.3, 0.4])
+    inserted = Estimate(theory.excess_chemical_potential(eta, dimension), 0.01, 20.0)
+    fit_eta = np.linspace(0.05, 0.45, 9)
+    state = MeasuredState(dimension, fit_polynomial(fit_eta, 0.0 * fit_eta, np.full(9, 1e-6), powers=POWERS))
+    found = potential.ln_q(eta, inserted, dimension)
+    free = theory.excess_free_energy(eta, dimension)
+    assert found.value == pytest.approx(free, rel=1e-6)
+    assert [state.free_energy(one).value for one in eta] == pytest.approx(free, rel=1e-6)
+    assert (found.error > 0.0).all() and (found.error < 0.05).all()

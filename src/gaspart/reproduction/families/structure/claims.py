@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES, SOURCE_C, deviations, rows
+from gaspart.reproduction.claims import Claim
+from gaspart.reproduction.families.shared.claims import PARTICLES, SOURCE_C
+from gaspart.reproduction.table import Row, Table
 
 AGREE = 0.005
 """The largest standard error at which an agreement to 1 % means anything."""
@@ -20,51 +21,54 @@ DENSEST = 0.4
 def structure(ds: xr.Dataset) -> list[Claim]:
     """Compressibility and contact value by independent routes; Verlet and Weis's curves."""
     claims = []
-    for row in rows(ds, "point"):
-        claims += [_compressibility(row), *_contact(row)]
-        if int(row["dimension"]) == 3 and float(row["packing_fraction"]) >= DENSEST:
-            claims += _curves(row)
+    for fluid in Table(ds, "point"):
+        claims += [_compressibility(fluid), *_contact(fluid)]
+        if _spheres_from(DENSEST, fluid):
+            claims += _curves(fluid)
     return claims
 
 
-def _where(row: xr.Dataset) -> str:
-    return f"{PARTICLES[int(row['dimension'])]}, packing fraction {float(row['packing_fraction']):.3g}"
+def _where(fluid: Row) -> str:
+    return f"{PARTICLES[fluid.dimension]}, packing fraction {fluid.packing_fraction:.3g}"
 
 
-def _compressibility(row: xr.Dataset) -> Claim:
-    eta = float(row["packing_fraction"])
-    spheres = int(row["dimension"]) == 3
+def _spheres_from(packing_fraction: float, fluid: Row) -> bool:
+    """Whether a fluid is one of spheres, and at least so dense."""
+    return bool(fluid.dimension == 3 and fluid.packing_fraction >= packing_fraction)
+
+
+def _compressibility(fluid: Row) -> Claim:
+    eta = fluid.packing_fraction
     yevick = (1.0 - eta) ** 4 / (1.0 + 2.0 * eta) ** 2
     return Claim(
-        claim=f"S(0) over the compressibility of the measured equation of state, {_where(row)}",
-        measured=Estimate.of(row, "s0_ratio"),
+        claim=f"S(0) over the compressibility of the measured equation of state, {_where(fluid)}",
+        measured=fluid.s0_ratio,
         expected=1.0,
         required=AGREE,
         source="S(0) = k T dρ/dP, the fluctuation of the number (exact)",
-        alternative=yevick / float(row["state_s0"]) if spheres and eta >= DENSE else None,
+        alternative=yevick / fluid.state_s0.value if _spheres_from(DENSE, fluid) else None,
         fails_if="wave vectors that the container does not admit, too few independent frames, an "
         "extrapolation that does not hold, or a wrong pressure",
     )
 
 
-def _contact(row: xr.Dataset) -> list[Claim]:
-    eta, where = float(row["packing_fraction"]), _where(row)
-    spheres = int(row["dimension"]) == 3
-    excluded = (1.0 + 0.5 * eta) / (1.0 - eta) ** 2 / float(row["contact_z"])
+def _contact(fluid: Row) -> list[Claim]:
+    eta, where = fluid.packing_fraction, _where(fluid)
+    yevick = (1.0 + 0.5 * eta) / (1.0 - eta) ** 2
     return [
         Claim(
             claim=f"contact value from g(r) over that from Z, {where}",
-            measured=Estimate.of(row, "g_ratio"),
+            measured=fluid.g_ratio,
             expected=1.0,
             required=AGREE,
             source="the virial theorem: Z = 1 + 2^(d-1) η g(σ) (exact)",
-            alternative=excluded if spheres and eta >= DENSE else None,
+            alternative=yevick / fluid.contact_z.value if _spheres_from(DENSE, fluid) else None,
             fails_if="frames that are no sample of what the collisions see, pairs that are counted wrongly, "
             "or a wrong pressure",
         ),
         Claim(
             claim=f"contact value from the collision rate over that from Z, {where}",
-            measured=Estimate.of(row, "rate_ratio"),
+            measured=fluid.rate_ratio,
             expected=1.0,
             required=AGREE,
             source="velocities are independent of positions: the rate is g(σ) times that of independent "
@@ -75,12 +79,12 @@ def _contact(row: xr.Dataset) -> list[Claim]:
     ]
 
 
-def _curves(row: xr.Dataset) -> list[Claim]:
+def _curves(fluid: Row) -> list[Claim]:
     return [
         Claim.at_most(
             claim=f"distance of {name} from Verlet and Weis's over that from Percus and Yevick's, "
-            f"{_where(row)}",
-            measured=Estimate.of(row, key),
+            f"{_where(fluid)}",
+            measured=fluid[key],
             bound=0.5,
             required=0.1,
             source="[Verlet 1972] corrects the contact value and the phase of [Percus 1958]; one half is "
@@ -93,27 +97,27 @@ def _curves(row: xr.Dataset) -> list[Claim]:
 
 def chemical_potential(ds: xr.Dataset) -> list[Claim]:
     """Insertion against Gibbs and Duhem where it works, what happens where it does not, and Q."""
-    enough = int(ds.attrs["enough"])
-    claims = [_works(row) if int(row["works"]) else _fails(row, enough) for row in rows(ds, "point")]
+    fluids = Table(ds, "point")
+    claims = [_works(fluid) if fluid.works else _fails(fluid, fluids.enough) for fluid in fluids]
     for dimension in (3, 2):
-        part = ds.isel(point=np.flatnonzero((ds["dimension"] == dimension) & (ds["works"] == 1)))
-        if part.sizes["point"] > 1:
+        own = fluids[(fluids.dimension == dimension) & (fluids.works == 1)]
+        if len(own) > 1:
             claims.append(
                 Claim.joint(
                     claim=f"chemical potential by insertion of {PARTICLES[dimension]}, all packing fractions",
-                    deviations=deviations(part, "inserted", "reference"),
+                    deviations=(own.inserted - own.reference).deviation,
                     source="the integral of the reference equation of state ([Kolafa 2004], [Clisby 2006])",
                     fails_if="a bias too small for one point is common to many, or the error bars are wrong",
                 )
             )
-            claims += [_partition(row) for row in rows(part, "point")[-1:] if np.isfinite(row["ln_q_ratio"])]
+            claims += [_partition(own[-1])] if np.isfinite(own.ln_q_ratio.value[-1]) else []
     return claims
 
 
-def _works(row: xr.Dataset) -> Claim:
+def _works(fluid: Row) -> Claim:
     return Claim(
-        claim=f"chemical potential by insertion over that of the equation of state, {_where(row)}",
-        measured=Estimate.of(row, "ratio"),
+        claim=f"chemical potential by insertion over that of the equation of state, {_where(fluid)}",
+        measured=fluid.ratio,
         expected=1.0,
         required=0.01,
         source="[Widom 1963] and the equation of Gibbs and Duhem, with the measured Z (both exact)",
@@ -122,24 +126,23 @@ def _works(row: xr.Dataset) -> Claim:
     )
 
 
-def _fails(row: xr.Dataset, enough: int) -> Claim:
-    hits = int(row["hit_frames"])
+def _fails(fluid: Row, enough: int) -> Claim:
     return Claim(
-        claim=f"chance of an insertion over that of the equation of state, {_where(row)}",
-        measured=Estimate.of(row, "probability") / float(row["expected"]),
+        claim=f"chance of an insertion over that of the equation of state, {_where(fluid)}",
+        measured=fluid.probability / fluid.expected.value,
         expected=1.0,
         required=1.0,
-        source=f"as where it works; the chemical potential is {float(row['reference']):.3g} k T",
-        no_verdict=f"only {hits} of {int(row['frames'])} frames have a free place ({enough} are asked for): "
-        "their number is no Gaussian one",
+        source=f"as where it works; the chemical potential is {fluid.reference.value:.3g} k T",
+        no_verdict=f"only {fluid.hit_frames} of {fluid.frames} frames have a free place ({enough} are asked "
+        "for): their number is no Gaussian one",
         fails_if="places that are not uniform, or overlaps that are missed",
     )
 
 
-def _partition(row: xr.Dataset) -> Claim:
+def _partition(fluid: Row) -> Claim:
     return Claim(
-        claim=f"ln Q / N by insertion over that of the measured equation of state, {_where(row)}",
-        measured=Estimate.of(row, "ln_q_ratio"),
+        claim=f"ln Q / N by insertion over that of the measured equation of state, {_where(fluid)}",
+        measured=fluid.ln_q_ratio,
         expected=1.0,
         required=0.01,
         source=f"{SOURCE_C}, Eq. 46: both are the free energy beyond an ideal gas's (exact)",

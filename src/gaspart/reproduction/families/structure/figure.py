@@ -10,9 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart import theory
+from gaspart.analysis.estimate import Estimate
 from gaspart.rendering import style
 from gaspart.reproduction.families.shared.claims import PARTICLES
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.table import Row, Table
 
 SHIFT = 0.006
 """Of packing fractions, so that the points of several routes lie beside each other."""
@@ -22,43 +23,40 @@ def structure(ds: xr.Dataset) -> Figure:
     """g(r) and S(k) of the densest of each, against theory; the routes to one number over each other."""
     figure, axes = style.new((2.3,), (2.3,), (2.3,), (2.3,))
     g, s, zero, contact = axes
-    for kind, dimension in enumerate((3, 2)):
-        part = ds.isel(point=np.flatnonzero(ds["dimension"].values == dimension)).sortby("packing_fraction")
-        if part.sizes["point"]:
-            _curves(g, s, part.isel(point=-1), kind)
-            _ratios(zero, part, kind, {"s0_ratio": "$S(0)$"})
-            _ratios(contact, part, kind, {"g_ratio": "$g(r)$", "rate_ratio": "rate"})
-    g.set_xlabel(r"distance $r/\sigma$")
-    g.set_ylabel("$g(r)$")
-    g.set_xlim(0.9)
-    s.set_xlabel(r"wave number $k\sigma$")
-    s.set_ylabel("$S(k)$")
-    s.set_xlim(0.0)
-    zero.set_ylabel(r"$S(0)$ over $kT\,\mathrm{d}\rho/\mathrm{d}P$")
-    contact.set_ylabel(r"$g(\sigma)$ over that from $Z$")
+    for kind, fluids in enumerate(_spheres_and_discs(ds)):
+        if fluids:
+            _curves(g, s, fluids[-1], kind)
+            _ratios(zero, fluids, kind, {"$S(0)$": fluids.s0_ratio})
+            _ratios(contact, fluids, kind, {"$g(r)$": fluids.g_ratio, "rate": fluids.rate_ratio})
     for axis in (zero, contact):
         style.band(axis, 0.99, 1.01)
         style.level(axis, 1.0)
-        axis.set_xlim(0.0)
-        axis.set_xlabel(r"packing fraction $\eta$")
-    for axis in axes:
-        axis.legend()
+    density = r"packing fraction $\eta$"
+    style.labelled(g, r"distance $r/\sigma$", "$g(r)$", "best", xlim=(0.9, None))
+    style.labelled(s, r"wave number $k\sigma$", "$S(k)$", "best", xlim=(0.0, None))
+    style.labelled(zero, density, r"$S(0)$ over $kT\,\mathrm{d}\rho/\mathrm{d}P$", "best", xlim=(0.0, None))
+    style.labelled(contact, density, r"$g(\sigma)$ over that from $Z$", "best", xlim=(0.0, None))
     style.letters(*axes)
     return figure
 
 
-def _curves(g: Axes, s: Axes, row: xr.Dataset, kind: int) -> None:
-    """The measured curves of one gas, of spheres with those of theory."""
-    eta, dimension = float(row["packing_fraction"]), int(row["dimension"])
-    label = rf"{PARTICLES[dimension]}, $\eta={eta:.2g}$"
-    beyond = row["distance"].values >= 1.0
-    for axis, x, y in ((g, "distance", "g"), (s, "wave_number", "s")):
-        kept = beyond if y == "g" else np.isfinite(row[y].values)
-        places, values = row[x].values[kept], estimates(row, y)[:, kept]
-        style.measured(axis, places, values, kind, hollow=True, markersize=2.0, label=label)
-    if dimension == 3:
-        r = np.linspace(1.0, float(row["distance"].max()), 300)
-        k = np.linspace(0.0, float(row["wave_number"].max()), 300)
+def _spheres_and_discs(ds: xr.Dataset) -> list[Table]:
+    """Each by ascending packing fraction."""
+    fluids = Table(ds, "point")
+    return [fluids[fluids.dimension == dimension].sorted_by("packing_fraction") for dimension in (3, 2)]
+
+
+def _curves(g: Axes, s: Axes, fluid: Row, kind: int) -> None:
+    """The measured curves of one fluid, of spheres with those of theory."""
+    eta, distance, wave_number = fluid.packing_fraction, fluid.distance, fluid.wave_number
+    beyond, known = distance >= 1.0, np.isfinite(fluid.s.value)
+    small: dict[str, Any] = {"kind": kind, "hollow": True, "markersize": 2.0}
+    small["label"] = rf"{PARTICLES[fluid.dimension]}, $\eta={eta:.2g}$"
+    style.points(g, distance[beyond], fluid.g[beyond], **small)
+    style.points(s, wave_number[known], fluid.s[known], **small)
+    if fluid.dimension == 3:
+        r = np.linspace(1.0, distance.max(), 300)
+        k = np.linspace(0.0, np.nanmax(wave_number), 300)
         laws = {
             "Verlet–Weis": (theory.verlet_weis_rdf, theory.verlet_weis_structure_factor),
             "Percus–Yevick": (theory.percus_yevick_rdf, theory.percus_yevick_structure_factor),
@@ -69,14 +67,12 @@ def _curves(g: Axes, s: Axes, row: xr.Dataset, kind: int) -> None:
             s.plot(k, of_k(k, eta), **look)
 
 
-def _ratios(axis: Axes, part: xr.Dataset, kind: int, names: dict[str, str]) -> None:
+def _ratios(axis: Axes, fluids: Table, kind: int, ratios: dict[str, Estimate]) -> None:
     """Ratios that are 1."""
-    eta = part["packing_fraction"].values
-    for n, (name, title) in enumerate(names.items()):
-        shift = SHIFT * (kind - 0.5 + 0.4 * n)
-        label = f"{title}, {PARTICLES[int(part['dimension'][0])]}"
-        look = {"hollow": n == 1, "color": style.COLOURS[kind], "label": label}
-        style.measured(axis, eta + shift, estimates(part, name), kind, **look)
+    for n, (name, ratio) in enumerate(ratios.items()):
+        eta = fluids.packing_fraction + SHIFT * (kind - 0.5 + 0.4 * n)
+        look: dict[str, Any] = {"hollow": n == 1, "color": style.COLOURS[kind]}
+        style.points(axis, eta, ratio, kind=kind, label=f"{name}, {PARTICLES[fluids.dimension[0]]}", **look)
 
 
 def chemical_potential(ds: xr.Dataset) -> Figure:
@@ -85,64 +81,52 @@ def chemical_potential(ds: xr.Dataset) -> Figure:
     upper, ratio, chance, partition = axes
     style.band(ratio, 0.99, 1.01)
     style.level(ratio, 1.0)
-    for kind, dimension in enumerate((3, 2)):
-        part = ds.isel(point=np.flatnonzero(ds["dimension"].values == dimension)).sortby("packing_fraction")
-        if part.sizes["point"]:
-            _potential(upper, ratio, part, kind)
-            _chance(chance, part, kind)
-            _partition(partition, part, kind)
-    upper.set_ylabel(r"$\mu_\mathrm{excess}/kT$")
-    ratio.set_ylabel("insertion / integral")
-    ratio.set_ylim(0.97, 1.03)
-    chance.set_yscale("log")
-    chance.set_ylabel("chance of an insertion")
-    chance.set_ylim(1e-16, 3.0)  # with room for the legend
-    partition.set_ylabel(r"$-\ln Q/N$")
-    for axis in (ratio, chance, partition):
-        axis.set_xlim(0.0)
-        axis.set_xlabel(r"packing fraction $\eta$")
-    for axis in (upper, partition):
-        axis.legend()
-    chance.legend(loc="lower left")
+    for kind, fluids in enumerate(_spheres_and_discs(ds)):
+        if fluids:
+            _potential(upper, ratio, fluids, kind)
+            _chance(chance, fluids, kind)
+            _partition(partition, fluids, kind)
+    density = r"packing fraction $\eta$"
+    style.labelled(upper, y=r"$\mu_\mathrm{excess}/kT$", legend="best")
+    style.labelled(ratio, density, "insertion / integral", xlim=(0.0, None), ylim=(0.97, 1.03))
+    chance.set(yscale="log", xlim=(0.0, None), ylim=(1e-16, 3.0))  # with room for the legend
+    style.labelled(chance, density, "chance of an insertion", "lower left")
+    style.labelled(partition, density, r"$-\ln Q/N$", "best", xlim=(0.0, None))
     style.letters(*axes)
     return figure
 
 
-def _potential(upper: Axes, ratio: Axes, part: xr.Dataset, kind: int) -> None:
-    dimension = int(part["dimension"][0])
-    colour = style.COLOURS[kind]
-    eta = np.linspace(0.0, float(part["packing_fraction"].max()), 200)
+def _potential(upper: Axes, ratio: Axes, fluids: Table, kind: int) -> None:
+    dimension, colour = fluids.dimension[0], style.COLOURS[kind]
+    eta = np.linspace(0.0, fluids.packing_fraction.max(), 200)
     curve = theory.excess_chemical_potential(eta, dimension)
     upper.plot(eta, curve, color=colour, label=f"{PARTICLES[dimension]}, integral")
     label = f"{PARTICLES[dimension]}, insertion"
-    style.measured(upper, part["packing_fraction"], estimates(part, "inserted"), kind, label=label)
-    style.measured(ratio, part["packing_fraction"], estimates(part, "ratio"), kind)
+    style.points(upper, fluids.packing_fraction, fluids.inserted, kind=kind, label=label)
+    style.points(ratio, fluids.packing_fraction, fluids.ratio, kind=kind)
     if dimension == 3:
-        over = eta[1:], (4.0 - 3.0 * eta[1:]) / (1.0 - eta[1:]) ** 2
-        integral = 4.0 * eta[1:] - 3.0 * eta[1:] ** 2
-        starling = integral / (1.0 - eta[1:]) ** 2 + theory.carnahan_starling(eta[1:]) - 1.0
-        ratio.plot(over[0], starling / curve[1:], color=colour, linestyle="--", linewidth=0.8)
+        eta, curve = eta[1:], curve[1:]
+        integral = (4.0 * eta - 3.0 * eta**2) / (1.0 - eta) ** 2
+        starling = integral + theory.carnahan_starling(eta) - 1.0
+        ratio.plot(eta, starling / curve, color=colour, linestyle="--", linewidth=0.8)
 
 
-def _chance(axis: Axes, part: xr.Dataset, kind: int) -> None:
+def _chance(axis: Axes, fluids: Table, kind: int) -> None:
     """The chance, its theory, and the smallest that could be measured."""
-    dimension, eta = int(part["dimension"][0]), part["packing_fraction"].values
-    curve = np.linspace(0.0, eta.max(), 200)
-    colour = style.COLOURS[kind]
-    axis.plot(curve, np.exp(-theory.excess_chemical_potential(curve, dimension)), color=colour)
-    found = part["probability"].values > 0.0
-    some = part.isel(point=np.flatnonzero(found))
-    style.measured(
-        axis, some["packing_fraction"], estimates(some, "probability"), kind, label=PARTICLES[dimension]
-    )
+    dimension, colour = fluids.dimension[0], style.COLOURS[kind]
+    eta = np.linspace(0.0, fluids.packing_fraction.max(), 200)
+    axis.plot(eta, np.exp(-theory.excess_chemical_potential(eta, dimension)), color=colour)
+    some = fluids[fluids.probability.value > 0.0]
+    style.points(axis, some.packing_fraction, some.probability, kind=kind, label=PARTICLES[dimension])
+    look: dict[str, Any] = {"color": colour, "marker": "_", "linestyle": ":", "linewidth": 0.8}
     label = f"one success, {PARTICLES[dimension]}"
-    axis.plot(eta, part["resolution"], color=colour, marker="_", linestyle=":", linewidth=0.8, label=label)
+    axis.plot(fluids.packing_fraction, fluids.resolution, label=label, **look)
 
 
-def _partition(axis: Axes, part: xr.Dataset, kind: int) -> None:
-    dimension = int(part["dimension"][0])
-    eta = np.linspace(0.0, float(part["packing_fraction"].max()), 200)
+def _partition(axis: Axes, fluids: Table, kind: int) -> None:
+    dimension = fluids.dimension[0]
+    eta = np.linspace(0.0, fluids.packing_fraction.max(), 200)
     label = f"{PARTICLES[dimension]}, integral"
     axis.plot(eta, theory.excess_free_energy(eta, dimension), color=style.COLOURS[kind], label=label)
-    if "ln_q" in part:
-        style.measured(axis, part["packing_fraction"], estimates(part, "ln_q"), kind)
+    if "ln_q" in fluids.dataset:
+        style.points(axis, fluids.packing_fraction, fluids.ln_q, kind=kind)

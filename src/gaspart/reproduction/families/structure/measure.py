@@ -25,11 +25,11 @@ from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import fit_polynomial, jackknife, means_of
 from gaspart.analysis.waves import admitted, factors, in_shells, shells_of
 from gaspart.reproduction.families.shared.pressure import series_of
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.structure.potential import chemical_potential
 from gaspart.reproduction.families.structure.state import MeasuredState, measured_states
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 from gaspart.scene.gas import Gas, plain_gas
 
 __all__ = ["chemical_potential", "structure"]
@@ -72,14 +72,12 @@ def structure(points: list[Point], settings: dict) -> xr.Dataset:
     g over `bin` at `distance`, in diameters, s over `shell` at `wave_number` times the diameter, each with
     _error.
     """
-    states, _ = measured_states(points)
     measured = [point for point in points if point.experiment in settings["measured"]]
-    rows = [_row(point, states, settings) for point in measured]
     inner = {"g": ("bin",), "distance": ("bin",), "s": ("shell",), "wave_number": ("shell",)}
-    return from_rows("point", rows, inner)
+    return table("point", measured, _row, measured_states(points), settings, inner=inner)
 
 
-def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict:
+def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict[str, Any]:
     gas = plain_gas(point.scene)
     eta, dimension = gas.packing_fraction, gas.dimension
     lengths = np.array(point.scene.container.lengths) / gas.diameter
@@ -90,19 +88,20 @@ def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict
     parts = [_blocks(run, gas, low, curves, settings["frames"]) for run in runs(point)]
     one = Averages(*(np.concatenate([getattr(part, key.name) for part in parts]) for key in fields(Averages)))
     distance = furthest * (np.arange(BINS) + 0.5) / BINS
-    numbers = _numbers(one, gas, size)
-    numbers["state_s0"] = Estimate(1.0) / states[dimension].inverse_compressibility(eta)
-    numbers["s0_ratio"] = numbers["s0"] / numbers["state_s0"]
+    row = _numbers(one, gas, size)
+    row["state_s0"] = 1.0 / states[dimension].inverse_compressibility(eta)
+    row["s0_ratio"] = row["s0"] / row["state_s0"]
     if dimension == 3:
-        numbers["g_gain"] = _gain(one.g, theory.verlet_weis_rdf, theory.percus_yevick_rdf, distance, eta)
+        row["g_gain"] = _gain(one.g, theory.verlet_weis_rdf, theory.percus_yevick_rdf, distance, eta)
         laws = theory.verlet_weis_structure_factor, theory.percus_yevick_structure_factor
-        numbers["s_gain"] = _gain(one.s, *laws, k, eta)
+        row["s_gain"] = _gain(one.s, *laws, k, eta)
     return {
         "dimension": dimension,
         "packing_fraction": eta,
         "count": gas.count,
-        **entries(numbers),
-        **entries({"g": means_of(one.g), "s": means_of(one.s)}),
+        **row,
+        "g": means_of(one.g),
+        "s": means_of(one.s),
         "distance": distance,
         "wave_number": k,
     }
@@ -111,28 +110,30 @@ def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict
 def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Averages:
     """Those of one run. Lengths are divided by the diameter; curves: wave vectors, their shells, and the
     furthest distance, of those that are made of about `most` frames."""
-    lengths = np.array(run.scene.container.lengths) / gas.diameter
-    frames, length = run.positions[1:] / gas.diameter, run.block_length(BLOCKS)
-    stride = max(1, len(frames) // most)
-    rounding = 2.0**-18  # so that pairs in contact are not below the first bin
-    near = round(1.5 / WIDTH)
-    pairs = gas.count / (gas.count - 1.0)
+    parts, series = Blocks(run, BLOCKS), series_of(run)
+    sides = np.array(run.scene.container.lengths) / gas.diameter
+    blocks = np.split(run.positions[parts.frames] / gas.diameter, BLOCKS)
+    stride = max(1, (len(run.positions) - 1) // most)
+    few = [frames[::stride] for frames in blocks]
     waves, shell, furthest = curves
-    found: dict[str, list] = {key.name: [] for key in fields(Averages)}
-    series = series_of(run)
-    for start in range(0, BLOCKS * length, length):
-        part = frames[start : start + length]
-        found["low"].append(np.mean([factors(frame, lengths, low) for frame in part], axis=0))
-        g = radial_distribution(part, lengths, near, 1.5 - rounding)[1]
-        found["near"].append(pairs * g[round(1.0 / WIDTH) :])
-        few = part[::stride]
-        found["g"].append(pairs * radial_distribution(few, lengths, BINS, furthest)[1])
-        found["s"].append(
-            in_shells(np.mean([factors(frame, lengths, waves) for frame in few], axis=0), shell)
-        )
-    parts = Blocks(run, BLOCKS)
-    found |= {"z": [*parts.means(series.z)], "rate": [*parts.means(series.rate)]}
-    return Averages(**{name: np.array(values, dtype=float) for name, values in found.items()})
+    rounding = 2.0**-18  # so that pairs in contact are not below the first bin
+
+    def g(frames: np.ndarray, bins: int, end: float) -> np.ndarray:
+        pairs = gas.count / (gas.count - 1.0)
+        return pairs * radial_distribution(frames, sides, bins, end)[1]
+
+    def s(frames: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+        return np.mean([factors(frame, sides, vectors) for frame in frames], axis=0)
+
+    contact = round(1.0 / WIDTH)
+    return Averages(
+        low=np.array([s(frames, low) for frames in blocks]),
+        near=np.array([g(frames, round(1.5 / WIDTH), 1.5 - rounding)[contact:] for frames in blocks], float),
+        g=np.array([g(frames, BINS, furthest) for frames in few], float),
+        s=np.array([in_shells(s(frames, waves), shell) for frames in few]),
+        z=parts.means(series.z),
+        rate=parts.means(series.rate),
+    )
 
 
 def _numbers(one: Averages, gas: Gas, size: np.ndarray) -> dict[str, Estimate]:

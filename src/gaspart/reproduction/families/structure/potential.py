@@ -10,6 +10,7 @@ fractions below. By the equation of state it is minus the integral of (Z - 1) / 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -19,10 +20,10 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.insertion import Insertions, insertions
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import average, correlated_mean, fit_polynomial
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.structure.state import MeasuredState, measured_states
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 from gaspart.scene.gas import plain_gas
 
 _POWERS = (0, 1, 2)  # of eta, by which the measured chemical potential differs from the reference
@@ -41,50 +42,56 @@ def chemical_potential(points: list[Point], settings: dict) -> xr.Dataset:
     `point` too: ln_q, minus ln Q / N by insertion up to this packing fraction, ln_q_integrated, by the
     equation of state, `ln_q_ratio` of the two (NaN where insertion does not work).
     """
-    states, _ = measured_states(points)
+    states = measured_states(points)
     measured = [point for point in points if point.experiment in settings["measured"]]
     measured.sort(key=lambda point: (point.scene.dimension, point.scene.packing_fraction))
     rows = [_row(point, states[point.scene.dimension], settings) for point in measured]
     for dimension, state in states.items():
-        _add_partition([row for row in rows if row["dimension"] == dimension and row["works"]], state)
-    return from_rows("point", rows).assign_attrs(enough=settings["enough"])
+        works = [row for row in rows if row["dimension"] == dimension and row["works"]]
+        if len(works) >= len(_POWERS):  # the coefficients of the curve
+            _add_partition(works, state)
+    return table("point", rows, dict).assign_attrs(enough=settings["enough"])
 
 
-def _row(point: Point, state: MeasuredState, settings: dict) -> dict:
+def _row(point: Point, state: MeasuredState, settings: dict) -> dict[str, Any]:
     gas = plain_gas(point.scene)
     eta, dimension = gas.packing_fraction, gas.dimension
     found = [_insertions(run, gas.diameter, settings, point.seed(k)) for k, run in enumerate(runs(point))]
     hits = sum(int(np.count_nonzero(one.successes)) for one in found)
+    frames = sum(len(one.share) for one in found)
     chance = average([_chance(one) for one in found])
     finite = float(theory.insertion_finite_size_correction(eta, dimension, gas.count))
     integrated = state.chemical_potential(eta)
-    inserted = Estimate(math.nan, math.nan)
-    if chance.value > 0.0:
-        relative = chance.error / chance.value
-        inserted = Estimate(-math.log(chance.value) - finite, relative, chance.freedom)
+    inserted = _minus_log(chance) - finite
     expected = math.exp(-integrated.value - finite)
-    frames = sum(len(one.share) for one in found)
     resolution = sum(one.resolution * len(one.share) ** 2 for one in found) / frames**2
     return {
         "dimension": dimension,
         "packing_fraction": eta,
         "count": gas.count,
-        **entries({
-            "probability": chance,
-            "expected": Estimate(expected, expected * integrated.error, integrated.freedom),
-            "inserted": inserted,
-            "integrated": integrated,
-            "ratio": inserted / integrated,
-        }),
-        "reference": float(theory.excess_chemical_potential(eta, dimension)),
-        "reference_error": float(theory.chemical_potential_uncertainty(eta, dimension)),
+        "probability": chance,
+        "expected": Estimate(expected, expected * integrated.error, integrated.freedom),
+        "inserted": inserted,
+        "integrated": integrated,
+        "ratio": inserted / integrated,
+        "reference": (
+            float(theory.excess_chemical_potential(eta, dimension)),
+            float(theory.chemical_potential_uncertainty(eta, dimension)),
+        ),
         "successes": sum(int(one.successes.sum()) for one in found),
         "hit_frames": hits,
         "frames": frames,
         "places": 1.0 / resolution,
         "resolution": resolution,
         "works": int(hits >= settings["enough"]),
-    }  # fmt: skip
+    }
+
+
+def _minus_log(chance: Estimate) -> Estimate:
+    """NaN of 0."""
+    if chance.value == 0.0:
+        return Estimate(math.nan, math.nan)
+    return Estimate(-math.log(chance.value), chance.error / chance.value, chance.freedom)
 
 
 def _insertions(run: Run, diameter: float, settings: dict, seed: tuple[int, ...]) -> Insertions:
@@ -102,25 +109,26 @@ def _chance(found: Insertions) -> Estimate:
     return correlated_mean(found.probability).estimate
 
 
-def _add_partition(rows: list[dict], state: MeasuredState) -> None:
-    """Add minus ln Q / N to the rows of one dimension at which insertion works: mu by insertion is joined to
-    a curve, the reference times a polynomial in eta, whose integral over eta is divided by eta."""
-    if len(rows) < len(_POWERS):
-        return
-    dimension = state.dimension
-    eta, mu, error, reference, freedom = (
-        np.array([row[name] for row in rows])
-        for name in ("packing_fraction", "inserted", "inserted_error", "reference", "inserted_freedom")
-    )
-    ratio, error = mu / reference, error / reference
-    fit = fit_polynomial(eta, ratio - 1.0, error, powers=_POWERS, freedoms=freedom)
-    nodes, weights = np.polynomial.legendre.leggauss(40)
-    for row in rows:
-        inner = 0.5 * row["packing_fraction"] * (nodes + 1.0)
-        curve = 0.5 * weights * theory.excess_chemical_potential(inner, dimension)
-        parts = np.array([curve @ inner**power for power in _POWERS])
-        error = np.sqrt(parts @ fit.covariance @ parts)
-        value = Estimate(curve.sum() + parts @ fit.values, error, fit.freedoms.min())
+def _add_partition(rows: list[dict[str, Any]], state: MeasuredState) -> None:
+    """Add minus ln Q / N, by insertion and by the equation of state, to the rows of one dimension."""
+    eta = np.array([row["packing_fraction"] for row in rows])
+    found = ln_q(eta, Estimate.stack([row["inserted"] for row in rows]), state.dimension)
+    for row, inserted in zip(rows, found, strict=True):
         integrated = state.free_energy(row["packing_fraction"])
-        numbers = {"ln_q": value, "ln_q_integrated": integrated, "ln_q_ratio": value / integrated}
-        row.update(entries(numbers))
+        row |= {"ln_q": inserted, "ln_q_integrated": integrated, "ln_q_ratio": inserted / integrated}
+
+
+def ln_q(eta: np.ndarray, potential: Estimate, dimension: int) -> Estimate:
+    """(n,) minus ln Q / N at packing fractions eta (n,), from the excess chemical potentials there.
+
+    They are joined to a curve, the reference times a polynomial in eta, whose integral over eta is divided by
+    eta. The degrees of freedom of the errors are the fewest of the coefficients'.
+    """
+    reference = theory.excess_chemical_potential(eta, dimension)
+    fit = fit_polynomial(eta, potential / reference - 1.0, powers=_POWERS)
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    inner = 0.5 * eta[:, None] * (nodes + 1.0)
+    curve = 0.5 * weights * theory.excess_chemical_potential(inner, dimension)
+    parts = np.stack([(curve * inner**power).sum(axis=1) for power in _POWERS], axis=1)
+    errors = np.sqrt(((parts @ fit.covariance) * parts).sum(axis=1))
+    return Estimate(curve.sum(axis=1) + parts @ fit.values, errors, fit.freedoms.min())

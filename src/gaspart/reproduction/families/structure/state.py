@@ -8,14 +8,16 @@ compressibility, the free energy and the chemical potential are linear in the co
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import Fit, fit_polynomial
-from gaspart.reproduction.families.shared.pressure import Pressure, pressure
+from gaspart.reproduction.families.shared.pressure import pressure
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import Table, table
 from gaspart.scene.gas import plain_gas
 
 POWERS = (1, 2, 3)
@@ -46,12 +48,8 @@ class MeasuredState:
         """That of Z_ref eta'^(power - 1) from 0 to eta."""
         nodes, weights = np.polynomial.legendre.leggauss(_NODES)
         inner = 0.5 * eta * (nodes + 1.0)
-        return float(
-            0.5
-            * eta
-            * weights
-            @ (theory.compressibility_factor(inner, self.dimension) * inner ** (power - 1))
-        )
+        z = theory.compressibility_factor(inner, self.dimension)
+        return float(0.5 * eta * weights @ (z * inner ** (power - 1)))
 
     def free_energy(self, eta: float) -> Estimate:
         """F_excess / (N k_B T), the integral of (Z - 1) / eta."""
@@ -65,32 +63,25 @@ class MeasuredState:
         return self._estimate(reference, [z * eta**n + self._integral(eta, n) for n in POWERS])
 
 
-def measured_states(points: list[Point]) -> tuple[dict[int, MeasuredState], dict[str, Pressure]]:
-    """The equation of state of each dimension, of all points; and the pressure of each point, by its path.
+def measured_states(points: list[Point]) -> dict[int, MeasuredState]:
+    """The equation of state of each dimension, of all its points in the range of the fluid's reference."""
+    highest = theory.HIGHEST_PACKING_FRACTION
+    known = [point for point in points if point.scene.packing_fraction <= highest[point.scene.dimension]]
+    gases = Table(table("point", known, _excess), "point")
+    return {
+        dimension: MeasuredState(dimension, fit_polynomial(own.packing_fraction, own.excess, powers=POWERS))
+        for dimension, own in gases.by("dimension")
+    }
 
-    Z is corrected to the infinite system. Points beyond the fluid's reference are left out of the fit.
-    """
-    pressures = {point.path: pressure(point) for point in points}
-    states = {}
-    for dimension in {point.scene.dimension for point in points}:
-        eta, values = [], []
-        for point in points:
-            gas = plain_gas(point.scene)
-            if (
-                gas.dimension != dimension
-                or gas.packing_fraction > theory.HIGHEST_PACKING_FRACTION[dimension]
-            ):
-                continue
-            shift = float(
-                theory.finite_size_correction(
-                    gas.packing_fraction, dimension, gas.count, ensemble="canonical"
-                )
-            )
-            reference = float(theory.compressibility_factor(gas.packing_fraction, dimension))
-            eta.append(gas.packing_fraction)
-            values.append((pressures[point.path].z - shift) / reference - 1.0)
-        ratios = [value.value for value in values], [value.error for value in values]
-        freedoms = [value.freedom for value in values]
-        fit = fit_polynomial(np.array(eta), *ratios, powers=POWERS, freedoms=freedoms)
-        states[dimension] = MeasuredState(dimension, fit)
-    return states, pressures
+
+def _excess(point: Point) -> dict[str, Any]:
+    """Z / Z_ref - 1 of a point, as of the infinite system."""
+    gas = plain_gas(point.scene)
+    state = gas.packing_fraction, gas.dimension
+    shift = float(theory.finite_size_correction(*state, gas.count, ensemble="canonical"))
+    reference = float(theory.compressibility_factor(*state))
+    return {
+        "dimension": gas.dimension,
+        "packing_fraction": gas.packing_fraction,
+        "excess": (pressure(point).z - shift) / reference - 1.0,
+    }
