@@ -15,7 +15,7 @@ from scipy.special import bdtrc, ndtri
 from gaspart import theory
 from gaspart.analysis.statistics import average
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import rows
+from gaspart.reproduction.table import Row, Table, each
 
 TOLERANCE = 0.02
 """Relative half-width of the band around a coexistence pressure."""
@@ -35,45 +35,45 @@ SPHERES_SOURCE = "[Fernandez 2012]"
 def freezing_discs(dataset: xr.Dataset) -> list[Claim]:
     """Plateau pressure from each start and their difference; melting and freezing; both branches;
     equilibrium."""
+    starts, states = Table(dataset, "start"), Table(dataset, "packing_fraction")
     expected = theory.COEXISTENCE_PRESSURE[2]
-    claims = [_plateau(side, expected) for side in rows(dataset, "start")]
-    if dataset.sizes["start"] == 2:
-        first, second = (Estimate.of(side, "plateau") for side in rows(dataset, "start"))
-        claims.append(
-            Claim(
-                claim="plateau pressure from the crystal minus that from the fluid, k_B T / sigma^2",
-                measured=first - second,
-                expected=0.0,
-                required=TOLERANCE * expected / 2.0,
-                source="one equation of state, whatever the start",
-                fails_if="one of the runs still depends on its start",
-            )
-        )
-    low, high = (dataset.isel(packing_fraction=k) for k in (0, -1))
-    orders = [_orientation(low, melted=True), _orientation(high, melted=False)]
-    branches = [*_liquid_of_discs(dataset), *_crystal_of_discs(dataset)]
-    return [*claims, *orders, *branches, _equilibrium(dataset)]
+    return [
+        *_plateau(starts, expected),
+        *([_same_plateau(starts.plateau, expected)] if len(starts) == 2 else []),
+        _orientation(states[0], melted=True),
+        _orientation(states[-1], melted=False),
+        *_liquid_of_discs(Table(dataset, "compared_packing_fraction")),
+        *_crystal_of_discs(states),
+        _equilibrium(states),
+    ]
 
 
 def freezing_spheres(dataset: xr.Dataset) -> list[Claim]:
     """Where a crystal melts and where it is stable; both branches of Z; the pressure of coexisting phases."""
-    crystal = dataset.sel(start="crystal").dropna("packing_fraction", subset=["order"])
-    eta = crystal["packing_fraction"].values
-    claims = []
-    for mask, melted in ((eta <= 0.4501, True), (eta >= 0.5599, False)):
-        if mask.any():
-            claims.append(_lattice(crystal.isel(packing_fraction=mask), melted))
-    melting = theory.coexistence_packing_fractions(3)[1]
-    for at in (at for side in rows(dataset, "start") for at in rows(side, "packing_fraction")):
-        if np.isfinite(at["order"]):  # there is a run
-            claims.append(_branch(at, melting))
-    return [*claims, *_slab(dataset)]
+    starts = {side.start: _runs(side) for side in Table(dataset, "start")}
+    crystal = starts["crystal"]
+    eta = crystal.packing_fraction
+    melts, stable = crystal[eta <= 0.4501], crystal[eta >= 0.5599]
+    return [
+        *([_lattice(melts, melted=True)] if melts else []),
+        *([_lattice(stable, melted=False)] if stable else []),
+        *(_branch(state) for side in starts.values() for state in side),
+        *_slab(Row(dataset)),
+    ]
 
 
-def _plateau(side: xr.Dataset, expected: float) -> Claim:
-    return Claim.within(
-        claim=f"plateau pressure of discs in k_B T / sigma^2, from the {side['start'].item()}",
-        measured=Estimate.of(side, "plateau"),
+def _runs(side: Row) -> Table:
+    """The packing fractions at which there is a run of this start."""
+    states = Table(side.dataset, "packing_fraction")
+    return states[np.isfinite(states.order.value)]
+
+
+def _plateau(starts: Table, expected: float) -> list[Claim]:
+    return each(
+        starts,
+        "plateau pressure of discs in k_B T / sigma^2, from the {start}",
+        Claim.within,
+        measured=starts.plateau,
         expected=expected,
         half_width=TOLERANCE * expected,
         source=DISCS_SOURCE,
@@ -83,17 +83,28 @@ def _plateau(side: xr.Dataset, expected: float) -> Claim:
     )
 
 
-def _extreme(dataset: xr.Dataset, dimension: str, melted: bool) -> xr.Dataset:
-    """The part furthest from equilibrium: the most ordered where all is melted, else the least ordered."""
-    return dataset.isel({dimension: int((np.argmax if melted else np.argmin)(dataset["order"].values))})
+def _same_plateau(plateau: Estimate, expected: float) -> Claim:
+    return Claim(
+        claim="plateau pressure from the crystal minus that from the fluid, k_B T / sigma^2",
+        measured=plateau[0] - plateau[1],
+        expected=0.0,
+        required=TOLERANCE * expected / 2.0,
+        source="one equation of state, whatever the start",
+        fails_if="one of the runs still depends on its start",
+    )
 
 
-def _orientation(at: xr.Dataset, melted: bool) -> Claim:
+def _extreme(order: Estimate, melted: bool) -> Estimate:
+    """That furthest from equilibrium: the most ordered where all is melted, else the least ordered."""
+    return order[int((np.argmax if melted else np.argmin)(order.value))]
+
+
+def _orientation(state: Row, melted: bool) -> Claim:
     make, bound = (Claim.at_most, 0.3) if melted else (Claim.at_least, 0.6)
     return make(
-        claim=f"global |psi_6| at packing fraction {float(at['packing_fraction']):.4g}, "
+        claim=f"global |psi_6| at packing fraction {state.packing_fraction:.4g}, "
         f"of the start that is {'most' if melted else 'least'} ordered",
-        measured=Estimate.of(_extreme(at, "start", melted), "order"),
+        measured=_extreme(state.order, melted),
         bound=bound,
         required=0.1,
         source="liquid below 0.700, one orientation throughout above 0.720 ([Bernard 2011])",
@@ -103,14 +114,14 @@ def _orientation(at: xr.Dataset, melted: bool) -> Claim:
     )
 
 
-def _lattice(at: xr.Dataset, melted: bool) -> Claim:
-    eta = at["packing_fraction"].values
+def _lattice(crystal: Table, melted: bool) -> Claim:
+    eta = crystal.packing_fraction
     make, bound = (Claim.at_most, 0.1) if melted else (Claim.at_least, 0.4)
     where = f"up to {eta.max():.4g}" if melted else f"from {eta.min():.4g}"
     return make(
         claim=f"{'largest' if melted else 'smallest'} global Q_6 from a face-centred cubic start, "
         f"packing fractions {where}",
-        measured=Estimate.of(_extreme(at, "packing_fraction", melted), "order"),
+        measured=_extreme(crystal.order, melted),
         bound=bound,
         required=0.02,
         source="spheres melt below 0.49 and are stable above 0.55 ([Hoover 1968])",
@@ -118,25 +129,25 @@ def _lattice(at: xr.Dataset, melted: bool) -> Claim:
     )
 
 
-def _with_drift(side: xr.Dataset, name: str) -> Estimate:
-    """The variable `name`; half the drift between the halves is in its uncertainty if significant."""
-    measured, drift = Estimate.of(side, name), Estimate.of(side, f"{name}_drift")
+def _with_drift(measured: Estimate, drift: Estimate) -> Estimate:
+    """Half the drift between the halves of a run is in its uncertainty if significant."""
     significant = abs(drift.value) > EQUILIBRIUM_LIMIT * drift.error
     return Estimate(measured.value, math.hypot(measured.error, 0.5 * drift.value if significant else 0.0))
 
 
-def _liquid_of_discs(dataset: xr.Dataset) -> list[Claim]:
+def _liquid_of_discs(states: Table) -> list[Claim]:
     """Pressures of as many discs as published, in the same container; the virial series is too inaccurate."""
     claims = []
-    for at in rows(dataset, "compared_packing_fraction"):
-        eta = round(float(at["compared_packing_fraction"]), 9)
+    for state in states:
+        eta = round(state.compared_packing_fraction, 9)
         if eta not in theory.LIQUID_OF_870_DISCS:
             continue
         expected = Estimate(*theory.LIQUID_OF_870_DISCS[eta])
+        starts = zip(state.compared_pressure, state.compared_pressure_drift, strict=True)
         claims.append(
             Claim(
                 claim=f"pressure of 870 discs at packing fraction {eta:g}, k_B T / sigma^2",
-                measured=average([_with_drift(side, "compared_pressure") for side in rows(at, "start")]),
+                measured=average([_with_drift(pressure, drift) for pressure, drift in starts]),
                 expected=expected,
                 required=REQUIRED[eta] * expected.value,
                 source="[Li 2022], event-chain programs, the same container",
@@ -147,30 +158,29 @@ def _liquid_of_discs(dataset: xr.Dataset) -> list[Claim]:
     return claims
 
 
-def _crystal_of_discs(dataset: xr.Dataset) -> list[Claim]:
+def _crystal_of_discs(states: Table) -> list[Claim]:
     """The crystal's pressure where the literature has as many discs, to the literature's uncertainty."""
     eta, expected, allowance = theory.CRYSTAL_OF_1024_DISCS
-    same = np.abs(dataset["packing_fraction"].values - eta) < 1e-4
+    same = states[(np.abs(states.packing_fraction - eta) < 1e-4) & (states.count == 1024)]
     return [
         Claim(
             claim=f"pressure of the crystal of 1024 discs at packing fraction {eta:g}, k_B T / sigma^2",
-            measured=_with_drift(at.isel(start=0), "pressure"),
+            measured=_with_drift(state.pressure[0], state.pressure_drift[0]),
             expected=Estimate(expected, allowance),
             required=allowance,
             source="[Zollweg 1992], figure 1",
             allowance_source="its statement",
             fails_if="contacts are missed, a crystal is strained, or the other phase remains or grows",
         )
-        for at in rows(dataset.isel(packing_fraction=same), "packing_fraction")
-        if int(at["count"]) == 1024
+        for state in same
     ]
 
 
-def _equilibrium(dataset: xr.Dataset) -> Claim:
+def _equilibrium(states: Table) -> Claim:
     """The chance of so many differences in equilibrium is exact: binomial. A fluid that is compressed further
     than where the ordered phase melts freezes with defects, which do not heal in any such run."""
     melting = theory.coexistence_packing_fractions(2)[1]
-    differences = dataset["disagreement"].sel(packing_fraction=slice(None, melting))
+    differences = states[states.packing_fraction <= melting].disagreement
     number = differences.size
     found = int((differences > EQUILIBRIUM_LIMIT).sum())
     chance = 1.0 - (1.0 - math.erfc(EQUILIBRIUM_LIMIT / math.sqrt(2.0))) ** COMPARED
@@ -187,20 +197,16 @@ def _equilibrium(dataset: xr.Dataset) -> Claim:
     )
 
 
-def _branch(at: xr.Dataset, melting: float) -> Claim:
+def _branch(state: Row) -> Claim:
     """Z on the branch that a run is on; a superheated crystal may be melting, and has no verdict."""
-    solid, reference = bool(at["crystalline"]), float(at["reference"])
-    eta = float(at["packing_fraction"])
-    superheated = solid and eta < melting
+    eta, reference, solid = state.packing_fraction, state.reference, bool(state.crystalline)
     known = not solid and math.isfinite(reference)
     allowance = float(theory.compressibility_uncertainty(eta, 3)) if known else 0.0
-    scaled = at.assign(
-        Z_drift=at["pressure_drift"] / at["density"], Z_drift_error=at["pressure_drift_error"] / at["density"]
-    )
+    superheated = solid and eta < theory.coexistence_packing_fractions(3)[1]
     return Claim(
         claim=f"Z of the {'crystal' if solid else 'fluid'} at packing fraction {eta:.4g}, "
-        f"from the {at['start'].item()}",
-        measured=_with_drift(scaled, "Z"),
+        f"from the {state.start}",
+        measured=_with_drift(state.Z, state.pressure_drift / state.density),
         expected=Estimate(reference, allowance),
         required=2e-3 * reference,
         source="[Speedy 1998], by SklogWiki's table of coefficients" if solid else "[Kolafa 2004]",
@@ -210,14 +216,14 @@ def _branch(at: xr.Dataset, melting: float) -> Claim:
     )
 
 
-def _slab(dataset: xr.Dataset) -> list[Claim]:
-    expected, drift = theory.COEXISTENCE_PRESSURE[3], Estimate.of(dataset, "slab_drift")
-    fraction = dataset["crystal_fraction"].values
+def _slab(slab: Row) -> list[Claim]:
+    expected, drift = theory.COEXISTENCE_PRESSURE[3], slab.slab_drift
+    early, late = slab.crystal_fraction
     what = "pressure of crystal beside fluid"
     return [
         Claim.within(
             claim=f"{what}, k_B T / sigma^3",
-            measured=Estimate(dataset["slab_pressure"], math.hypot(dataset["slab_error"], 0.5 * drift.value)),
+            measured=Estimate(slab.slab_pressure, math.hypot(slab.slab_error, 0.5 * drift.value)),
             expected=expected,
             half_width=TOLERANCE * expected,
             source=SPHERES_SOURCE,
@@ -233,7 +239,7 @@ def _slab(dataset: xr.Dataset) -> list[Claim]:
         ),
         Claim.within(
             claim="part of the spheres that are crystalline at the end of the run",
-            measured=Estimate(fraction[-1], abs(fraction[-1] - fraction[0])),
+            measured=Estimate(late, abs(late - early)),
             expected=0.5,
             half_width=0.3,
             source="the container holds both phases at the mean of their densities (lever rule)",

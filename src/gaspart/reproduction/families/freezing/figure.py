@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart import theory
+from gaspart.analysis.estimate import Estimate
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.table import Row, Table
 
 LOOKS = {"crystal": 1, "fluid": 0}
 """Index of the colour and marker of each start."""
@@ -21,21 +20,21 @@ EQUILIBRATED = 3.0
 
 def freezing_discs(dataset: xr.Dataset) -> Figure:
     """Pressure with the plateau, psi_6, g(r), and three snapshots with their structure factors."""
-    shown = dataset.sizes["shown"]
-    figure, (loop, order, shells, below) = style.new((2.4, 1.5), (2.0,), (1.65 * shown,))
-    _loop(loop, dataset)
-    _order(order, dataset, r"$|\langle\psi_6\rangle|$")
-    order.set_ylim(0.0, 1.0)
-    pairs = style.split(below, shown, 2)
-    for k, (left, right) in enumerate(pairs):
-        at = dataset.isel(shown=k)
-        label = f"{float(at['shown']):.3g}"
-        shells.plot(at["distance"], at["g"] + 2.0 * k, color=style.COLOURS[k], label=label)
-        _snapshot(left, at, label)
-        _scattering(right, at)
-    end = float(dataset["distance"].max())
-    shells.set(xlim=(0.0, end), xlabel=r"distance $r/\sigma$", ylabel="$g(r)$, shifted by 2")
-    shells.legend(ncols=shown, loc="upper right", title=r"$\eta$")
+    shown = Table(dataset, "shown")
+    figure, (loop, order, shells, below) = style.new((2.4, 1.5), (2.0,), (1.65 * len(shown),))
+    starts = _starts(dataset)
+    _loop(loop, Table(dataset, "packing_fraction"), starts)
+    _order(order, starts, 2)
+    style.labelled(order, y=r"$|\langle\psi_6\rangle|$", ylim=(0.0, 1.0))
+    pairs = style.split(below, len(shown), 2)
+    for k, (picture, (left, right)) in enumerate(zip(shown, pairs, strict=True)):
+        label = f"{picture.shown:.3g}"
+        shells.plot(picture.distance, picture.g + 2.0 * k, color=style.COLOURS[k], label=label)
+        _snapshot(left, picture, label)
+        _scattering(right, picture)
+    end = shown.distance.max()
+    style.labelled(shells, r"distance $r/\sigma$", "$g(r)$, shifted by 2", xlim=(0.0, end))
+    shells.legend(ncols=len(shown), loc="upper right", title=r"$\eta$")
     style.letters(loop, order, shells, pairs[0, 0])
     return figure
 
@@ -44,55 +43,41 @@ def freezing_spheres(dataset: xr.Dataset) -> Figure:
     """Pressure of both branches, its residuals, Q_6, and the profiles of coexisting crystal and fluid."""
     figure, axes = style.new((2.4, 1.2), (1.5,), (2.0,))
     upper, middle, order, slab = axes
-    _branches(upper, dataset)
-    _residuals(middle, dataset)
-    _order(order, dataset, "global $Q_6$")
-    order.set_ylim(0.0, 0.6)
-    order.set_xlim(upper.get_xlim())
-    middle.set_xlabel(r"packing fraction $\eta$")
-    _profiles(slab, dataset)
+    starts = _starts(dataset)
+    _branches(upper, Table(dataset, "packing_fraction").packing_fraction, starts)
+    _coexistence(upper, Row(dataset))
+    _residuals(middle, starts)
+    _order(order, starts, 3)
+    style.labelled(order, y="global $Q_6$", ylim=(0.0, 0.6), xlim=upper.get_xlim())
+    _profiles(slab, Table(dataset, "half"))
     style.letters(*axes)
     return figure
 
 
-def _starts(dataset: xr.Dataset) -> Iterator:
-    """Each start's name, points, colour, and which of them are in equilibrium."""
-    for start in dataset["start"].values:
-        side = dataset.sel(start=start).dropna("packing_fraction", subset=["pressure"])
-        yield str(start), side, LOOKS[str(start)], (side["disagreement"] <= EQUILIBRATED).values
+def _starts(dataset: xr.Dataset) -> dict[str, Table]:
+    """The packing fractions at which there is a run of each start."""
+    starts = {}
+    for side in Table(dataset, "start"):
+        states = Table(side.dataset, "packing_fraction")
+        starts[side.start] = states[np.isfinite(states.pressure.value)]
+    return starts
 
 
-def _points(
-    axis: Axes,
-    side: xr.Dataset,
-    what: str,
-    kind: int,
-    equilibrated: np.ndarray,
-    label: str | None = None,
-    scale: float = 1.0,
-    shift: float = 0.0,
-) -> None:
+def _points(axis: Axes, states: Table, y: Estimate, kind: int, label: str | None = None) -> None:
     """Filled symbols in equilibrium, hollow ones not."""
-    eta, (value, error) = side["packing_fraction"].values, scale * estimates(side, what)
-    value = value + shift
+    equilibrated = states.disagreement <= EQUILIBRATED
     for chosen, hollow in ((equilibrated, False), (~equilibrated, True)):
         if chosen.any():
+            named = None if hollow and equilibrated.any() else label
             style.points(
-                axis,
-                eta[chosen],
-                value[chosen],
-                error[chosen],
-                kind=kind,
-                hollow=hollow,
-                label=None if hollow and equilibrated.any() else label,
+                axis, states.packing_fraction[chosen], y[chosen], kind=kind, hollow=hollow, label=named
             )
 
 
-def _loop(axis: Axes, dataset: xr.Dataset) -> None:
-    expected = theory.COEXISTENCE_PRESSURE[2]
+def _loop(axis: Axes, states: Table, starts: dict[str, Table]) -> None:
+    expected, eta = theory.COEXISTENCE_PRESSURE[2], states.packing_fraction
     style.band(axis, 0.98 * expected, 1.02 * expected)
     style.level(axis, expected)
-    eta = dataset["packing_fraction"].values
     for edge in theory.coexistence_packing_fractions(2):
         axis.axvline(edge, color=style.GREY, linewidth=0.6, linestyle=":")
     fluid = np.linspace(eta.min(), 0.70, 100)
@@ -102,36 +87,34 @@ def _loop(axis: Axes, dataset: xr.Dataset) -> None:
         (crystal, theory.alder_hoover_young_crystal(crystal, 2), "crystal (AHY)", "-."),
     ):
         axis.plot(at, at / (np.pi / 4.0) * z, color=style.GREY, linestyle=dashes, label=label)
-    for start, side, kind, equilibrated in _starts(dataset):
-        _points(axis, side, "pressure", kind, equilibrated, f"from the {start}")
-        if np.isfinite(side["plateau"]):
-            ends = [float(side["plateau_low"]), float(side["plateau_high"])]
-            axis.plot(ends, [float(side["plateau"])] * 2, color=style.COLOURS[kind], linewidth=0.8)
+    for start, side in starts.items():
+        _points(axis, side, side.pressure, LOOKS[start], f"from the {start}")
+        if np.isfinite(side.plateau.value):
+            ends, level = [side.plateau_low, side.plateau_high], [side.plateau.value] * 2
+            axis.plot(ends, level, color=style.COLOURS[LOOKS[start]], linewidth=0.8)
     known = theory.LIQUID_DISCS
     axis.plot(*known, marker="*", color="black", linestyle="none", markersize=6, label="65 536 discs (2013)")
-    low, high = float(dataset["pressure"].min()), float(dataset["pressure"].max())
+    low, high = np.nanmin(states.pressure.value), np.nanmax(states.pressure.value)
     axis.set_ylim(low - 0.1 * (high - low), high + 0.25 * (high - low))
-    axis.set_ylabel("pressure $P\\sigma^2/k_\\mathrm{B}T$")
-    axis.legend(loc="lower right")
+    style.labelled(axis, y="pressure $P\\sigma^2/k_\\mathrm{B}T$", legend="lower right")
 
 
-def _order(axis: Axes, dataset: xr.Dataset, label: str) -> None:
-    for edge in theory.coexistence_packing_fractions(2 if "shown" in dataset.dims else 3):
+def _order(axis: Axes, starts: dict[str, Table], dimension: int) -> None:
+    for edge in theory.coexistence_packing_fractions(dimension):
         axis.axvline(edge, color=style.GREY, linewidth=0.6, linestyle=":")
-    for _, side, kind, equilibrated in _starts(dataset):
-        _points(axis, side, "order", kind, equilibrated)
+    for start, side in starts.items():
+        _points(axis, side, side.order, LOOKS[start])
     axis.set_xlabel("packing fraction $\\eta$")
-    axis.set_ylabel(label)
 
 
-def _snapshot(axis: Axes, at: xr.Dataset, label: str) -> None:
+def _snapshot(axis: Axes, picture: Row, label: str) -> None:
     """Discs coloured by the orientation of their bonds, which has a period of 60 degrees."""
     from matplotlib.collections import EllipseCollection
 
-    x, y = at["x"].values, at["y"].values
+    x, y = picture.x, picture.y
     discs = EllipseCollection(
         1.0, 1.0, 0.0, units="x", offsets=np.stack([x, y], axis=1), offset_transform=axis.transData,
-        array=np.mod(at["angle"].values / np.pi + 0.5, 2.0), cmap="twilight", linewidths=0,
+        array=np.mod(picture.angle / np.pi + 0.5, 2.0), cmap="twilight", linewidths=0,
     )  # fmt: skip
     discs.set_clim(0.0, 2.0)
     axis.add_collection(discs)
@@ -139,77 +122,58 @@ def _snapshot(axis: Axes, at: xr.Dataset, label: str) -> None:
     axis.set_title(f"$\\eta={label}$", pad=2)
 
 
-def _scattering(axis: Axes, at: xr.Dataset) -> None:
+def _scattering(axis: Axes, picture: Row) -> None:
     """S(k) in grey levels, black where it is large."""
     from matplotlib.colors import LogNorm
 
-    image = axis.pcolormesh(
-        at["wave_x"],
-        at["wave_y"],
-        at["structure_factor"].values.T,
-        cmap="Greys",
-        norm=LogNorm(0.1, 100.0),
-        rasterized=True,
-    )
+    waves, factor, norm = (picture.wave_x, picture.wave_y), picture.structure_factor.T, LogNorm(0.1, 100.0)
+    image = axis.pcolormesh(*waves, factor, cmap="Greys", norm=norm, rasterized=True)
     image.set_edgecolor("face")
     axis.set(aspect="equal", xlabel="$k_x\\sigma$", xticks=[-10, 0, 10], yticks=[-10, 0, 10])
 
 
-def _branches(axis: Axes, dataset: xr.Dataset) -> None:
+def _branches(axis: Axes, eta: np.ndarray, starts: dict[str, Table]) -> None:
     expected = theory.COEXISTENCE_PRESSURE[3]
     style.level(axis, expected)
-    axis.plot(
-        theory.coexistence_packing_fractions(3), [expected] * 2, color=style.GREY, linewidth=2.5, alpha=0.6
-    )
-    low, high = dataset["packing_fraction"].values[[0, -1]]
-    fluid = np.linspace(low, theory.HIGHEST_PACKING_FRACTION[3], 100)
-    crystal = np.linspace(theory.LOWEST_CRYSTAL[3], high, 100)
+    densities = theory.coexistence_packing_fractions(3)
+    axis.plot(densities, [expected] * 2, color=style.GREY, linewidth=2.5, alpha=0.6)
+    fluid = np.linspace(eta[0], theory.HIGHEST_PACKING_FRACTION[3], 100)
+    crystal = np.linspace(theory.LOWEST_CRYSTAL[3], eta[-1], 100)
     for at, z, label, kind in (
         (fluid, theory.compressibility_factor(fluid, 3), "fluid (KLM)", 2),
         (crystal, theory.speedy_crystal(crystal), "crystal (Speedy)", 3),
     ):
         axis.plot(at, at / (np.pi / 6.0) * z, color=style.COLOURS[kind], label=label)
-    for start, side, kind, equilibrated in _starts(dataset):
-        _points(axis, side, "pressure", kind, equilibrated, f"from the {start}")
-    mean = float(dataset.attrs["slab_packing_fraction"])
-    style.points(
-        axis, [mean], [dataset["slab_pressure"]], [dataset["slab_error"]], kind=6, label="coexistence"
-    )
-    axis.set_ylabel("pressure $P\\sigma^3/k_\\mathrm{B}T$")
-    axis.legend(loc="upper left")
+    for start, side in starts.items():
+        _points(axis, side, side.pressure, LOOKS[start], f"from the {start}")
 
 
-def _residuals(axis: Axes, dataset: xr.Dataset) -> None:
+def _coexistence(axis: Axes, slab: Row) -> None:
+    """The pressure of crystal beside fluid, at the mean of their densities."""
+    pressure = Estimate([slab.slab_pressure], [slab.slab_error])
+    style.points(axis, [slab.slab_packing_fraction], pressure, kind=6, label="coexistence")
+    style.labelled(axis, y="pressure $P\\sigma^3/k_\\mathrm{B}T$", legend="upper left")
+
+
+def _residuals(axis: Axes, starts: dict[str, Table]) -> None:
     style.level(axis, 0.0)
-    for _, side, kind, equilibrated in _starts(dataset):
-        ratio = side.assign(r=side["Z"] / side["reference"], r_error=side["Z_error"] / side["reference"])
-        known = np.isfinite(ratio["r"].values)
-        _points(
-            axis,
-            ratio.isel(packing_fraction=known),
-            "r",
-            kind,
-            equilibrated[known],
-            scale=100.0,
-            shift=-100.0,
-        )
-    axis.set_ylim(-0.5, 0.5)
-    axis.set_ylabel("$Z/Z_\\mathrm{branch}-1$  (%)")
+    for start, side in starts.items():
+        known = side[np.isfinite(side.reference)]
+        _points(axis, known, 100.0 * (known.Z / known.reference - 1.0), LOOKS[start])
+    labels = r"packing fraction $\eta$", "$Z/Z_\\mathrm{branch}-1$  (%)"
+    style.labelled(axis, *labels, ylim=(-0.5, 0.5))
 
 
-def _profiles(axis: Axes, dataset: xr.Dataset) -> None:
+def _profiles(axis: Axes, halves: Table) -> None:
     """Local order (left) and density (right) along the container, in both halves of the run."""
     other = axis.twinx()
-    for half, line in ((0, ":"), (1, "-")):
-        at = dataset.isel(half=half)
-        axis.plot(at["position"], at["slab_order"], linestyle=line, color=style.COLOURS[1])
-        other.plot(at["position"], at["slab_density"], linestyle=line, color=style.COLOURS[0])
+    for half, line in zip(halves, (":", "-"), strict=True):
+        axis.plot(half.position, half.slab_order, linestyle=line, color=style.COLOURS[1])
+        other.plot(half.position, half.slab_density, linestyle=line, color=style.COLOURS[0])
     for density in theory.COEXISTENCE_DENSITY[3]:
         other.axhline(density, color=style.COLOURS[0], linewidth=0.6, alpha=0.6)
     axis.set(
-        xlabel="position along the container $/\\sigma$",
-        ylim=(0.0, 0.6),
-        xlim=(0.0, float(dataset["slab_length"])),
+        xlabel="position along the container $/\\sigma$", ylim=(0.0, 0.6), xlim=(0.0, halves.slab_length)
     )
     axis.set_ylabel("local $q_6$", color=style.COLOURS[1])
     other.set_ylim(0.85, 1.15)
