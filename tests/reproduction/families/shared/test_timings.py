@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.shared import timings
 
 PARTICLE, TEST, BOX = 30e-9, 12e-9, 0.3e-9
@@ -84,5 +85,5 @@ def test_times_in_turn_are_compared_repeat_by_repeat():
 
 def test_weights():
     tests, particles = np.array([10.0, 100.0, 1000.0]), np.array([5.0, 15.0, 45.0])
-    fit = timings.weights(2.0 * particles + 3.0 * tests, 1e-3 * tests, particles, tests)
+    fit = timings.weights(Estimate(2.0 * particles + 3.0 * tests, 1e-3 * tests), particles, tests)
     assert fit.values == pytest.approx([2.0, 3.0])

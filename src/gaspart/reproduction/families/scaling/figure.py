@@ -1,6 +1,5 @@
 """Figures of what space partitioning gains. Source A: Frederickx and Meerts 2010."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -9,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.table import Table
 
 _NS, _US, _MS = 1e9, 1e6, 1e3
 _SOURCE = style.COLOURS[4]
@@ -19,21 +18,21 @@ _SCAN = 27  # source A's program scans its one box once for each of the boxes ar
 def naive_scaling(ds: xr.Dataset) -> Figure:
     """Time of a step against N, and per pair test."""
     figure, (top, bottom) = style.new((2.4, 1.3))
-    count = ds["count"].values
+    gases = Table(ds, "count")
+    count, test = gases.count, gases.test_seconds.value
     line = np.geomspace(count.min(), count.max(), 50)
-    law = 0.5 * line * (line - 1.0) * float(ds.test_seconds)
-    top.plot(
-        line, _SCAN * law * _MS, color=_SOURCE, linestyle="--", label="scanned 27 times (Frederickx & Meerts)"
-    )
+    law = 0.5 * line * (line - 1.0) * test
+    scans = "scanned 27 times (Frederickx & Meerts)"
+    top.plot(line, _SCAN * law * _MS, color=_SOURCE, linestyle="--", label=scans)
     top.plot(line, law * _MS, color=style.REFERENCE, label=r"$\frac{1}{2}N(N-1)$ tests, each once")
-    style.measured(top, count, estimates(ds, "seconds") * _MS, color=style.DATA, label="measured")
-    top.set(xscale="log", yscale="log", ylabel="time per step (ms)")
-    top.legend(loc="upper left")
-    each = _NS / ds.pair_tests
-    style.level(bottom, float(ds.test_seconds) * _NS)
-    style.measured(bottom, count, estimates(ds, "seconds") * each.values, color=style.DATA)
-    bottom.set(xlabel="number of particles $N$", ylabel="per test (ns)")
-    bottom.set_ylim(0.0, 1.6 * float((ds.seconds * each).max()))
+    style.points(top, count, gases.seconds * _MS, color=style.DATA, label="measured")
+    top.set(xscale="log", yscale="log")
+    style.labelled(top, y="time per step (ms)", legend="upper left")
+    each = gases.seconds * (_NS / gases.pair_tests)
+    style.level(bottom, test * _NS)
+    style.points(bottom, count, each, color=style.DATA)
+    high = 1.6 * each.value.max()
+    style.labelled(bottom, "number of particles $N$", "per test (ns)", ylim=(0.0, high))
     style.letters(top, bottom)
     return figure
 
@@ -41,92 +40,81 @@ def naive_scaling(ds: xr.Dataset) -> Figure:
 def box_count(ds: xr.Dataset) -> Figure:
     """Time and work against the number of boxes; round widths; the event-driven engine's sectors."""
     figure, axes = style.new((2.3, 2.3), (1.9,), (2.5,))
-    boxes = ds.boxes_per_side.values.astype(float) ** 3
-    _scan_time(axes[0], ds, boxes)
-    _scan_work(axes[1], ds, boxes)
+    scan, near = Table(ds, "scan"), Table(ds, "near")
+    _scan_time(axes[0], scan, near)
+    _scan_work(axes[1], scan, near)
     axes[1].set(xscale="log", xlabel="number of boxes")
-    _round_widths(axes[2], ds)
-    _sectors(axes[3], ds)
+    _round_widths(axes[2], Table(ds, "container"))
+    _sectors(axes[3], Table(ds, "sector"))
     style.letters(*axes)
     return figure
 
 
-def _scan_time(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
-    model = ds.particle_seconds + ds.test_seconds * ds.pair_tests + ds.box_seconds * ds.boxes_emptied
-    style.measured(axis, boxes, estimates(ds, "seconds") * _NS, color=style.DATA, label="measured")
-    style.measured(
-        axis, ds.near_boxes_per_side.values.astype(float) ** 3, estimates(ds, "near_seconds") * _NS,
-        kind=1, hollow=True, label="boxes within reach",
-    )  # fmt: skip
-    near = (ds.seconds <= 3.0 * ds.seconds.min()).values
-    axis.plot(
-        boxes[near], (model * _NS).values[near], color=style.REFERENCE, label="$a + b$ tests $+ c$ boxes"
-    )
-    particles = float(boxes[-1] / ds.boxes_per_particle[-1])
-    interval = [float(ds.ideal_low) * particles, float(ds.ideal_high) * particles]
+def _boxes(per_side: np.ndarray, dimension: int = 3) -> np.ndarray:
+    return per_side.astype(float) ** dimension
+
+
+def _scan_time(axis: Axes, scan: Table, near: Table) -> None:
+    boxes, reached = _boxes(scan.boxes_per_side), _boxes(near.near_boxes_per_side)
+    parts = scan.particle_seconds.value, scan.test_seconds.value, scan.box_seconds.value
+    model = parts[0] + parts[1] * scan.pair_tests + parts[2] * scan.boxes_emptied
+    style.points(axis, boxes, scan.seconds * _NS, color=style.DATA, label="measured")
+    style.points(axis, reached, near.near_seconds * _NS, kind=1, hollow=True, label="boxes within reach")
+    cheap = scan.seconds.value <= 3.0 * scan.seconds.value.min()
+    label = "$a + b$ tests $+ c$ boxes"
+    axis.plot(boxes[cheap], (model * _NS)[cheap], color=style.REFERENCE, label=label)
+    particles = boxes[-1] / scan.boxes_per_particle[-1]
+    interval = [scan.ideal_low * particles, scan.ideal_high * particles]
     if np.isfinite(interval[1]):
         axis.axvspan(*interval, color=style.GREY, alpha=0.25, lw=0)
-    axis.axvline(
-        float(ds.source_boxes_per_particle) * particles,
-        color=_SOURCE,
-        linestyle="--",
-        ymax=0.45,
-        label="F & M",
-    )
-    axis.set(xscale="log", yscale="log", ylabel="time per particle and step (ns)")
-    axis.legend(loc="upper right")
+    source = scan.source_boxes_per_particle * particles
+    axis.axvline(source, color=_SOURCE, linestyle="--", ymax=0.45, label="F & M")
+    axis.set(xscale="log", yscale="log")
+    style.labelled(axis, y="time per particle and step (ns)", legend="upper right")
 
 
-def _scan_work(axis: Axes, ds: xr.Dataset, boxes: np.ndarray) -> None:
-    axis.plot(boxes, ds.expected_tests, color=style.COLOURS[0])
-    axis.plot(boxes, ds.expected_visits, color=style.COLOURS[1])
-    kinds = {"pair_tests": "pair tests", "box_visits": "boxes searched", "boxes_emptied": "boxes emptied"}
+def _scan_work(axis: Axes, scan: Table, near: Table) -> None:
+    boxes, reached = _boxes(scan.boxes_per_side), _boxes(near.near_boxes_per_side)
+    axis.plot(boxes, scan.expected_tests, color=style.COLOURS[0])
+    axis.plot(boxes, scan.expected_visits, color=style.COLOURS[1])
+    counted = {
+        "pair tests": scan.pair_tests,
+        "boxes searched": scan.box_visits,
+        "boxes emptied": scan.boxes_emptied,
+    }
     shown: list[Any] = [
-        style.points(axis, boxes, ds[name], kind=kind, label=label)
-        for kind, (name, label) in enumerate(kinds.items())
+        style.points(axis, boxes, work, kind=kind, label=label)
+        for kind, (label, work) in enumerate(counted.items())
     ]
+    look: dict[str, Any] = {"kind": 1, "hollow": True, "label": "searched, within reach"}
+    shown.append(style.points(axis, reached, near.near_box_visits, **look))
     colour = style.COLOURS[1]
-    reached = ds.near_boxes_per_side.values.astype(float) ** 3
-    shown.append(
-        style.points(axis, reached, ds.near_box_visits, kind=1, hollow=True, label="searched, within reach")
-    )
-    shown += axis.plot(boxes, ds.in_reach, color=colour, linestyle="--", label="boxes within reach")
-    shown += axis.plot(boxes, ds.touched, color=colour, linestyle=":", label="boxes touched (F & M)")
+    shown += axis.plot(boxes, scan.in_reach, color=colour, linestyle="--", label="boxes within reach")
+    shown += axis.plot(boxes, scan.touched, color=colour, linestyle=":", label="boxes touched (F & M)")
     axis.set(yscale="log", ylabel="per particle and step", ylim=(0.01, 1e8))
     axis.legend(handles=shown, loc="upper right")
 
 
-def _round_widths(axis: Axes, ds: xr.Dataset) -> None:
-    first, second = ds.isel(container=0), ds.isel(container=1)
-    per_side = first.fine_boxes_per_side.values
-    ratio = (first.fine_seconds / second.fine_seconds).values
-    error = ratio * np.hypot(
-        (first.fine_seconds_error / first.fine_seconds).values,
-        (second.fine_seconds_error / second.fine_seconds).values,
-    )
-    places, is_round = np.arange(per_side.size), np.isin(per_side, ds.round_per_side.values)
+def _round_widths(axis: Axes, containers: Table) -> None:
+    per_side, (first, second) = containers.fine_boxes_per_side[0], containers.container_side
+    ratio = containers.fine_seconds[0] / containers.fine_seconds[1]
+    places, is_round = np.arange(per_side.size), np.isin(per_side, containers.round_per_side)
     style.level(axis, 1.0)
-    style.points(axis, places[~is_round], ratio[~is_round], error[~is_round], color=style.DATA)
-    widths = ", ".join(f"{float(ds.container_side[0]) / n:g}" for n in ds.round_per_side.values)
-    style.points(
-        axis, places[is_round], ratio[is_round], error[is_round], kind=1, label=f"boxes of width {widths}"
-    )
+    style.points(axis, places[~is_round], ratio[~is_round], color=style.DATA)
+    widths = ", ".join(f"{first / n:g}" for n in containers.round_per_side)
+    style.points(axis, places[is_round], ratio[is_round], kind=1, label=f"boxes of width {widths}")
     axis.set_xticks(places, [str(int(n)) for n in per_side])
     axis.tick_params(axis="x", top=False)
-    sides = [float(value) for value in ds.container_side]
-    axis.set(xlabel="boxes per side", ylabel=f"time, side {sides[0]:g} / {sides[1]:g}")
-    axis.legend(loc="upper left")
+    style.labelled(axis, "boxes per side", f"time, side {first:g} / {second:g}", "upper left")
 
 
-def _sectors(axis: Axes, ds: xr.Dataset) -> None:
-    sectors = ds.sector_boxes_per_side.values.astype(float) ** 2
-    style.points(axis, sectors, ds.sector_pair_tests, kind=0, linestyle="-", label="pair tests")
-    style.points(axis, sectors, ds.sector_box_visits, kind=1, linestyle="-", label="sectors searched")
-    style.points(axis, sectors, ds.sector_crossings, kind=2, linestyle="-", label="crossings")
-    style.measured(
-        axis, sectors, estimates(ds, "sector_seconds") * _US,
-        color=style.DATA, marker="X", linestyle="-", label="time (µs)",
-    )  # fmt: skip
+def _sectors(axis: Axes, scan: Table) -> None:
+    sectors = _boxes(scan.sector_boxes_per_side, 2)
+    style.points(axis, sectors, scan.sector_pair_tests, kind=0, linestyle="-", label="pair tests")
+    style.points(axis, sectors, scan.sector_box_visits, kind=1, linestyle="-", label="sectors searched")
+    style.points(axis, sectors, scan.sector_crossings, kind=2, linestyle="-", label="crossings")
+    look: dict[str, Any] = {"color": style.DATA, "marker": "X", "linestyle": "-", "label": "time (µs)"}
+    style.points(axis, sectors, scan.sector_seconds * _US, **look)
     axis.set(xscale="log", yscale="log", xlabel="number of sectors", ylabel="event-driven, per event")
     axis.set_ylim(top=6e5)
     axis.legend(loc="upper right", ncols=2, columnspacing=0.8)
@@ -135,51 +123,42 @@ def _sectors(axis: Axes, ds: xr.Dataset) -> None:
 def ideal_boxes(ds: xr.Dataset) -> Figure:
     """The ideal number of boxes against N; and the time around its minimum."""
     figure, (top, bottom) = style.new((2.8,), (2.8,))
-    count = ds["count"].values.astype(float)
-    line = np.geomspace(0.7 * count.min(), 1.5 * count.max(), 50)
-    top.fill_between(
-        line, 7.0 * line, 10.0 * line, color=_SOURCE, alpha=0.4, lw=0, label="F & M: 7 to 10 per particle"
-    )
-    for kind, radius in enumerate(ds.series_radius.values):
-        of = ds.isel(gas=np.flatnonzero(ds.radius.values == radius))
-        _ideal(top, of, kind, f"ideal, $r = {radius:g}$")
-        limit = float((of.most * of["count"])[0])
-        label = f"boxes of a diameter, $r = {radius:g}$"
+    gases = Table(ds, "gas")
+    line = np.geomspace(0.7 * gases.count.min(), 1.5 * gases.count.max(), 50)
+    source: dict[str, Any] = {"color": _SOURCE, "alpha": 0.4, "lw": 0}
+    top.fill_between(line, 7.0 * line, 10.0 * line, label="F & M: 7 to 10 per particle", **source)
+    for kind, radius in enumerate(gases.series_radius):
+        own = gases[gases.radius == radius]
+        _ideal(top, own, kind, f"ideal, $r = {radius:g}$")
+        limit, label = own.most[0] * own.count[0], f"boxes of a diameter, $r = {radius:g}$"
         top.axhline(limit, color=style.COLOURS[kind], linestyle=":", lw=0.8, label=label)
-    plateaus = ds.plateau_boxes, ds.plateau_low, ds.plateau_high
+    plateaus = gases.plateau_boxes, gases.plateau_low, gases.plateau_high
     top.hlines(*plateaus, color=_SOURCE, lw=2.0, label="F & M: plateaus")
-    top.set(xscale="log", yscale="log", xlabel="number of particles $N$", ylabel="ideal number of boxes")
-    top.set_ylim(2e3, 1e8)
-    top.legend(loc="lower right")
-    shown = [int(n) for n in ds.source_gas]
-    shown.insert(0, 1)
-    for kind, gas in enumerate(shown):
-        one = ds.isel(gas=gas)
-        least = float(one.seconds.min())
-        label = f"$N = {_thousands(one['count'])}$, $r = {float(one.radius):g}$"
-        style.measured(
-            bottom, one.boxes_per_particle, estimates(one, "seconds") / least,
-            kind=kind, linestyle="-", label=label,
-        )  # fmt: skip
-    bottom.axvspan(7.0, 10.0, color=_SOURCE, alpha=0.4, lw=0)
-    bottom.set(xscale="log", xlabel="boxes per particle", ylabel="time over the least", ylim=(0.9, 4.5))
-    bottom.legend(loc="upper center")
+    top.set(xscale="log", yscale="log", ylim=(2e3, 1e8))
+    style.labelled(top, "number of particles $N$", "ideal number of boxes", "lower right")
+    for kind, gas in enumerate(gases[[1, *map(int, gases.source_gas)]]):
+        label = f"$N = {_thousands(gas.count)}$, $r = {gas.radius:g}$"
+        time = gas.seconds / np.nanmin(gas.seconds.value)
+        style.points(bottom, gas.boxes_per_particle, time, kind=kind, linestyle="-", label=label)
+    bottom.axvspan(7.0, 10.0, **source)
+    bottom.set(xscale="log", ylim=(0.9, 4.5))
+    style.labelled(bottom, "boxes per particle", "time over the least", "upper center")
     style.letters(top, bottom)
     return figure
 
 
-def _thousands(number: float | xr.DataArray) -> str:
+def _thousands(number: float) -> str:
     """A whole number with thin spaces, for mathematical text."""
     return f"{int(number):,}".replace(",", r"\,")
 
 
-def _ideal(axis: Axes, of: xr.Dataset, kind: int, label: str) -> None:
+def _ideal(axis: Axes, gases: Table, kind: int, label: str) -> None:
     """Ideal numbers with 95 % intervals.
 
     Hollow: without an interval; with an arrow where the time still falls at the finest partition timed.
     """
-    count, interior = of["count"].values, of.ideal_interior.values.astype(bool)
-    ideal, low, high = (of[name].values * count for name in ("ideal", "ideal_low", "ideal_high"))
+    count, interior = gases.count, gases.ideal_interior.astype(bool)
+    ideal, low, high = gases.ideal * count, gases.ideal_low * count, gases.ideal_high * count
     found = interior & np.isfinite(high) & (low > 0.0)
     bars = np.where(found, [ideal - low, high - ideal], 0.0)
     style.points(axis, count[found], ideal[found], bars[:, found], kind=kind, label=label)
@@ -192,55 +171,45 @@ def _ideal(axis: Axes, of: xr.Dataset, kind: int, label: str) -> None:
 def linear_scaling(ds: xr.Dataset) -> Figure:
     """Time of a step with one box, the cheapest partition and a neighbour list; time, work per particle."""
     figure, (top, middle, bottom) = style.new((3.0,), (1.9, 1.7))
-    count = ds["count"].values.astype(float)
-    far = float(ds.extrapolated_count)
-    naive = ds.naive_count.values
-    line, carried = np.array([naive.min(), far]), float(ds.extrapolated_seconds)
-    lines = (_SCAN, _SOURCE, "one box, 27 scans (F & M)"), (1.0, style.COLOURS[1], None)
-    for factor, colour, label in lines if carried > 0.0 else ():  # noise of a timing may exceed a short one
-        seconds = factor * carried
-        top.plot(line, seconds * (line / far) ** 2, color=colour, linestyle="--", label=label)
-        top.annotate(
-            _duration(seconds),
-            (far, seconds),
-            xytext=(4, 0),
-            textcoords="offset points",
-            va="center",
-            color=colour,
-        )
-    style.measured(top, naive, estimates(ds, "naive_seconds"), kind=1, label="one box")
-    for kind, (radius, of) in enumerate(_by_radius(ds)):
-        style.measured(
-            top, of["count"], estimates(of, "seconds") * of["count"].values,
-            kind=2 * kind, label=f"cheapest partition, $r = {radius:g}$",
-        )  # fmt: skip
-        n = of["count"].values
-        style.measured(middle, n, estimates(of, "seconds") * _NS, kind=2 * kind, linestyle="-")
-        style.points(bottom, n, of.box_visits, kind=2 * kind, linestyle="-")
-        style.points(bottom, n, of.pair_tests, kind=2 * kind, linestyle="--", hollow=True)
-    for radius in sorted(set(ds.list_radius.values.tolist()), reverse=True):
-        of = ds.isel(listed=np.flatnonzero(ds.list_radius.values == radius))
-        n, seconds = of.list_count.values, estimates(of, "list_seconds")
-        label = None if radius < ds.list_radius.max() else "neighbour list (ours)"
-        style.measured(top, n, seconds * n, kind=3, label=label)
-        style.measured(middle, n, seconds * _NS, kind=3, linestyle="-")
-        style.points(bottom, n, of.list_pair_tests, kind=3, linestyle="--", hollow=True)
-    guide = np.array([count.min(), count.max()])
-    top.plot(guide, guide * float(ds.seconds.min()), color=style.GREY, lw=0.8, zorder=1, label="linear")
-    top.set(xscale="log", yscale="log", ylabel="time per step (s)", xlabel="number of particles $N$")
-    top.set_xlim(right=50.0 * far)  # room for the times at the ends of the lines
-    top.legend(loc="upper left")
+    gases, naive, lists = Table(ds, "gas"), Table(ds, "naive"), Table(ds, "listed")
+    _extrapolated(top, naive)
+    style.points(top, naive.naive_count, naive.naive_seconds, kind=1, label="one box")
+    for kind, (radius, own) in enumerate(reversed(list(gases.by("radius")))):
+        n, label = own.count, f"cheapest partition, $r = {radius:g}$"
+        style.points(top, n, own.seconds * n, kind=2 * kind, label=label)
+        style.points(middle, n, own.seconds * _NS, kind=2 * kind, linestyle="-")
+        style.points(bottom, n, own.box_visits, kind=2 * kind, linestyle="-")
+        style.points(bottom, n, own.pair_tests, kind=2 * kind, linestyle="--", hollow=True)
+    for radius, own in reversed(list(lists.by("list_radius"))):
+        n, name = own.list_count, None if radius < lists.list_radius.max() else "neighbour list (ours)"
+        style.points(top, n, own.list_seconds * n, kind=3, label=name)
+        style.points(middle, n, own.list_seconds * _NS, kind=3, linestyle="-")
+        style.points(bottom, n, own.list_pair_tests, kind=3, linestyle="--", hollow=True)
+    guide = np.array([gases.count.min(), gases.count.max()], dtype=float)
+    least = gases.seconds.value.min()
+    top.plot(guide, guide * least, color=style.GREY, lw=0.8, zorder=1, label="linear")
+    top.set(xscale="log", yscale="log")
+    top.set_xlim(right=50.0 * naive.extrapolated_count)  # room for the times at the ends of the lines
+    number = "number of particles $N$"
+    style.labelled(top, number, "time per step (s)", "upper left")
     middle.set(xscale="log", yscale="log", ylabel="time per particle (ns)", ylim=(1.0, None))
-    bottom.set(yscale="log", ylabel="per particle", xlabel="number of particles $N$", ylim=(0.02, 100.0))
+    bottom.set(yscale="log", ylabel="per particle", xlabel=number, ylim=(0.02, 100.0))
     bottom.text(0.02, 0.85, "boxes searched", transform=bottom.transAxes)
     bottom.text(0.02, 0.06, "pair tests (hollow)", transform=bottom.transAxes)
     style.letters(top, middle, bottom)
     return figure
 
 
-def _by_radius(ds: xr.Dataset) -> Iterator:
-    for radius in sorted(set(ds.radius.values.tolist()), reverse=True):
-        yield radius, ds.isel(gas=np.flatnonzero(ds.radius.values == radius))
+def _extrapolated(axis: Axes, naive: Table) -> None:
+    """What one box takes with many more particles; nothing if noise makes that negative."""
+    far, carried = float(naive.extrapolated_count), naive.extrapolated_seconds.value
+    line = np.array([naive.naive_count.min(), far])
+    lines = (_SCAN, _SOURCE, "one box, 27 scans (F & M)"), (1.0, style.COLOURS[1], None)
+    for factor, colour, label in lines if carried > 0.0 else ():
+        seconds = factor * carried
+        axis.plot(line, seconds * (line / far) ** 2, color=colour, linestyle="--", label=label)
+        look: dict[str, Any] = {"textcoords": "offset points", "va": "center", "color": colour}
+        axis.annotate(_duration(seconds), (far, seconds), xytext=(4, 0), **look)
 
 
 def _duration(seconds: float) -> str:
@@ -255,17 +224,17 @@ def event_scaling(ds: xr.Dataset) -> Figure:
     """Pair tests and time of an event against N, by each search."""
     figure, (top, bottom) = style.new((2.6,), (2.6,))
     names = {"pairs": "all pairs", "direct": "queue, all particles", "boxes": "queue and sectors"}
-    methods = zip(ds.method_search.values, ds.method_dimension.values, strict=True)
-    for kind, (search, dimension) in enumerate(methods):
-        of = ds.isel(run=np.flatnonzero((ds.search.values == search) & (ds.dimension.values == dimension)))
-        count, hollow = of["count"].values, bool(dimension == 3)
-        label = f"{names[str(search)]}, {dimension}D"
-        style.points(top, count, of.pair_tests, kind=kind, hollow=hollow, label=label)
-        style.measured(bottom, count, estimates(of, "seconds") * _US, kind=kind, hollow=hollow)
-        power = {"pairs": 2.0, "direct": 1.0, "boxes": 0.0}[str(search)]
-        _guide(top, count, of.pair_tests.values, power, kind)
-        if str(search) != "boxes":
-            _guide(bottom, count, of.seconds.values * _US, power, kind)
+    powers = {"pairs": 2.0, "direct": 1.0, "boxes": 0.0}
+    runs = Table(ds, "run")
+    for kind, method in enumerate(Table(ds, "method")):
+        search, dimension = method.method_search, method.method_dimension
+        own = runs[(runs.search == search) & (runs.dimension == dimension)]
+        hollow, label = dimension == 3, f"{names[search]}, {dimension}D"
+        style.points(top, own.count, own.pair_tests, kind=kind, hollow=hollow, label=label)
+        style.points(bottom, own.count, own.seconds * _US, kind=kind, hollow=hollow)
+        _guide(top, own.count, own.pair_tests, powers[search], kind)
+        if search != "boxes":
+            _guide(bottom, own.count, own.seconds.value * _US, powers[search], kind)
     for axis, label in ((top, "pair tests per event"), (bottom, "time per event (µs)")):
         axis.set(xscale="log", yscale="log", xlabel="number of particles $N$", ylabel=label)
     top.legend(loc="upper left")

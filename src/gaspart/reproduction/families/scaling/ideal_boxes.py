@@ -5,14 +5,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gaspart.reproduction.families.shared.rows import entries, from_rows
-from gaspart.reproduction.families.shared.timings import (
-    ideal,
-    penalty,
-    per_particle,
-    trend,
-)
+from gaspart.reproduction.families.shared.timings import ideal, penalty, per_particle, trend
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import Table, table
 
 
 def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
@@ -35,51 +30,55 @@ def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
         (xr.load_dataset(point.path) for point in points), key=lambda run: (-run.radius, run.attrs["count"])
     )
     costs = [per_particle(run) for run in runs]
-    gases = from_rows("gas", [_gas(*one, settings["rule"]) for one in zip(runs, costs, strict=True)])
-    radius, boxes = (
-        gases.radius.values,
-        (gases.ideal * gases["count"]).where(gases.ideal_interior == 1).values,
-    )
-    series = []
-    for r in sorted(set(radius), reverse=True):
-        exponent = trend(gases["count"].values[radius == r], boxes[radius == r])
-        series.append({"series_radius": r, **entries({"exponent": exponent})})
+    gases = table("gas", list(zip(runs, costs, strict=True)), _gas, settings["rule"])
+    found = Table(gases, "gas")
+    radii = sorted(set(found.radius.tolist()), reverse=True)
     numbered = [cost.assign_coords(partition=np.arange(cost.sizes["partition"])) for cost in costs]
     return xr.merge(
         [
             xr.concat(numbered, "gas", join="outer"),
             gases,
-            from_rows("source", [_source(given, costs, gases) for given in settings["source_numbers"]]),
-            from_rows("plateau", [_plateau(given, runs, costs) for given in settings["source_plateaus"]]),
-            from_rows("series", series),
+            table("source", settings["source_numbers"], _source, costs, found),
+            table("plateau", settings["source_plateaus"], _plateau, runs, costs),
+            table("series", radii, _series, found),
         ]
     ).assign(rule=settings["rule"])
 
 
-def _gas(run: xr.Dataset, costs: xr.Dataset, rule: float) -> dict[str, Any]:
+def _series(radius: float, gases: Table) -> dict[str, Any]:
+    """The exponent of the ideal number of boxes of the gases of one radius that have a minimum."""
+    own = gases[gases.radius == radius]
+    boxes = np.where(own.ideal_interior == 1, own.ideal * own.count, np.nan)
+    return {"series_radius": radius, "exponent": trend(own.count, boxes)}
+
+
+def _gas(timed: tuple[xr.Dataset, xr.Dataset], rule: float) -> dict[str, Any]:
     """The ideal number of boxes of one gas, and what the rule's number costs, for `ideal_boxes`."""
+    run, costs = timed
     return {
         **ideal(costs, run.dimension),
         "count": run.attrs["count"],
         "radius": run.radius,
         "most": int(run.side / (2.0 * run.radius)) ** run.dimension / run.attrs["count"],
-        **entries({"penalty": penalty(costs, rule)}),
+        "penalty": penalty(costs, rule),
     }
 
 
-def _source(given: dict, costs: list[xr.Dataset], gases: xr.Dataset) -> dict[str, Any]:
+def _source(given: dict, costs: list[xr.Dataset], gases: Table) -> dict[str, Any]:
     """What was found for the gas of one of source A's numbers, for `ideal_boxes`."""
-    same = (gases["count"] == given["count"]) & (gases.radius == given["radius"])
+    same = (gases.count == given["count"]) & (gases.radius == given["radius"])
     at = int(np.flatnonzero(same)[0])
-    found = ("ideal", "ideal_low", "ideal_high")
+    gas = gases[at]
     return {
-        **{f"source_{name}": gases[name].values[at] for name in found},
-        "source_interior": gases.ideal_interior.values[at],
+        "source_ideal": gas.ideal,
+        "source_ideal_low": gas.ideal_low,
+        "source_ideal_high": gas.ideal_high,
+        "source_interior": gas.ideal_interior,
         "source_gas": at,
         "source_number": given["boxes_per_particle"],
         "source_count": given["count"],
         "source_radius": given["radius"],
-        **entries({"source_penalty": penalty(costs[at], given["boxes_per_particle"])}),
+        "source_penalty": penalty(costs[at], given["boxes_per_particle"]),
     }
 
 
@@ -101,5 +100,5 @@ def _plateau(given: dict, runs: list[xr.Dataset], costs: list[xr.Dataset]) -> di
         "plateau_high": high,
         "plateau_boxes": boxes,
         "plateau_count": count,
-        **entries({"plateau_penalty": (ratio, error)}),
+        "plateau_penalty": (ratio, error),
     }

@@ -7,29 +7,21 @@ import math
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.statistics import mean_of
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import (
-    OTHER_MACHINE,
-    SOURCE_A,
-    exponent,
-    rows,
-)
+from gaspart.reproduction.families.shared.claims import OTHER_MACHINE, SOURCE_A
+from gaspart.reproduction.table import Row, Table, each
 
 _INTERVAL = 2.0 * 1.96  # a 95 % interval in standard errors
 
 
 def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
     """The source's numbers of boxes per particle, and how much they matter."""
-    worst = ds.isel(gas=int(np.nanargmax(ds.penalty.values)))
-    ratio = np.log(ds.model / ds.ideal).values
-    ratio = ratio[ds.ideal_interior.values.astype(bool) & np.isfinite(ratio)]
-    model = Estimate(math.nan, math.nan)
-    if ratio.size > 1:
-        model = Estimate(ratio.mean(), ratio.std(ddof=1) / math.sqrt(ratio.size))
-    claims = [
+    gases, sources = Table(ds, "gas"), Table(ds, "source")
+    return [
         Claim.at_most(
-            claim=f"time with {float(ds.rule):g} boxes per particle over the least, the worst of all gases",
-            measured=Estimate.of(worst, "penalty"),
+            claim=f"time with {gases.rule:g} boxes per particle over the least, the worst of all gases",
+            measured=gases.penalty[int(np.nanargmax(gases.penalty.value))],
             bound=1.25,
             required=0.1,
             source=f"{SOURCE_A}, section 3.5: ideal is roughly ten",
@@ -37,59 +29,76 @@ def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
         ),
         Claim.within(
             claim="ln of the ideal number by counted work over that by time, mean of the gases",
-            measured=model,
+            measured=_work_over_time(gases),
             expected=0.0,
             half_width=0.3,
             source="(3^d c_test / 2 c_box)^(1/2), gaspart.theory.partition",
             fails_if="something other than pair tests and boxes determines the optimum",
         ),
+        *_exponents(Table(ds, "series")),
+        *(
+            claim
+            for number, source in enumerate(sources, start=5)
+            for claim in _source_numbers(source, f"{SOURCE_A}, figure {number}")
+        ),
+        *_plateaus(Table(ds, "plateau")),
     ]
-    claims += [
-        exponent(
-            f"ideal number of boxes in N, r = {float(series.series_radius):g}",
-            series,
-            kind="reproduction",
-            expected=1.0,
-            half_width=0.4,
-            source=f"{SOURCE_A}, figures 5 to 7: linear",
-            why=OTHER_MACHINE,
-            fails_if="the ideal number per particle depends on N, as when caches overflow",
-        )
-        for series in rows(ds, "series")
-    ]
-    for number, source in enumerate(rows(ds, "source"), start=5):
-        claims += _source_numbers(source, f"{SOURCE_A}, figure {number}")
-    claims += [
-        Claim.at_most(
-            claim=f"time with {int(part.plateau_boxes)} boxes over the least, the worst N from "
-            f"{int(part.plateau_low)} to {int(part.plateau_high)}, r = {float(part.plateau_radius):g}",
-            kind="reproduction",
-            measured=Estimate.of(part, "plateau_penalty"),
-            bound=1.05,
-            required=0.05,
-            source=f"{SOURCE_A}, section 3.4: so many are ideal in all of this range",
-            why=OTHER_MACHINE,
-            fails_if="the ideal number follows N, or is another",
-        )
-        for part in rows(ds, "plateau")
-    ]
-    return claims
 
 
-def _source_numbers(source: xr.Dataset, origin: str) -> list[Claim]:
+def _work_over_time(gases: Table) -> Estimate:
+    """Mean and scatter of ln(model / ideal) of the gases with a minimum."""
+    ratio = np.log(gases.model / gases.ideal)
+    ratio = ratio[gases.ideal_interior.astype(bool) & np.isfinite(ratio)]
+    if ratio.size < 2:
+        return Estimate(math.nan, math.nan)
+    mean = mean_of(ratio)
+    return Estimate(mean.value, mean.error)
+
+
+def _exponents(series: Table) -> list[Claim]:
+    return each(
+        series,
+        "exponent of the ideal number of boxes in N, r = {series_radius:g}",
+        Claim.within,
+        kind="reproduction",
+        measured=series.exponent,
+        expected=1.0,
+        half_width=0.4,
+        source=f"{SOURCE_A}, figures 5 to 7: linear",
+        why=OTHER_MACHINE,
+        fails_if="the ideal number per particle depends on N, as when caches overflow",
+    )
+
+
+def _plateaus(plateaus: Table) -> list[Claim]:
+    return each(
+        plateaus,
+        "time with {plateau_boxes} boxes over the least, the worst N from {plateau_low} to {plateau_high}, "
+        "r = {plateau_radius:g}",
+        Claim.at_most,
+        kind="reproduction",
+        measured=plateaus.plateau_penalty,
+        bound=1.05,
+        required=0.05,
+        source=f"{SOURCE_A}, section 3.4: so many are ideal in all of this range",
+        why=OTHER_MACHINE,
+        fails_if="the ideal number follows N, or is another",
+    )
+
+
+def _source_numbers(source: Row, origin: str) -> list[Claim]:
     """Whether the source's number for one gas is the ideal one, and how much slower it is.
 
     If no minimum lies between the timed partitions, its interval is infinite and the claim inconclusive."""
-    number = float(source.source_number)
-    gas = f"N = {int(source.source_count)}, r = {float(source.source_radius):g}"
-    interval = float(source.source_ideal_high - source.source_ideal_low)
+    number, gas = source.source_number, f"N = {source.source_count}, r = {source.source_radius:g}"
+    interval = source.source_ideal_high - source.source_ideal_low
     return [
         Claim(
             claim=f"ideal number of boxes per particle, {gas}",
             kind="reproduction",
             measured=Estimate(source.source_ideal, interval / _INTERVAL),
             expected=Estimate(number, 0.1 * number),
-            required=0.3 * float(source.source_ideal),
+            required=0.3 * source.source_ideal,
             source=origin,
             allowance_source="read from the source's figure to 10 %",
             why=OTHER_MACHINE,
@@ -98,7 +107,7 @@ def _source_numbers(source: xr.Dataset, origin: str) -> list[Claim]:
         Claim.at_most(
             claim=f"time with {number:g} boxes per particle over the least, {gas}",
             kind="reproduction",
-            measured=Estimate.of(source, "source_penalty"),
+            measured=source.source_penalty,
             bound=1.1,
             required=0.05,
             source=origin,

@@ -14,7 +14,6 @@ from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.scaling.ideal_boxes import ideal_boxes as ideal_boxes
 from gaspart.reproduction.families.scaling.remarks import huge_sphere, near_boxes
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.timings import (
     extrapolate,
     ideal,
@@ -27,6 +26,7 @@ from gaspart.reproduction.families.shared.timings import (
     weights,
 )
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import Table, entries, table
 from gaspart.theory import partition as theory
 
 
@@ -39,16 +39,16 @@ def naive_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     time = a N + b tests.
     """
     made = one_box([xr.load_dataset(point.path) for point in points])
-    count, tests, seconds = (made[name].values.astype(float) for name in ("count", "pair_tests", "seconds"))
-    exponent, error = trend(count, seconds)
-    parts = weights(seconds, made.seconds_error.values, count, tests)
+    gases = Table(made, "count")
+    count, tests = gases.count.astype(float), gases.pair_tests
+    parts = weights(gases.seconds, count, tests)
     return made.assign(
-        exponent=exponent,
-        exponent_error=error,
+        **entries({
+            "exponent": trend(count, gases.seconds.value),
+            "test_seconds": (parts.values[1], parts.errors[1]),
+        }),
         tests_excess=np.abs(tests / (0.5 * count * (count - 1.0)) - 1.0).max(),
-        test_seconds=parts.values[1],
-        test_seconds_error=parts.errors[1],
-    )
+    )  # fmt: skip
 
 
 def box_count(points: list[Point], settings: dict) -> xr.Dataset:
@@ -82,7 +82,7 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
     pair = pair.rename(_names("fine", pair))
     sides = settings["round_per_side"]
     powers = [
-        {"round_per_side": side, **entries({"advantage": advantage})}
+        {"round_per_side": side, "advantage": advantage}
         for side, advantage in zip(sides, _advantages(pair, sides), strict=True)
     ]
     return xr.merge(
@@ -91,7 +91,7 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
             pair.rename(partition="fine"),
             events.rename(partition="sector", **_names("sector", events)),
             near_boxes(near),
-            from_rows("power", powers),
+            table("power", powers, dict),
         ]
     ).assign(
         **ideal(costs, main.dimension),
@@ -107,19 +107,16 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
 
 def _crossings(events: xr.Dataset, run: xr.Dataset) -> dict[str, Any]:
     """What crossings between sectors cost, for `box_count`."""
-    others = (run.attrs["count"] - 1.0) * theory.neighbour_share(
-        events.boxes_per_side.values, run.dimension, run.side, run.radius
-    )
-    searches = statistics.fit_polynomial(events.crossings.values, events.pair_tests.values / others)
-    crossings = statistics.fit_power_law(events.boxes_per_side.values - 1.0, events.crossings.values)
-    return {
-        "event_searches": searches.values[0],
-        "event_searches_error": searches.errors[0],
-        "crossing_searches": searches.values[1],
-        "crossing_searches_error": searches.errors[1],
-        "crossing_exponent": crossings.exponent,
-        "crossing_exponent_error": crossings.exponent_error,
-    }
+    scan = Table(events, "partition")
+    gas = run.dimension, run.side, run.radius
+    others = (run.attrs["count"] - 1.0) * theory.neighbour_share(scan.boxes_per_side, *gas)
+    searches = statistics.fit_polynomial(scan.crossings, scan.pair_tests / others)
+    crossings = statistics.fit_power_law(scan.boxes_per_side - 1.0, scan.crossings)
+    return entries({
+        "event_searches": (searches.values[0], searches.errors[0]),
+        "crossing_searches": (searches.values[1], searches.errors[1]),
+        "crossing_exponent": (crossings.exponent, crossings.exponent_error),
+    })  # fmt: skip
 
 
 def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
@@ -143,35 +140,33 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     lists = [run for run in runs if not run.boxes.values.any()]
     runs = [run for run in runs if run.sizes["partition"] > 1]
     costs = [per_particle(run) for run in runs]
-    gases = xr.concat([cost.isel(partition=int(np.argmin(cost.seconds.values))) for cost in costs], "gas")
-    count = np.array([run.attrs["count"] for run in runs], dtype=float)
-    radius = np.array([run.radius for run in runs])
-    seconds = count * gases.seconds.values
-    work = (gases.pair_tests + gases.box_visits).values
-    work_exponent, work_error = trend(count, count * work)
-    parts = []
-    for part in settings["source_figures"]:
-        low, high = part["counts"]
-        chosen = (radius == part["radius"]) & (low <= count) & (count <= high)
-        row = {"part_low": low, "part_high": high, "part_radius": part["radius"]}
-        parts.append(row | entries({"exponent": trend(count[chosen], seconds[chosen])}))
-    carried = extrapolate(naive, settings["naive_count"])
-    step, step_error = seconds[-1], count[-1] * gases.seconds_error.values[-1]
-    scale = settings["naive_count"] / count[-1]
-    ratio = carried[0] / (scale * step)
-    gases = gases.assign(count=("gas", count.astype(int)), radius=("gas", radius))
-    naive = naive.rename(count="naive_count", **_names("naive", naive))
-    return xr.merge([gases, naive, listed(lists, gases), from_rows("part", parts)]).assign(
-        work=("gas", work),
-        work_exponent=work_exponent,
-        work_exponent_error=work_error,
-        extrapolated_count=settings["naive_count"],
-        extrapolated_seconds=carried[0],
-        extrapolated_seconds_error=carried[1],
-        extrapolated_ratio=ratio,
-        extrapolated_ratio_error=math.hypot(carried[1] / (scale * step), ratio * step_error / step),
-        source_years=settings["source_years"],
+    cheapest = xr.concat([cost.isel(partition=int(np.argmin(cost.seconds.values))) for cost in costs], "gas")
+    cheapest = cheapest.assign(
+        count=("gas", [run.attrs["count"] for run in runs]),
+        radius=("gas", [run.radius for run in runs]),
+        work=("gas", (cheapest.pair_tests + cheapest.box_visits).values),
     )
+    gases, carried = Table(cheapest, "gas"), extrapolate(naive, settings["naive_count"])
+    ratio = carried / (gases.seconds[-1] * settings["naive_count"])
+    naive = naive.rename(count="naive_count", **_names("naive", naive))
+    parts = table("part", settings["source_figures"], _regime, gases)
+    return xr.merge([cheapest, naive, listed(lists, cheapest), parts]).assign(
+        **entries({
+            "work_exponent": trend(gases.count, gases.count * gases.work),
+            "extrapolated_seconds": (carried.value, carried.error),
+            "extrapolated_ratio": (ratio.value, ratio.error),
+        }),
+        extrapolated_count=settings["naive_count"],
+        source_years=settings["source_years"],
+    )  # fmt: skip
+
+
+def _regime(part: dict, gases: Table) -> dict[str, Any]:
+    """The exponent of the time per step in one of source A's figures, for `linear_scaling`."""
+    low, high = part["counts"]
+    own = gases[(gases.radius == part["radius"]) & (low <= gases.count) & (gases.count <= high)]
+    exponent = trend(own.count, own.count * own.seconds.value)
+    return {"part_low": low, "part_high": high, "part_radius": part["radius"], "exponent": exponent}
 
 
 def event_scaling(points: list[Point], settings: dict) -> xr.Dataset:
@@ -188,27 +183,32 @@ def event_scaling(points: list[Point], settings: dict) -> xr.Dataset:
         key=lambda run: (run.search, run.dimension, run.attrs["count"]),
     )
     costs = xr.concat([per_event(run).isel(partition=0) for run in runs], "run")
-    search = np.array([run.search for run in runs])
-    dimension = np.array([run.dimension for run in runs])
-    count = np.array([run.attrs["count"] for run in runs], dtype=float)
-    methods = list(dict.fromkeys(zip(search.tolist(), dimension.tolist(), strict=True)))
-    fits = []
-    for name, d in methods:
-        chosen = (search == name) & (dimension == d) & (count >= settings["fit_from"][name])
-        exponents = {
-            "exponent": trend(count[chosen], costs.seconds.values[chosen]),
-            "work_exponent": trend(count[chosen], costs.pair_tests.values[chosen]),
-        }
-        fits.append({"method_search": name, "method_dimension": d, **entries(exponents)})
-    events = costs.events.values
-    all_pairs = 0.5 * count * (count - 1.0) * (events + 1.0) / events
-    excess = np.abs(costs.pair_tests.values / all_pairs - 1.0)[search == "pairs"]
-    return xr.merge([costs, from_rows("method", fits)]).assign(
-        search=("run", search),
-        dimension=("run", dimension),
-        count=("run", count.astype(int)),
-        pairs_excess=float(excess.max()) if excess.size else math.nan,
+    costs = costs.assign(
+        search=("run", [run.search for run in runs]),
+        dimension=("run", [run.dimension for run in runs]),
+        count=("run", [run.attrs["count"] for run in runs]),
     )
+    gases = Table(costs, "run")
+    methods = list(dict.fromkeys((run.search, run.dimension) for run in runs))
+    pairs = gases[gases.search == "pairs"]
+    all_pairs = 0.5 * pairs.count * (pairs.count - 1.0) * (pairs.events + 1.0) / pairs.events
+    excess = np.abs(pairs.pair_tests / all_pairs - 1.0)
+    return xr.merge([costs, table("method", methods, _exponents, gases, settings["fit_from"])]).assign(
+        pairs_excess=float(excess.max()) if excess.size else math.nan
+    )
+
+
+def _exponents(method: tuple[str, int], gases: Table, fit_from: dict[str, int]) -> dict[str, Any]:
+    """Those of one search in one dimension, for `event_scaling`."""
+    search, dimension = method
+    same = (gases.search == search) & (gases.dimension == dimension)
+    own = gases[same & (gases.count >= fit_from[search])]
+    return {
+        "method_search": search,
+        "method_dimension": dimension,
+        "exponent": trend(own.count, own.seconds.value),
+        "work_exponent": trend(own.count, own.pair_tests),
+    }
 
 
 def _names(prefix: str, costs: xr.Dataset) -> dict[str, Any]:

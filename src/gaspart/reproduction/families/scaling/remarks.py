@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import means_of
-from gaspart.reproduction.families.shared.rows import entries
 from gaspart.reproduction.families.shared.timings import log_ratios, per_particle, ratio_of_jobs
+from gaspart.reproduction.table import entries
 from gaspart.theory.partition import boxes_in_reach, share_of_contacts_in_a_box
 
 
@@ -43,9 +43,8 @@ def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
             "near_seconds_error": ("near", error, {"units": "s"}),
             "near_box_visits": ("near", visits),
             "near_expected_visits": ("near", 0.5 + 0.5 * reached),
-            **entries({"near_least": least}),
             "near_missed": int(np.ptp(contacts, axis=1).max()),
-            **entries({"own_first": means_of(np.array(colliding) * within)}),
+            **entries({"near_least": least, "own_first": means_of(np.array(colliding) * within)}),
         }
     )
 

@@ -7,15 +7,17 @@ import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import OTHER_MACHINE, SOURCE_A
+from gaspart.reproduction.table import Table
 
 
 def remarks(ds: xr.Dataset) -> list[Claim]:
     """The source's remarks on what makes a step cheaper or more expensive, by counted work and by time."""
-    visits = (ds.near_box_visits / ds.near_expected_visits).values
+    near = Table(ds, "near")
+    visits = near.near_box_visits / near.near_expected_visits
     return [
         Claim.within(
             claim="boxes searched within reach over those expected, the scan's largest deviation",
-            measured=Estimate(visits[np.argmax(np.abs(visits - 1.0))], visits.std(ddof=1)),
+            measured=Estimate(visits[np.abs(visits - 1.0).argmax()], visits.std(ddof=1)),
             expected=1.0,
             half_width=0.03,
             source="Steiner's formula, gaspart.theory.partition, without the walls' 1 %",
@@ -24,7 +26,7 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
         Claim(
             claim="largest difference of the contacts found with and without the boxes out of reach",
             kind="identity",
-            measured=Estimate(ds.near_missed),
+            measured=Estimate(near.near_missed),
             expected=0.0,
             required=0.0,
             source="a box farther than a contact holds no partner",
@@ -33,7 +35,7 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
         Claim.at_most(
             claim="least time with only the boxes within reach over the least with all neighbouring ones",
             kind="reproduction",
-            measured=Estimate.of(ds, "near_least"),
+            measured=near.near_least,
             bound=1.0,
             required=0.1,
             source=f"{SOURCE_A}, section 2.3: to search fewer boxes is a possible improvement",
@@ -42,7 +44,7 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
         ),
         Claim.at_most(
             claim="share of searches that can end in the own box if it is searched first, widest boxes",
-            measured=Estimate.of(ds, "own_first"),
+            measured=near.own_first,
             bound=0.01,
             required=0.001,
             source="a search ends early only at a contact, which few particles have in a step",
@@ -50,7 +52,7 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
         ),
         Claim.within(
             claim="pairs tested more per particle and step with one huge sphere",
-            measured=Estimate.of(ds, "huge_tests"),
+            measured=near.huge_tests,
             expected=1.0,
             half_width=0.01,
             source=f"{SOURCE_A}, section 4.2: each particle is tested against it",
@@ -59,7 +61,7 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
         Claim.at_most(
             claim="time per step with one huge sphere among 10 000 over that without",
             kind="reproduction",
-            measured=Estimate.of(ds, "huge_ratio"),
+            measured=near.huge_ratio,
             bound=1.05,
             required=0.05,
             source=f"{SOURCE_A}, section 4.2: a negligible effect",

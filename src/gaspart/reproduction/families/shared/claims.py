@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
 from gaspart.analysis.statistics import combine, combine_estimates
-from gaspart.reproduction.claims import Claim, Estimate
+from gaspart.reproduction.claims import Estimate
 from gaspart.reproduction.families.shared.rows import estimates
 
 SOURCE_A, SOURCE_C = "[source A]", "[source C]"
@@ -51,8 +49,3 @@ def combined(dataset: xr.Dataset, name: str) -> Estimate:
     """Mean of a variable of one dimension, weighted by its errors."""
     values, errors = estimates(dataset, name)
     return combine(values, errors, freedoms(dataset, name)).estimate
-
-
-def exponent(what: str, dataset: xr.Dataset, name: str = "exponent", **others: Any) -> Claim:
-    """The exponent `name` of a dataset lies in a band. others: as of `Claim.within`."""
-    return Claim.within(claim=f"exponent of the {what}", measured=Estimate.of(dataset, name), **others)

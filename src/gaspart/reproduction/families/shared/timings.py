@@ -16,6 +16,7 @@ import xarray as xr
 
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
+from gaspart.reproduction.table import Table
 from gaspart.theory.partition import ideal_boxes_per_particle
 
 NEAR = 3.0
@@ -83,17 +84,22 @@ def _dataset(columns: dict, **units: str) -> xr.Dataset:
     )
 
 
-def weights(seconds: np.ndarray, error: np.ndarray, *work: float | np.ndarray) -> statistics.Fit:
+def weights(seconds: Estimate, *work: float | np.ndarray) -> statistics.Fit:
     """The cost of each kind of work: seconds = sum of weight x work, by relative least squares.
 
-    seconds, error and every work: (points,). The covariance is scaled up by the scatter if that is larger
-    than the errors (and `SYSTEMATIC`) explain.
+    seconds and every work: (points,). The covariance is scaled up by the scatter if that is larger than the
+    errors (and `SYSTEMATIC`) explain.
     """
-    errors = np.hypot(error, SYSTEMATIC * seconds)
-    fit = statistics.fit_linear(np.stack(np.broadcast_arrays(*work), axis=1), seconds, errors)
+    times, errors = seconds.value, _spread(seconds)
+    fit = statistics.fit_linear(np.stack(np.broadcast_arrays(*work), axis=1), times, errors)
     if fit.degrees_of_freedom:
         fit.covariance[...] *= max(1.0, fit.chi_square / fit.degrees_of_freedom)
     return fit
+
+
+def _spread(seconds: Estimate) -> np.ndarray:
+    """The errors of times in a fit."""
+    return np.asarray(np.hypot(seconds.error, SYSTEMATIC * seconds.value))
 
 
 def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
@@ -107,12 +113,10 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
     positive), with ``particle_seconds`` a (moving, sorting, and looking into boxes, whose number hardly
     changes), ``test_seconds`` b, ``box_seconds`` c, and their ``_error``.
     """
-    boxes, seconds, error = (
-        costs[name].values for name in ("boxes_per_particle", "seconds", "seconds_error")
-    )
-    best = statistics.optimum(boxes, seconds, within=NEAR)
-    near = _near(seconds)
-    fit = weights(seconds[near], error[near], 1.0, costs.pair_tests.values[near], boxes[near])
+    scan = Table(costs, "partition")
+    best = statistics.optimum(scan.boxes_per_particle, scan.seconds.value, within=NEAR)
+    near = scan[_near(scan.seconds.value)]
+    fit = weights(near.seconds, 1.0, near.pair_tests, near.boxes_per_particle)
     (particle, test, box), errors = fit.values, fit.errors
     model = spread = math.nan
     if test > 0.0 and box > 0.0:
@@ -147,17 +151,16 @@ def penalty(costs: xr.Dataset, boxes_per_particle: float) -> tuple[float, float]
     """
     from scipy.optimize import nnls
 
-    boxes, seconds, error = (
-        costs[name].values for name in ("boxes_per_particle", "seconds", "seconds_error")
-    )
+    scan = Table(costs, "partition")
+    boxes = scan.boxes_per_particle
     if not boxes.min() <= boxes_per_particle <= boxes.max():
         return math.nan, math.nan
-    near = _near(seconds)
+    near = scan[_near(scan.seconds.value)]
     fine = np.append(boxes_per_particle, np.geomspace(boxes.min(), boxes.max(), 1001))
-    at, curve = (np.stack([np.ones(x.size), 1.0 / x, x], axis=1) for x in (boxes[near], fine))
-    spread = np.hypot(error, SYSTEMATIC * seconds)[near]
-    costly = nnls(at / spread[:, None], seconds[near] / spread)[0] > 0.0
-    fit, curve = weights(seconds[near], error[near], *at[:, costly].T), curve[:, costly]
+    at, curve = (np.stack([np.ones(x.size), 1.0 / x, x], axis=1) for x in (near.boxes_per_particle, fine))
+    spread = _spread(near.seconds)
+    costly = nnls(at / spread[:, None], near.seconds.value / spread)[0] > 0.0
+    fit, curve = weights(near.seconds, *at[:, costly].T), curve[:, costly]
     given, least = curve[0], curve[np.argmin(curve @ fit.values)]
     ratio = given @ fit.values / (least @ fit.values)
     gradient = given / (given @ fit.values) - least / (least @ fit.values)  # of ln ratio
@@ -213,30 +216,26 @@ def listed(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
     ``list_count``, ``list_radius``; and ``list_share``, the time over that of the gas of the same count and
     radius among `gases` (NaN if there is none), with error."""
     costs = xr.concat([per_particle(run).isel(partition=0) for run in runs], "listed")
-    share = np.full((len(runs), 2), math.nan)
-    for n, run in enumerate(runs):
-        same = (gases["count"] == run.attrs["count"]).values & (gases.radius == run.radius).values
-        for gas in np.flatnonzero(same):
-            mine, other = costs.isel(listed=n), gases.isel(gas=gas)
-            share[n, 0] = mine.seconds / other.seconds
-            share[n, 1] = share[n, 0] * math.hypot(
-                mine.seconds_error / mine.seconds, other.seconds_error / other.seconds
-            )
+    shares, partitioned = [], Table(gases, "gas")
+    for run, own in zip(runs, Table(costs, "listed"), strict=True):
+        same = partitioned[(partitioned.count == run.attrs["count"]) & (partitioned.radius == run.radius)]
+        shares.append(own.seconds / same[-1].seconds if same else Estimate(math.nan, math.nan))
+    share = Estimate.stack(shares)
     return (
         costs[["seconds", "seconds_error", "pair_tests"]]
         .rename(seconds="list_seconds", seconds_error="list_seconds_error", pair_tests="list_pair_tests")
         .assign(
             list_count=("listed", [run.attrs["count"] for run in runs]),
             list_radius=("listed", [run.radius for run in runs]),
-            list_share=("listed", share[:, 0]),
-            list_share_error=("listed", share[:, 1]),
+            list_share=("listed", share.value),
+            list_share_error=("listed", share.error),
         )
     )
 
 
-def extrapolate(naive: xr.Dataset, count: float) -> tuple[float, float]:
-    """Time of one naive step with `count` particles, and its error, from time = a N + b tests."""
-    particles = naive["count"].values.astype(float)
-    fit = weights(naive.seconds.values, naive.seconds_error.values, particles, naive.pair_tests.values)
+def extrapolate(naive: xr.Dataset, count: float) -> Estimate:
+    """Time of one naive step with `count` particles, from time = a N + b tests."""
+    gases = Table(naive, "count")
+    fit = weights(gases.seconds, gases.count.astype(float), gases.pair_tests)
     work = np.array([count, 0.5 * count * (count - 1.0)])
-    return float(work @ fit.values), math.sqrt(work @ fit.covariance @ work)
+    return Estimate(work @ fit.values, math.sqrt(work @ fit.covariance @ work))
