@@ -198,7 +198,8 @@ def _each(function: Callable[..., Any], results: int) -> Callable[..., Any]:
             return function(*numbers)
         import numpy as np
 
-        return np.vectorize(function, otypes=[float] * results)(*numbers)
+        with np.errstate(invalid="ignore"):  # of NaN: NaN, without a word
+            return np.vectorize(function, otypes=[float] * results)(*numbers)
 
     return of_any
 
