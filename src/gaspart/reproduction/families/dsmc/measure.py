@@ -106,7 +106,7 @@ def _resolution(point: Point) -> dict[str, float]:
 
 
 def _runs(point: Point) -> Iterator[Run]:
-    """Each replica from its start, which is in equilibrium, to its end; some keep fewer frames than samples."""
+    """Each replica from its start, which is in equilibrium, to its end; some keep few frames."""
     for path in point.replica_paths:
         with open_trajectory(path) as trajectory:
             yield Run(point.scene, trajectory["time"].values, trajectory)
