@@ -5,6 +5,7 @@ from reproduction.families.mixtures.data import measured
 from gaspart.reproduction.families.mixtures import figure as mixtures
 from gaspart.reproduction.families.mixtures.claims import deviations
 from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.table import Table
 
 
 def test_deviations_contact_values_and_rates_are_drawn():
@@ -13,8 +14,8 @@ def test_deviations_contact_values_and_rates_are_drawn():
 
     def points(base, x, chosen, shift=0.0):
         part = ds.isel(point=np.flatnonzero(chosen)).sortby(x)
-        value, error = deviations(part, base)
-        return Points(part[x] + shift, 100.0 * value, 100.0 * error)
+        percent = 100.0 * deviations(Table(part, "point"), base)
+        return Points(part[x] + shift, percent.value, percent.error)
 
     spheres = (ds["dimension"] == 3) & np.isclose(ds["packing_fraction"], 0.4)
     few, most = ((ds["small_fraction"] == small) for small in (0.5, 0.9))

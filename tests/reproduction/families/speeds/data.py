@@ -71,6 +71,7 @@ def relaxation_measurement(error=0.003, seed=5):
             "never_hit": noisy(theoretical.never_hit(s * end / 3.6), 0.3 * error),
             "never_hit_error": (("engine", "frame"), np.full(shape, 0.3 * error)),
             "temperature_drift": (("engine", "frame"), np.full(shape, 1e-16)),
+            "temperature_drift_error": (("engine", "frame"), np.full(shape, 1e-17)),
             "density": (("engine", "snapshot", "bin"), np.tile(density, (2, 3, 1))),
             "density_error": (("engine", "snapshot", "bin"), np.full((2, 3, 25), 0.01)),
             "initial_slope": ("engine", np.full(2, 8 / 35)),

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.analysis.statistics import combine_estimates
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import rows, weighted_mean
+from gaspart.reproduction.table import Table, each
 from gaspart.theory.dsmc import CELL_COEFFICIENTS, STEP_COEFFICIENTS, cell_factor, step_factor
 
 CELLS = "[Alexander 1998]"
@@ -23,85 +26,78 @@ POINTLIKE = 0.003
 less than 4 of it."""
 
 
-def dsmc_convergence(ds: xr.Dataset) -> list[Claim]:
+def dsmc_convergence(dataset: xr.Dataset) -> list[Claim]:
     """Of cells and steps, of the dense gas, and of plates."""
-    return [*_limits(ds), *_coefficients(ds), _wide_cells(ds), *_dense(ds), *_plates(ds)]
-
-
-def _of(ds: xr.Dataset, *parts: str) -> list[xr.Dataset]:
-    """The points of some parts."""
-    return rows(ds.isel(point=np.flatnonzero(np.isin(ds["part"], parts))), "point")
-
-
-def _predicted(row: xr.Dataset, quantity: str) -> float:
-    """A transport coefficient over the exact one, by cells and steps."""
-    cells = cell_factor(quantity, float(row["width"]))
-    return float(cells * step_factor(quantity, float(row["step"])))
-
-
-def _limits(ds: xr.Dataset) -> list[Claim]:
-    """The coefficients of narrow cells and short steps."""
-    claims = []
-    for part, quantity in (("fluxes", "viscosity"), ("fluxes", "conductivity"), ("paths", "diffusion")):
-        fine = [row for row in _of(ds, part) if _predicted(row, quantity) < 1.0 + SEEN]
-        ratios = [Estimate.of(row, quantity) / _predicted(row, quantity) for row in fine]
-        claims.append(
-            Claim(
-                claim=f"{quantity} over Chapman and Enskog's, with narrow cells and short steps",
-                measured=weighted_mean(ratios),
-                expected=1.0,
-                required=0.02,
-                source="[Chapman 1970], with the Sonine polynomials that matter",
-                alternative=1.0 / 1.016,
-                fails_if="pairs drawn with a wrong chance, or scattering that is not isotropic",
-            )
-        )
-    return claims
-
-
-def _coefficients(ds: xr.Dataset) -> list[Claim]:
-    """What cells and steps add, over what the literature states."""
-    cells = CELL_COEFFICIENTS["viscosity"]
-    claims = [
-        Claim(
-            claim="coefficient of (width/l)^2 in the viscosity, narrow cells",
-            measured=Estimate.of(ds, "coefficient"),
-            expected=cells,
-            required=POWER * cells,
-            source=CELLS,
-            alternative=0.0,
-            fails_if="partners that are not drawn from the whole cell, or momentum that is not conserved",
-        )
+    gases = Table(dataset, "point")
+    parts = {
+        name: gases[gases.part == name] for name in ("fluxes", "paths", "dense", "plates", "event_plates")
+    }
+    of = {"viscosity": parts["fluxes"], "conductivity": parts["fluxes"], "diffusion": parts["paths"]}
+    return [
+        *(_limit(quantity, own) for quantity, own in of.items()),
+        _narrow_cells(gases),
+        *(_of_steps(quantity, of[quantity], known) for quantity, known in STEP_COEFFICIENTS.items()),
+        _wide_cells(parts["paths"]),
+        *_dense(parts["dense"]),
+        *_plates(parts["plates"], parts["event_plates"]),
     ]
-    for quantity, coefficient in STEP_COEFFICIENTS.items():
-        strengths = []
-        for row in _of(ds, "paths" if quantity == "diffusion" else "fluxes"):
-            added = float(step_factor(quantity, float(row["step"]))) - 1.0
-            if added > SEEN:
-                rest = float(cell_factor(quantity, float(row["width"])))
-                strengths.append((Estimate.of(row, quantity) / rest - 1.0) / added)
-        measured = weighted_mean(strengths)
-        claims.append(
-            Claim(
-                claim=f"coefficient of (c step/l)^2 in the {quantity}",
-                measured=measured * coefficient,
-                expected=coefficient,
-                required=POWER * coefficient,
-                source=STEPS,
-                alternative=0.0,
-                fails_if="particles that fly for other times than a step between their collisions",
-            )
-        )
-    return claims
 
 
-def _wide_cells(ds: xr.Dataset) -> Claim:
+def _predicted(gases: Table, quantity: str) -> np.ndarray:
+    """(points,) a transport coefficient over the exact one, by cells and steps."""
+    return np.asarray(cell_factor(quantity, gases.width) * step_factor(quantity, gases.step))
+
+
+def _limit(quantity: str, gases: Table) -> Claim:
+    """The coefficient of narrow cells and short steps."""
+    fine = gases[_predicted(gases, quantity) < 1.0 + SEEN]
+    return Claim(
+        claim=f"{quantity} over Chapman and Enskog's, with narrow cells and short steps",
+        measured=combine_estimates(getattr(fine, quantity) / _predicted(fine, quantity)),
+        expected=1.0,
+        required=0.02,
+        source="[Chapman 1970], with the Sonine polynomials that matter",
+        alternative=1.0 / 1.016,
+        fails_if="pairs drawn with a wrong chance, or scattering that is not isotropic",
+    )
+
+
+def _narrow_cells(gases: Table) -> Claim:
+    """What cells add to the viscosity, over what the literature states."""
+    cells = CELL_COEFFICIENTS["viscosity"]
+    return Claim(
+        claim="coefficient of (width/l)^2 in the viscosity, narrow cells",
+        measured=gases.coefficient,
+        expected=cells,
+        required=POWER * cells,
+        source=CELLS,
+        alternative=0.0,
+        fails_if="partners that are not drawn from the whole cell, or momentum that is not conserved",
+    )
+
+
+def _of_steps(quantity: str, gases: Table, coefficient: float) -> Claim:
+    """What steps add to a transport coefficient."""
+    long = gases[step_factor(quantity, gases.step) - 1.0 > SEEN]
+    added = getattr(long, quantity) / cell_factor(quantity, long.width) - 1.0
+    strength = combine_estimates(added / (step_factor(quantity, long.step) - 1.0))
+    return Claim(
+        claim=f"coefficient of (c step/l)^2 in the {quantity}",
+        measured=strength * coefficient,
+        expected=coefficient,
+        required=POWER * coefficient,
+        source=STEPS,
+        alternative=0.0,
+        fails_if="particles that fly for other times than a step between their collisions",
+    )
+
+
+def _wide_cells(paths: Table) -> Claim:
     """D does not depend on cells."""
-    wide = [row for row in _of(ds, "paths") if float(row["width"]) > WIDE]
-    ratios = [Estimate.of(row, "diffusion") / _predicted(row, "diffusion") for row in wide]
+    wide = paths[paths.width > WIDE]
     return Claim(
         claim=f"diffusion over Chapman and Enskog's, with cells wider than {WIDE:g} mean free paths",
-        measured=weighted_mean(ratios),
+        measured=combine_estimates(wide.diffusion / _predicted(wide, "diffusion")),
         expected=1.0,
         required=0.01,
         source="a particle's own displacement passes nothing on",
@@ -110,51 +106,42 @@ def _wide_cells(ds: xr.Dataset) -> Claim:
     )
 
 
-def _dense(ds: xr.Dataset) -> list[Claim]:
+def _dense(gases: Table) -> list[Claim]:
     """The Enskog model against its own equation; and Enskog's theory against what spheres do."""
-    claims = []
-    for row in _of(ds, "dense"):
-        eta = float(row["packing_fraction"])
-        names = {"excess": "Z - 1 over Carnahan and Starling's", "rate": "collision rate over Enskog's"}
-        claims += [
-            Claim(
-                claim=f"{title} in the Enskog model at packing fraction {eta:g}",
-                measured=Estimate.of(row, name),
-                expected=1.0,
-                required=0.003,
-                source="the contact value of Carnahan and Starling, which the model is given",
-                fails_if="a wrong chance to collide, or a loss of pairs that approach",
-            )
-            for name, title in names.items()
-        ]
-        claims.append(
-            Claim(
-                claim=f"diffusion over Enskog's in the Enskog model at packing fraction {eta:g}",
-                measured=Estimate.of(row, "diffusion"),
-                expected=1.0,
-                required=0.01,
-                source="Enskog theory, 1.01895 times the first Sonine approximation",
-                alternative=float(theory.erpenbeck_wood_ratio(eta)),
-                fails_if="correlated collisions, which this model does not have",
-            )
-        )
-    return claims
+    where = "in the Enskog model at packing fraction {packing_fraction:g}"
+    given: dict[str, Any] = {
+        "expected": 1.0,
+        "required": 0.003,
+        "source": "the contact value of Carnahan and Starling, which the model is given",
+        "fails_if": "a wrong chance to collide, or a loss of pairs that approach",
+    }
+    excess = each(gases, f"Z - 1 over Carnahan and Starling's {where}", measured=gases.excess, **given)
+    rate = each(gases, f"collision rate over Enskog's {where}", measured=gases.rate, **given)
+    diffusion = each(
+        gases,
+        f"diffusion over Enskog's {where}",
+        measured=gases.diffusion,
+        expected=1.0,
+        required=0.01,
+        source="Enskog theory, 1.01895 times the first Sonine approximation",
+        alternative=theory.erpenbeck_wood_ratio(gases.packing_fraction),
+        fails_if="correlated collisions, which this model does not have",
+    )
+    return [claim for of_one in zip(excess, rate, diffusion, strict=True) for claim in of_one]
 
 
-def _plates(ds: xr.Dataset) -> list[Claim]:
+def _plates(gases: Table, event: Table) -> list[Claim]:
     """The flux at each Knudsen number against that of the event-driven engine."""
     claims = []
-    event = _of(ds, "event_plates")
-    for row in _of(ds, "plates"):
-        knudsen = float(row["knudsen"])
-        beside = [one for one in event if abs(float(one["knudsen"]) / knudsen - 1.0) < 0.02]
-        if not beside or float(beside[0]["packing_fraction"]) > POINTLIKE:
+    for gas in gases:
+        beside = event[np.abs(event.knudsen / gas.knudsen - 1.0) < 0.02]
+        if not beside or beside[0].packing_fraction > POINTLIKE:
             continue
-        allowance = 4.0 * float(beside[0]["packing_fraction"])
+        allowance = 4.0 * beside[0].packing_fraction
         claims.append(
             Claim(
-                claim=f"heat flux by DSMC over that of the event-driven engine at Kn = {knudsen:.2g}",
-                measured=Estimate.of(row, "flux") / Estimate.of(beside[0], "flux"),
+                claim=f"heat flux by DSMC over that of the event-driven engine at Kn = {gas.knudsen:.2g}",
+                measured=gas.flux / beside[0].flux,
                 expected=Estimate(1.0, allowance / 3.0),
                 required=0.03,
                 source="the Boltzmann equation is that of hard spheres in the dilute limit",

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.table import Table
 from gaspart.theory.dsmc import cell_factor, step_factor
 
 QUANTITIES = {"viscosity": "viscosity", "conductivity": "heat conductivity", "diffusion": "self-diffusion"}
@@ -17,73 +17,62 @@ FINE = {"width": 0.3, "step": 0.3}
 """Of cells and steps, whose effect is so small that the other one is seen."""
 
 
-def dsmc_convergence(ds: xr.Dataset) -> Figure:
+def dsmc_convergence(dataset: xr.Dataset) -> Figure:
     """Transport coefficients against the width of cells and the length of steps; the flux between plates; the
     dense gas."""
     figure, axes = style.new((2.4,), (2.4,), (2.4,), (2.4,))
     cells, steps, plates, dense = axes
-    _coarse(cells, ds, "width", "step")
-    cells.set_xlabel(r"width of a cell $w/\lambda$")
-    _coarse(steps, ds, "step", "width")
-    steps.set_xlabel(r"time step $\sqrt{2k_\mathrm{B}T/m}\,\Delta t/\lambda$")
-    _plates(plates, ds)
-    _dense(dense, ds)
+    gases = Table(dataset, "point")
+    _coarse(cells, gases, "width", "step")
+    style.labelled(cells, r"width of a cell $w/\lambda$")
+    _coarse(steps, gases, "step", "width")
+    style.labelled(steps, r"time step $\sqrt{2k_\mathrm{B}T/m}\,\Delta t/\lambda$")
+    _plates(plates, gases)
+    _dense(dense, gases[gases.part == "dense"], gases[gases.part == "event_paths"])
     style.letters(*axes)
     return figure
 
 
-def _coarse(axis: Axes, ds: xr.Dataset, along: str, other: str) -> None:
+def _coarse(axis: Axes, gases: Table, along: str, other: str) -> None:
     """Each coefficient over its exact value, where the `other` coarseness is fine, without its effect, and
     theory's curve."""
     factors = {"width": cell_factor, "step": step_factor}
-    fine = ds[other].values < FINE[other]
+    fine = gases[getattr(gases, other) < FINE[other]]
+    curve = np.linspace(0.0, 1.08 * np.nanmax(getattr(gases, along)), 200)
     for kind, (quantity, title) in enumerate(QUANTITIES.items()):
-        chosen = ds.isel(point=np.flatnonzero(np.isfinite(ds[quantity].values) & fine))
-        rest = factors[other](quantity, chosen[other].values)
-        style.measured(axis, chosen[along], estimates(chosen, quantity) / rest, kind, label=title)
-        x = np.linspace(0.0, 1.08 * float(ds[along].max()), 200)
-        axis.plot(x, factors[along](quantity, x), color=style.COLOURS[kind], lw=0.8)
+        own = fine[np.isfinite(getattr(fine, quantity).value)]
+        ratio = getattr(own, quantity) / factors[other](quantity, getattr(own, other))
+        style.points(axis, getattr(own, along), ratio, kind=kind, label=title)
+        axis.plot(curve, factors[along](quantity, curve), color=style.COLOURS[kind], lw=0.8)
     if along == "width":
-        chosen = ds.isel(point=np.flatnonzero(np.isfinite(ds["transfer"].values) & fine))
-        value, error = estimates(chosen, "transfer")
-        style.points(axis, chosen[along], 1.0 + value, error, kind=0, hollow=True, label="1 + transfer")
+        own = fine[np.isfinite(fine.transfer.value)]
+        style.points(axis, own.width, 1.0 + own.transfer, hollow=True, label="1 + transfer")
     predicted = "predicted, first order" if along == "width" else "predicted"
     axis.plot([], [], color=style.GREY, lw=0.8, label=predicted)
-    axis.set_xlim(0.0)
-    axis.set_ylabel("over the exact value")
-    axis.legend(loc="upper left")
+    style.labelled(axis, y="over the exact value", legend="upper left", xlim=(0.0, None))
 
 
-def _plates(axis: Axes, ds: xr.Dataset) -> None:
+def _plates(axis: Axes, gases: Table) -> None:
     """The flux over that of free flight, against the Knudsen number."""
     for kind, (part, title) in enumerate({"event_plates": "event-driven", "plates": "DSMC"}.items()):
-        chosen = ds.isel(point=np.flatnonzero(ds["part"].values == part))
-        flux = estimates(chosen, "flux")
-        style.measured(axis, chosen["knudsen"], flux, kind, hollow=kind == 1, label=title)
+        own = gases[gases.part == part]
+        style.points(axis, own.knudsen, own.flux, kind=kind, hollow=kind == 1, label=title)
     axis.axhline(1.0, color=style.GREY, lw=0.8, label="free flight")
-    axis.set_xscale("log")
-    axis.set_yscale("log")
-    axis.set_xlabel(r"Knudsen number $\lambda/L$")
-    axis.set_ylabel("heat flux over free flight's")
-    axis.legend(loc="lower right")
+    axis.set(xscale="log", yscale="log")
+    style.labelled(axis, r"Knudsen number $\lambda/L$", "heat flux over free flight's", legend="lower right")
 
 
-def _dense(axis: Axes, ds: xr.Dataset) -> None:
+def _dense(axis: Axes, model: Table, spheres: Table) -> None:
     """The Enskog model over Enskog's theory, and what spheres do."""
-    model = ds.isel(point=np.flatnonzero(ds["part"].values == "dense"))
-    eta = model["packing_fraction"].values
-    names = {"excess": "$Z-1$", "rate": "collision rate", "diffusion": "diffusion"}
-    for kind, (name, title) in enumerate(names.items()):
-        at = eta + 0.004 * (kind - 1)
-        style.measured(axis, at, estimates(model, name), kind, label=f"{title}, DSMC")
-    spheres = ds.isel(point=np.flatnonzero(ds["part"].values == "event_paths"))
-    values = estimates(spheres, "diffusion")
-    style.measured(axis, spheres["packing_fraction"], values, 2, hollow=True, label="diffusion, event-driven")
+    eta = model.packing_fraction
+    style.points(axis, eta - 0.004, model.excess, kind=0, label="$Z-1$, DSMC")
+    style.points(axis, eta, model.rate, kind=1, label="collision rate, DSMC")
+    style.points(axis, eta + 0.004, model.diffusion, kind=2, label="diffusion, DSMC")
+    label = "diffusion, event-driven"
+    style.points(axis, spheres.packing_fraction, spheres.diffusion, kind=2, hollow=True, label=label)
     curve = np.linspace(0.0, 0.42, 100)
     ratio = theory.erpenbeck_wood_ratio(curve)
     axis.plot(curve, ratio, color=style.GREY, lw=0.8, label="Erpenbeck & Wood")
     axis.axhline(1.0, color=style.GREY, lw=0.8, ls=":")
-    axis.set_xlabel(r"packing fraction $\eta$")
-    axis.set_ylim(0.95, 1.7)  # with room for the legend
-    axis.set_ylabel("over Enskog's")
-    axis.legend(loc="upper left")
+    room = (0.95, 1.7)  # for the legend
+    style.labelled(axis, r"packing fraction $\eta$", "over Enskog's", legend="upper left", ylim=room)

@@ -8,8 +8,9 @@ are over those of Chapman and Enskog, without the change that a finite number of
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -18,13 +19,13 @@ from gaspart import theory
 from gaspart.analysis.correlations import accumulated
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
-from gaspart.analysis.statistics import fit_linear, means_of
+from gaspart.analysis.statistics import fit_linear, mean_of
 from gaspart.analysis.transport import green_kubo
 from gaspart.reproduction.families.displacement.measure import spheres
 from gaspart.reproduction.families.heat.gap import Gap, averages
 from gaspart.reproduction.families.shared.pressure import series_of
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import Table, entries, table
 from gaspart.scene.gas import plain_gas
 from gaspart.theory.enskog import approach_factor
 from gaspart.theory.heat import free_molecular_flux
@@ -55,16 +56,23 @@ def dsmc_convergence(points: list[Point], settings: dict) -> xr.Dataset:
         "event_paths": _event_paths,
         "event_plates": _plates,
     }
-    rows = []
-    for part, experiments in settings["parts"].items():
-        for point in (point for point in points if point.experiment in experiments):
-            found = measures[part](point, settings)
-            rows.append({"part": part, "engine": point.engine.title, **found})
+    parts = [
+        (part, point)
+        for part, experiments in settings["parts"].items()
+        for point in points
+        if point.experiment in experiments
+    ]
+
+    def row(of: tuple[str, Point]) -> dict[str, Any]:
+        part, point = of
+        return {"part": part, "engine": point.engine.title, **measures[part](point, settings)}
+
     units = {"width": "mean free path", "step": "mean free path / sqrt(2 k_B T / m)"}
-    return from_rows("point", rows, units=units).assign(entries(_narrow(rows)))
+    dataset = table("point", parts, row, units=units)
+    return dataset.assign(entries(_narrow(Table(dataset, "point"))))
 
 
-def _narrow(rows: list[dict]) -> dict[str, Estimate]:
+def _narrow(gases: Table) -> dict[str, Estimate]:
     """What collisions transfer over width^2 with narrow cells and short steps, and its slopes by both.
 
     In a wider cell a particle is often still near the place of its last collision at the next one, and
@@ -72,13 +80,12 @@ def _narrow(rows: list[dict]) -> dict[str, Estimate]:
     its limit by parts that are linear in width and step.
     """
     names = ("coefficient", "width_slope", "step_slope")
-    fine = [row for row in rows if row["part"] == "fluxes" and row["step"] < SHORT and row["width"] < NARROW]
+    fluxes = gases[gases.part == "fluxes"]
+    fine = fluxes[(fluxes.step < SHORT) & (fluxes.width < NARROW)] if fluxes else fluxes
     if len(fine) < len(names):
         return dict.fromkeys(names, Estimate(math.nan, math.nan))
-    width, step = (np.array([row[key] for row in fine]) for key in ("width", "step"))
-    over, error = (np.array([row[key] for row in fine]) / width**2 for key in ("transfer", "transfer_error"))
-    design = np.stack([np.ones(len(fine)), width, step], axis=1)
-    fit = fit_linear(design, over, error, [row["transfer_freedom"] for row in fine])
+    design = np.stack([np.ones(len(fine)), fine.width, fine.step], axis=1)
+    fit = fit_linear(design, fine.transfer / fine.width**2)
     return {name: fit.estimate(n) for n, name in enumerate(names)}
 
 
@@ -99,13 +106,13 @@ def _resolution(point: Point) -> dict[str, float]:
 
 
 def _runs(point: Point) -> Iterator[Run]:
-    """Each replica from its start, which is in equilibrium, to its end."""
+    """Each replica from its start, which is in equilibrium, to its end; some keep few frames."""
     for path in point.replica_paths:
         with open_trajectory(path) as trajectory:
             yield Run(point.scene, trajectory["time"].values, trajectory)
 
 
-def _fluxes(point: Point, settings: dict) -> dict:
+def _fluxes(point: Point, settings: dict) -> dict[str, Any]:
     """Viscosity and conductivity, by Green and Kubo to the longest lag, as of an infinite gas."""
     gas = plain_gas(point.scene)
     shear, heat = (
@@ -121,13 +128,7 @@ def _fluxes(point: Point, settings: dict) -> dict:
     for run in _runs(point):
         for name, (fluxes, value) in exact.items():
             found[name] += list(np.sum([green_kubo(run, flux)[:, -1] for flux in fluxes], axis=0) / value)
-    return {**_resolution(point), **_means(found)}
-
-
-def _means(samples: Mapping[str, Sequence[float] | np.ndarray]) -> dict:
-    """The entries of the means of independent samples, by name."""
-    freedom = min(map(len, samples.values())) - 1
-    return entries({name: means_of(values) for name, values in samples.items()}, freedom)
+    return {**_resolution(point), **{name: mean_of(values) for name, values in found.items()}}
 
 
 def _running_diffusion(point: Point) -> np.ndarray:
@@ -141,12 +142,12 @@ def _running_diffusion(point: Point) -> np.ndarray:
     return np.array([accumulated(run.data).running[-1] for run in _runs(point)]) / float(dilute)
 
 
-def _paths(point: Point, settings: dict) -> dict:
+def _paths(point: Point, settings: dict) -> dict[str, Any]:
     """D of a dilute gas."""
-    return {**_resolution(point), **_means({"diffusion": _running_diffusion(point)})}
+    return {**_resolution(point), "diffusion": mean_of(_running_diffusion(point))}
 
 
-def _dense(point: Point, settings: dict) -> dict:
+def _dense(point: Point, settings: dict) -> dict[str, Any]:
     """Z, the collision rate and D of the Enskog model, over those of Carnahan and Starling's contact value,
     which it is given. It has N (N - 1) pairs where the equation of state has N^2, and a fixed energy."""
     gas = plain_gas(point.scene)
@@ -156,32 +157,31 @@ def _dense(point: Point, settings: dict) -> dict:
     contact = excess / (4.0 * eta)
     rate = float(theory.collision_rate(eta, 3) / theory.contact_value(eta, 3)) * contact
     found = [series_of(run) for run in _runs(point)]
-    samples: dict[str, Sequence[float] | np.ndarray] = {
-        "excess": [(one.z.mean() - 1.0) / (partners * excess) for one in found],
-        "rate": [one.rate.mean() / (partners * approach * rate) for one in found],
-        "diffusion": _running_diffusion(point) * contact,
+    return {
+        "packing_fraction": eta,
+        "excess": mean_of([(one.z.mean() - 1.0) / (partners * excess) for one in found]),
+        "rate": mean_of([one.rate.mean() / (partners * approach * rate) for one in found]),
+        "diffusion": mean_of(_running_diffusion(point) * contact),
     }
-    return {"packing_fraction": eta, **_means(samples)}
 
 
-def _event_paths(point: Point, settings: dict) -> dict:
+def _event_paths(point: Point, settings: dict) -> dict[str, Any]:
     """D of the event-driven engine in an infinite container, over Enskog's."""
     row = spheres(point)
     enskog = float(theory.enskog_diffusion(row["packing_fraction"], 3))
     infinite = row["diffusion"] + Estimate(row["correction"], row["correction_uncertainty"])
-    return {"packing_fraction": row["packing_fraction"], **entries({"diffusion": infinite / enskog})}
+    return {"packing_fraction": row["packing_fraction"], "diffusion": infinite / enskog}
 
 
-def _plates(point: Point, settings: dict) -> dict:
+def _plates(point: Point, settings: dict) -> dict[str, Any]:
     """The flux between plates over that of free flight."""
     scene = point.scene
     gap, kind = Gap.of(scene), scene.kinds[0]
     density = scene.count / (gap.length * gap.area)
-    free = float(free_molecular_flux(density, gap.hot, gap.cold, 3))
     path = 1.0 / (math.sqrt(2.0) * math.pi * density * (2.0 * kind.radius) ** 2)
-    flux = averages(point, gap, settings["blocks"], 1).flux() / free
     return {
         "knudsen": path / gap.length,
         "packing_fraction": scene.packing_fraction,
-        **entries({"flux": flux}),
+        "flux": averages(point, gap, settings["blocks"], 1).flux()
+        / float(free_molecular_flux(density, gap.hot, gap.cold, 3)),
     }

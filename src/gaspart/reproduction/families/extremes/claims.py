@@ -2,58 +2,64 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
+from gaspart.reproduction.table import Table, each
+
+ROUNDING: dict[str, Any] = {
+    "required": 0.5,
+    "source": "exact: conserved, hard, and the contacts of the exact answer or of the search "
+    "through all pairs",
+    "fails_if": "rounding errors grow, or a root is wrong",
+}
 
 
 def stability_extremes(dataset: xr.Dataset) -> list[Claim]:
     """Each row passes, or is refused with one line where that is expected, in every engine; where it passes,
     nothing drifts, overlaps or is missed beyond rounding in the event-driven engine."""
-    return [_outcome(dataset.sel(row=row)) for row in dataset["row"].values] + _exact(dataset)
-
-
-def _outcome(row: xr.Dataset) -> Claim:
-    good = [
-        verdict == "refused" and bool(message) and "\n" not in message if refusal else verdict == "passes"
-        for verdict, message, refusal in zip(
-            row["verdict"].values, row["message"].values, row["refusal"].values, strict=True
-        )
+    scenes = Table(dataset, "row")
+    one_line = np.vectorize(lambda message: bool(message) and "\n" not in message)(scenes.message)
+    refused = (scenes.verdict == "refused") & one_line
+    good = np.where(scenes.refusal, refused, scenes.verdict == "passes")
+    return [
+        *each(
+            scenes,
+            "{row} ({group}): engines that pass, or refuse with one line what they should",
+            measured=Estimate(good.sum(axis=1)),
+            expected=len(scenes.engine),
+            required=0.5,
+            source="exact: none hangs, none is silently wrong; which refuse is stated beforehand",
+            fails_if="a run is refused that should pass, or the reverse; hangs, drifts, overlaps, or has "
+            "other contacts than the exact answer or all pairs",
+        ),
+        *_exact(Table(dataset.sel(engine="event"), "row")),
     ]
-    return Claim(
-        claim=f"{row['row'].item()} ({row['group'].item()}): engines that pass, or refuse with one line what "
-        "they should",
-        measured=Estimate(sum(good)),
-        expected=row.sizes["engine"],
-        required=0.5,
-        source="exact: none hangs, none is silently wrong; which refuse is stated beforehand",
-        fails_if="a run is refused that should pass, or the reverse; hangs, drifts, overlaps, or has other "
-        "contacts than the exact answer or all pairs",
-    )
 
 
-def _exact(dataset: xr.Dataset) -> list[Claim]:
+def _exact(event: Table) -> list[Claim]:
     """Errors of the event-driven engine, over all rows that pass."""
-    event = dataset.sel(engine="event")
-    passed = event.isel(row=np.flatnonzero(event["verdict"].values == "passes"))
-    claims = []
-    for name, text, bound in (
-        ("energy", "largest relative drift of the energy, event-driven", 1e-9),
-        ("overlap", "deepest overlap observed, in contact distances, event-driven", 1e-9),
-        ("missed", "missed or spurious contacts in all rows, event-driven", 0.0),
-    ):
-        values = np.abs(passed[name].values.astype(float))
-        measured = values.sum() if name == "missed" else max(values, default=np.nan)
-        claims.append(
-            Claim.at_most(
-                claim=text,
-                measured=Estimate(measured),
-                bound=bound,
-                required=0.5,
-                source="exact: conserved, hard, and the contacts of the exact answer or of the search "
-                "through all pairs",
-                fails_if="rounding errors grow, or a root is wrong",
-            )
-        )
-    return claims
+    passed = event[event.verdict == "passes"]
+    return [
+        Claim.at_most(
+            claim="largest relative drift of the energy, event-driven",
+            measured=Estimate(max(np.abs(passed.energy), default=np.nan)),
+            bound=1e-9,
+            **ROUNDING,
+        ),
+        Claim.at_most(
+            claim="deepest overlap observed, in contact distances, event-driven",
+            measured=Estimate(max(np.abs(passed.overlap), default=np.nan)),
+            bound=1e-9,
+            **ROUNDING,
+        ),
+        Claim.at_most(
+            claim="missed or spurious contacts in all rows, event-driven",
+            measured=Estimate(np.abs(passed.missed).sum()),
+            bound=0.0,
+            **ROUNDING,
+        ),
+    ]

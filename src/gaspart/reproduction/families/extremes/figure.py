@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from gaspart.rendering import style
+from gaspart.reproduction.table import Row, Table
 
 HEADS = {
     "event": "event",
@@ -49,44 +50,41 @@ OTHER = "?", "another reason, in the data"
 
 def stability_extremes(dataset: xr.Dataset) -> Figure:
     """A line per row; in each block a column per engine, with an error or the letter of a refusal."""
-    rows, engines = dataset.sizes["row"], dataset.sizes["engine"]
+    scenes = Table(dataset, "row")
+    rows, engines = scenes.verdict.shape
     wide = style.width() > style.COLUMN
     letters = (6.0, 7.0, 8.0) if wide else (4.5, 5.5, 6.0)  # in cells, of rows and keys, of heads
     figure, (axis,) = style.new((2.1 + (0.165 if wide else 0.11) * rows,))
     starts = {name: n * (engines + GAP) for n, name in enumerate(BLOCKS)}
     for name, left in starts.items():
-        sizes = _sizes(dataset, name)
-        for n, k in np.ndindex(rows, engines):
-            cell = _cell(dataset.isel(row=n, engine=k), name, float(sizes[n, k]), wide)
-            _draw_cell(axis, left + k, n, cell, letters[0])
-    groups = dataset["group"].values
-    for n in np.flatnonzero(groups[1:] != groups[:-1]) + 1:
+        for n, scene in enumerate(scenes):
+            for k, outcome in enumerate(Table(scene.dataset, "engine")):
+                _draw_cell(axis, left + k, n, _cell(outcome, name, wide), letters[0])
+    for n in np.flatnonzero(scenes.group[1:] != scenes.group[:-1]) + 1:
         axis.axhline(float(n), color="black", linewidth=0.6)
     axis.set(xlim=(0, starts["missed"] + engines), ylim=(rows, 0))
-    heads = [HEADS[name] for name in dataset["engine"].values] * len(BLOCKS)
+    heads = [HEADS[name] for name in scenes.engine] * len(BLOCKS)
     ticks = [left + k + 0.5 for left in starts.values() for k in range(engines)]
     axis.set_xticks(ticks, heads, rotation=90, size=letters[1])
-    names = [str(name) for name in dataset["row"].values]
-    axis.set_yticks(np.arange(rows) + 0.5, names, size=letters[1])
+    axis.set_yticks(np.arange(rows) + 0.5, scenes.row, size=letters[1])
     axis.tick_params(length=0, labeltop=True, labelbottom=False, pad=2)
     above = axis.secondary_xaxis(1.0)
     above.set_xticks([left + 0.5 * engines for left in starts.values()], [*BLOCKS.values()], size=letters[2])
     above.tick_params(length=0, pad=34 if wide else 28)
     for part in (*axis.spines.values(), *above.spines.values()):
         part.set_visible(False)
-    axis.set_xlabel(_key(dataset, 3 if wide else 1), size=letters[1])
+    axis.set_xlabel(_key(scenes, 3 if wide else 1), size=letters[1])
     bar = figure.colorbar(ScalarMappable(NORM, MAP), ax=axis, location="bottom", aspect=50, pad=0.01)
     bar.set_label("relative to energy, momenta,\ncontact distance, number of contacts", size=letters[1])
     bar.ax.tick_params(labelsize=letters[1])
     return figure
 
 
-def _sizes(dataset: xr.Dataset, name: str) -> np.ndarray:
-    """An error of each row and engine as a number below 1; of contacts the missed or spurious part."""
-    values = np.abs(dataset[name].values.astype(float))
+def _size(outcome: Row, name: str) -> float:
+    """An error as a number below 1; of contacts the missed or spurious part."""
     if name == "missed":
-        values /= np.maximum(1, dataset["contacts"].values + dataset["missed"].values)
-    return values
+        return abs(outcome.missed) / max(1, outcome.contacts + outcome.missed)
+    return abs(getattr(outcome, name))
 
 
 def _draw_cell(axis: Axes, left: float, top: int, cell: tuple[str, Any, str], letters: float) -> None:
@@ -97,18 +95,18 @@ def _draw_cell(axis: Axes, left: float, top: int, cell: tuple[str, Any, str], le
         axis.text(left + 0.5, top + 0.53, text, ha="center", va="center", color=ink, size=letters)
 
 
-def _cell(outcome: xr.Dataset, name: str, size: float, wide: bool) -> tuple[str, Any, str]:
+def _cell(outcome: Row, name: str, wide: bool) -> tuple[str, Any, str]:
     """Text, background and ink of a cell: an error's power of ten, of contacts their number, if there is
     room; a dot where walls take momentum up."""
-    verdict = str(outcome["verdict"].values)
-    if verdict == "refused":
-        return _reason(str(outcome["message"].values))[0], "#e6e6e6", "black"
-    if verdict != "passes":
-        return verdict, style.COLOURS[1], "white"
+    if outcome.verdict == "refused":
+        return _reason(outcome.message)[0], "#e6e6e6", "black"
+    if outcome.verdict != "passes":
+        return outcome.verdict, style.COLOURS[1], "white"
+    size = _size(outcome, name)
     if not size > FLOOR:
         return ("·" if np.isnan(size) else "0" if wide else ""), "white", style.GREY
     power = np.log10(size)
-    text = f"{int(outcome['missed']):d}" if name == "missed" else f"$10^{{{power:.0f}}}$"
+    text = f"{outcome.missed:.0f}" if name == "missed" else f"$10^{{{power:.0f}}}$"
     return text if wide else "", MAP(NORM(size)), "black" if power < -6.5 else "white"
 
 
@@ -119,10 +117,9 @@ def _reason(message: str) -> tuple[str, str]:
     )
 
 
-def _key(dataset: xr.Dataset, columns: int) -> str:
+def _key(scenes: Table, columns: int) -> str:
     """The reasons that occur, with their letters, a few in a line."""
-    refused = dataset["verdict"].values == "refused"
-    found = sorted({_reason(str(message)) for message in dataset["message"].values[refused]})
+    found = sorted({_reason(message) for message in scenes.message[scenes.verdict == "refused"]})
     texts = [f"{letter}: {text}" for letter, text in found]
     lines = ["; ".join(texts[n : n + columns]) for n in range(0, len(texts), columns)]
     return "\n".join(["Refused" if texts else "None refused", *lines])

@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.families.extremes.guard import guarded
 from gaspart.reproduction.families.extremes.rows import ROWS, Row
 from gaspart.reproduction.families.extremes.trial import TRIAL_ENGINES, Outcome, attempt
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 
 LIMIT = 300.0
 """Seconds after which a row counts as one that hangs."""
 HANGS = "hangs"
+UNITS = {
+    "energy": "kinetic energy",
+    "momentum": "sum of all |p|",
+    "overlap": "contact distance",
+    "seconds": "s",
+}
 _ALL_PAIRS = "event, all pairs"
 
 
@@ -29,33 +36,21 @@ def stability_extremes(points: list[Point], settings: dict) -> xr.Dataset:
     groups = settings.get("groups")
     rows = [row for row in ROWS if groups is None or row.group in groups]
     limit = LIMIT * len(TRIAL_ENGINES)
-    outcomes = guarded(run_row, rows, limit)
     lost = [Outcome(HANGS, f"not done within {limit:g} s")] * len(TRIAL_ENGINES)
-    table = [outcome or lost for outcome in outcomes]
+    outcomes = [found or lost for found in guarded(run_row, rows, limit)]
+    dataset = table("row", list(zip(rows, outcomes, strict=True)), _columns, inner=("engine",), units=UNITS)
+    return dataset.assign_coords(row=[row.name for row in rows], engine=list(TRIAL_ENGINES))
 
-    def column(name: str, unit: str) -> tuple[tuple[str, str], np.ndarray, dict[str, str]]:
-        values = np.array([[getattr(outcome, name) for outcome in line] for line in table])
-        return ("row", "engine"), values, {"units": unit}
 
-    return xr.Dataset(
-        {
-            "verdict": column("verdict", "1"),
-            "message": column("message", "1"),
-            "energy": column("energy", "kinetic energy"),
-            "momentum": column("momentum", "sum of all |p|"),
-            "overlap": column("overlap", "contact distance"),
-            "contacts": column("contacts", "1"),
-            "missed": column("missed", "1"),
-            "seconds": column("seconds", "s"),
-            "refusal": (
-                ("row", "engine"),
-                np.array([[engine.startswith(row.refused) for engine in TRIAL_ENGINES] for row in rows]),
-            ),
-            "group": ("row", [row.group for row in rows]),
-            "expected": ("row", [-1 if row.contacts is None else row.contacts for row in rows]),
-        },
-        coords={"row": [row.name for row in rows], "engine": list(TRIAL_ENGINES)},
-    )
+def _columns(of: tuple[Row, list[Outcome]]) -> dict[str, Any]:
+    row, outcomes = of
+    names = ("verdict", "message", *UNITS, "contacts", "missed")
+    return {
+        **{name: [getattr(outcome, name) for outcome in outcomes] for name in names},
+        "refusal": [engine.startswith(row.refused) for engine in TRIAL_ENGINES],
+        "group": row.group,
+        "expected": -1 if row.contacts is None else row.contacts,
+    }
 
 
 def run_row(row: Row) -> list[Outcome]:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES, SOURCE_C, rows
+from gaspart.reproduction.families.shared.claims import PARTICLES, SOURCE_C
+from gaspart.reproduction.table import Row, Table, each
 from gaspart.theory.granular import ROUGH_START_UNCERTAINTY
 
 HUTHMANN = (
@@ -15,39 +18,38 @@ HUTHMANN = (
     "tests/theory/test_granular.py"
 )
 VAN_NOIJE = "[Haff 1983]; [van Noije 1998], to first order in a2"
+DIFFERENCE = 1.5
+"""The error of T_tr - T_rot over that of T_rot: 2 T_tr + T_rot is conserved, so both have one fluctuation."""
 
 
-def equipartition(ds: xr.Dataset) -> list[Claim]:
+def equipartition(dataset: xr.Dataset) -> list[Claim]:
     """Equal energies per degree of freedom, at the known rate; a steady ratio where contacts dissipate."""
-    claims = [
-        Claim(
-            claim=f"T_rot / T_tr of rough discs in equilibrium, q = {float(row['equilibrium_inertia']):g}",
-            measured=Estimate.of(row, "equilibrium_ratio"),
+    still = Table(dataset, "equilibrium")
+    return [
+        *each(
+            still,
+            "T_rot / T_tr of rough discs in equilibrium, q = {equilibrium_inertia:g}",
+            measured=still.equilibrium_ratio,
             expected=1.0,
             required=0.005,
             source="equipartition (exact)",
             fails_if="contacts are not reversible, or exchange the wrong share of energy",
-        )
-        for row in rows(ds, "equilibrium")
+        ),
+        *(claim for gas in Table(dataset, "start") for claim in _decay(gas)),
+        *map(_steady, Table(dataset, "cooling")),
+        *(claim for gas in Table(dataset, "walls") for claim in _at_walls(gas)),
     ]
-    for row in rows(ds, "start"):
-        claims += _decay(row)
-    for row in rows(ds, "cooling"):
-        claims.append(_steady(row))
-    for row in rows(ds, "walls"):
-        claims += _at_walls(row)
-    return claims
 
 
-def _steady(row: xr.Dataset) -> Claim:
+def _steady(gas: Row) -> Claim:
     """The ratio of the temperatures of discs that cool."""
-    q, tangential = float(row["cooling_inertia"]), float(row["tangential"])
+    q, tangential = gas.cooling_inertia, gas.tangential
     known = [line for line in theory.rough_cooling() if np.allclose(line[:3], (q, tangential, 1.0))]
     ratio, error = known[0][3:] if known else (theory.rough_ratio(q, tangential), 0.0)
     maxwell = theory.rough_ratio(q, tangential) / ratio
     return Claim(
         claim=f"T_rot / T_tr of cooling discs over theory's, tangential {tangential:g}, q = {q:g}",
-        measured=Estimate.of(row, "steady_ratio") / ratio,
+        measured=gas.steady_ratio / ratio,
         expected=Estimate(1.0, error / ratio),
         required=0.03,
         source="homogeneous Boltzmann equation, direct simulation (gaspart.theory.homogeneous); Maxwellian "
@@ -58,20 +60,21 @@ def _steady(row: xr.Dataset) -> Claim:
     )
 
 
-def _decay(row: xr.Dataset) -> list[Claim]:
+def _decay(gas: Row) -> list[Claim]:
     """From spins 0: the initial rate, and the whole curve."""
-    q = float(row["inertia"])
+    q = gas.inertia
     expected = 3.0 * q / (1.0 + q) ** 2
-    row = row.dropna("frame", subset=["collisions"])  # those that only other points have
-    known = np.asarray(theory.rough_start_excess(q, row["collisions"].values))
-    most = int(np.abs(np.nan_to_num(known)).argmax())  # where Maxwellian velocities err most
-    at, s = row.isel(frame=most), float(row["collisions"][most])
-    excess = at["translation"] - at["rotation"] - np.exp(-expected * s)
-    few = Estimate.of(at, "rotation").freedom
+    frames = Table(gas.dataset, "frame")
+    frames = frames[np.isfinite(frames.collisions)]  # without those that only other points have
+    beyond = np.asarray(theory.rough_start_excess(q, frames.collisions))
+    most = np.abs(np.nan_to_num(beyond)).argmax()  # where Maxwellian velocities err most
+    at, known = frames[most], np.isfinite(beyond[most])
+    s, rotation = at.collisions, at.rotation
+    excess = at.translation.value - rotation.value - np.exp(-expected * s)
     return [
         Claim(
             claim=f"initial decay of T_tr - T_rot per collision of a particle over 3q/(1+q)^2, q = {q:g}",
-            measured=Estimate.of(row, "rate") / expected,
+            measured=gas.rate / expected,
             expected=1.0,
             required=0.01,
             source=f"{HUTHMANN}; exact at the start, where velocities are Maxwellian and all spins 0",
@@ -79,26 +82,25 @@ def _decay(row: xr.Dataset) -> list[Claim]:
         ),
         Claim(
             claim=f"T_tr - T_rot minus exp(-3q s/(1+q)^2) after {s:.2g} collisions of a particle, q = {q:g}",
-            measured=Estimate(excess, 1.5 * float(at["rotation_error"]), few),
-            expected=Estimate(known[most], ROUGH_START_UNCERTAINTY) if np.isfinite(known[most]) else 0.0,
+            measured=Estimate(excess, DIFFERENCE * rotation.error, rotation.freedom),
+            expected=Estimate(beyond[most], ROUGH_START_UNCERTAINTY) if known else 0.0,
             required=0.005,
             source="homogeneous Boltzmann equation, direct simulation (gaspart.theory.homogeneous); "
             "Maxwellian velocities and spins ([Huthmann 1997]) would give 0",
             allowance_source="statistical, of the direct simulation",
-            no_verdict="" if np.isfinite(known[most]) else "the reference was not computed for this inertia",
+            no_verdict="" if known else "the reference was not computed for this inertia",
             fails_if="a gas that is not dilute, or energies that tend to other shares",
         ),
     ]
 
 
-def _at_walls(row: xr.Dataset) -> list[Claim]:
+def _at_walls(gas: Row) -> list[Claim]:
     """Energy that is exchanged at rough walls only: the share of a hit, and equal shares in the end."""
-    q = float(row["wall_inertia"])
-    which = f"{PARTICLES[int(row['wall_dimension'])]} between rough walls, q = {q:g}"
+    which = f"{PARTICLES[gas.wall_dimension]} between rough walls, q = {gas.wall_inertia:g}"
     return [
         Claim(
             claim=f"energy that the first hits turn into spin over theory's, {which}",
-            measured=Estimate.of(row, "exchange"),
+            measured=gas.exchange,
             expected=1.0,
             required=0.01,
             source=f"{SOURCE_C}, Eq. 40, without collisions: 4q/(1+q)^2 of the tangential energy at a "
@@ -107,7 +109,7 @@ def _at_walls(row: xr.Dataset) -> list[Claim]:
         ),
         Claim(
             claim=f"T_rot / T_tr along the walls in the end over theory's, {which}",
-            measured=Estimate.of(row, "wall_ratio"),
+            measured=gas.wall_ratio,
             expected=1.0,
             required=0.01,
             source="the same: 1 within 0.003, equipartition without collisions, as hits at different times "
@@ -117,17 +119,17 @@ def _at_walls(row: xr.Dataset) -> list[Claim]:
     ]
 
 
-def cooling(ds: xr.Dataset) -> list[Claim]:
+def cooling(dataset: xr.Dataset) -> list[Claim]:
     """Haff's law, its rate and exponent; clusters that end it."""
     claims = []
-    for row in rows(ds, "gas"):
-        dimension, e = int(row["dimension"]), float(row["restitution"])
-        which, count = f"{PARTICLES[dimension]}, restitution {e:g}", float(row["count"])
-        finite = float(theory.cooling_rate_finite_size_factor(count, dimension))
+    for gas in Table(dataset, "gas"):
+        dimension, e = gas.dimension, gas.restitution
+        which = f"{PARTICLES[dimension]}, restitution {e:g}"
+        finite = float(theory.cooling_rate_finite_size_factor(gas.count, dimension))
         claims += [
             Claim(
                 claim=f"-d ln T / ds over (1 - e^2)/d (1 + a2/4), {which}",
-                measured=Estimate.of(row, "rate") / theory.cooling_rate(e, dimension),
+                measured=gas.rate / theory.cooling_rate(e, dimension),
                 expected=finite,
                 required=0.005,
                 source=f"{VAN_NOIJE}; times d N/(d N - d + 1), at one energy and total momentum zero (exact)",
@@ -136,7 +138,7 @@ def cooling(ds: xr.Dataset) -> list[Claim]:
             ),
             Claim(
                 claim=f"exponent of T against 1 + t/t_H, {which}",
-                measured=Estimate.of(row, "exponent"),
+                measured=gas.exponent,
                 expected=-2.0,
                 required=0.02,
                 source=VAN_NOIJE,
@@ -144,43 +146,47 @@ def cooling(ds: xr.Dataset) -> list[Claim]:
                 "sqrt(T)",
             ),
         ]
-    return claims + _clusters(ds)
+    return claims + _clusters(Table(dataset, "clusters"))
 
 
-def _clusters(ds: xr.Dataset) -> list[Claim]:
+def elastic_variance(gases: Table) -> float:
+    """The variance of the number in a cell of the elastic gas, once it is in equilibrium."""
+    elastic = gases[gases.cluster_restitution == 1.0]
+    return float(np.nanmean(elastic.variance.value[:, 1:]))
+
+
+def _clusters(gases: Table) -> list[Claim]:
     """In the end the gas is neither homogeneous nor as cold as Haff's law; the elastic one is unchanged."""
-    elastic = ds.isel(clusters=(ds["cluster_restitution"] == 1.0).values)
-    usual = float(elastic["variance"].isel(step=slice(1, None)).mean())
+    usual = elastic_variance(gases)
     claims = []
-    for row in rows(ds.isel(clusters=(ds["cluster_restitution"] != 1.0).values), "clusters"):
-        last, e = row.isel(step=-1), float(row["cluster_restitution"])
-        for what, name, unit, least, source, fails_if in (
-            (
-                "variance of the number in a cell over the elastic gas's",
-                "variance",
-                usual,
-                3.0,
-                "[Goldhirsch 1993]: a large inelastic gas forms clusters",
-                "a gas that stays homogeneous",
+    for gas in gases[gases.cluster_restitution != 1.0]:
+        end = f"in the end, restitution {gas.cluster_restitution:g}"
+        claims += [
+            _grown(
+                f"variance of the number in a cell over the elastic gas's, {end}",
+                gas.variance[-1] / usual,
+                least=3.0,
+                source="[Goldhirsch 1993]: a large inelastic gas forms clusters",
+                fails_if="a gas that stays homogeneous",
             ),
-            (
-                "T over Haff's law",
-                "cluster_excess",
-                1.0,
-                2.0,
-                "vortices and clusters hold energy that contacts do not reach (same source)",
-                "a gas that continues to cool by Haff's law",
+            _grown(
+                f"T over Haff's law, {end}",
+                gas.cluster_excess[-1],
+                least=2.0,
+                source="vortices and clusters hold energy that contacts do not reach (same source)",
+                fails_if="a gas that continues to cool by Haff's law",
             ),
-        ):
-            ratio, bound = Estimate.of(last, name), np.log(least)
-            claims.append(
-                Claim.at_least(
-                    claim=f"ln of {what}, in the end, restitution {e:g}",
-                    measured=Estimate(np.log(ratio.value / unit), ratio.error / ratio.value),
-                    bound=bound,
-                    required=bound / 3.0,  # distinguishes an unchanged gas (0) by 3 sigma
-                    source=source,
-                    fails_if=fails_if,
-                )
-            )
+        ]
     return claims
+
+
+def _grown(what: str, ratio: Estimate, least: float, **others: Any) -> Claim:
+    """A ratio is `least` or more, by its logarithm, which is 0 of an unchanged gas."""
+    bound = np.log(least)
+    return Claim.at_least(
+        claim=f"ln of {what}",
+        measured=Estimate(np.log(ratio.value), ratio.error / ratio.value),
+        bound=bound,
+        required=bound / 3.0,  # distinguishes an unchanged gas by 3 sigma
+        **others,
+    )

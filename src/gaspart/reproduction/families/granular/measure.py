@@ -7,6 +7,8 @@ of the run.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -17,9 +19,9 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import average, bootstrap, correlated_mean, fit_polynomial, mean_of, means_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.granular.runs import inertia, law, read
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 from gaspart.trajectory.reading import open_trajectory
 
 RELAXED = 3.0
@@ -47,29 +49,29 @@ def equipartition(points: list[Point], settings: dict) -> xr.Dataset:
     between = [point for point in points if not all(point.scene.container.periodic)]
     points = [point for point in points if point not in between]
     rough = [point for point in points if law(point).tangential == 1.0]
+    cooled = [point for point in points if point not in rough]
     still = [point for point in rough if point.schedule.equilibration_frames]
-    cooled = [_cooling(point, settings["steady_from"]) for point in points if point not in rough]
+    start = [point for point in rough if point not in still]
     return xr.merge([
-        from_rows("start", [_start(point) for point in rough if point not in still], ("frame",), units={}),
-        from_rows("equilibrium", [_equilibrium(point) for point in still], units={}),
-        from_rows("cooling", cooled, ("step",), units={}),
-        from_rows("walls", [_walls(point) for point in between], ("moment",), units={}),
+        table("start", start, _start, inner=("frame",), units={}),
+        table("equilibrium", still, _equilibrium, units={}),
+        table("cooling", cooled, _cooling, settings["steady_from"], inner=("step",), units={}),
+        table("walls", between, _walls, inner=("moment",), units={}),
     ])  # fmt: skip
 
 
-def _start(point: Point) -> dict:
+def _start(point: Point) -> dict[str, Any]:
     replicas = read(point)
     samples = np.stack([[run.collisions, run.translation, run.rotation] for run in replicas])
     rate = bootstrap(lambda chosen: _initial_decay(*chosen.mean(axis=0)), samples, repeats=200)
-    temperatures = {
-        "translation": means_of([run.translation for run in replicas]),
-        "rotation": means_of([run.rotation for run in replicas]),
-    }
     return {
         "collisions": samples[:, 0].mean(axis=0),
         "inertia": inertia(point),
-        **entries(temperatures, len(replicas) - 1),
-        **entries({"rate": rate}),
+        "translation": means_of(samples[:, 1]),
+        "rotation": means_of(samples[:, 2]),
+        "translation_freedom": len(replicas) - 1,
+        "rotation_freedom": len(replicas) - 1,
+        "rate": rate,
     }
 
 
@@ -82,7 +84,7 @@ def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np
     return float(fit_polynomial(collisions[used], logarithm, 1.0 / difference[used], powers=(1, 2)).values[0])
 
 
-def _equilibrium(point: Point) -> dict:
+def _equilibrium(point: Point) -> dict[str, Any]:
     """T_rot / T_tr of the mean energies, of a run of conserved energy. Blocks: frames may be correlated."""
     replicas = read(point)
     mean = average([correlated_mean(run.rotation).estimate for run in replicas])
@@ -92,11 +94,11 @@ def _equilibrium(point: Point) -> dict:
     error = mean.error / mean.value * ratio * (1.0 + 0.5 * ratio)
     return {
         "equilibrium_inertia": inertia(point),
-        **entries({"equilibrium_ratio": Estimate(ratio, error, mean.freedom)}),
+        "equilibrium_ratio": Estimate(ratio, error, mean.freedom),
     }
 
 
-def _cooling(point: Point, steady_from: float) -> dict:
+def _cooling(point: Point, steady_from: float) -> dict[str, Any]:
     """The ratio of the mean temperatures of all replicas, frame by frame, and its mean over the frames later
     than `steady_from` collisions per particle."""
     replicas = read(point)
@@ -112,11 +114,11 @@ def _cooling(point: Point, steady_from: float) -> dict:
         "cooling_inertia": inertia(point),
         "cooling_collisions": collisions,
         "cooling_ratio": rotation / np.mean([run.translation for run in replicas], axis=0),
-        **entries({"steady_ratio": steady}),
+        "steady_ratio": steady,
     }
 
 
-def _walls(point: Point) -> dict:
+def _walls(point: Point) -> dict[str, Any]:
     """Temperatures of particles between two rough walls, over T_par at the start: T_par = m <v^2> of each
     direction along the walls, and T_rot = I <w^2> of each spin that a hit changes, which are as many.
 
@@ -141,20 +143,17 @@ def _walls(point: Point) -> dict:
     early, late = time <= MIXING, time >= MIXED
     weights = expected[early] / (expected[early] @ expected[early])
     ratio = expected[late].sum() / (1.0 - expected[late]).sum()
-    estimates = {
-        "exchange": bootstrap(lambda chosen: weights @ chosen.mean(axis=0)[1, early], np.array(samples)),
-        "wall_ratio": bootstrap(
-            lambda chosen: np.divide(*chosen[:, ::-1, late].mean(axis=(0, 2))) / ratio, np.array(samples)
-        ),
-    }
     mean, error = means_of(samples)
-    temperatures = {"wall_translation": (mean[0], error[0]), "wall_rotation": (mean[1], error[1])}
     return {
         "wall_dimension": scene.dimension,
         "wall_inertia": inertia(point),
         "wall_time": time,
-        **entries(temperatures),
-        **entries(estimates),
+        "wall_translation": (mean[0], error[0]),
+        "wall_rotation": (mean[1], error[1]),
+        "exchange": bootstrap(lambda chosen: weights @ chosen.mean(axis=0)[1, early], samples),
+        "wall_ratio": bootstrap(
+            lambda chosen: np.divide(*chosen[:, ::-1, late].mean(axis=(0, 2))) / ratio, samples
+        ),
     }
 
 
@@ -171,14 +170,14 @@ def cooling(points: list[Point], settings: dict) -> xr.Dataset:
     end of one run of the least restitution; attrs side, radius.
     """
     apart = [point for point in points if point.experiment in settings["clustering"]]
-    gases = from_rows("gas", [_gas(point) for point in points if point not in apart], ("frame",), units={})
-    cells = settings["cells_per_side"]
-    clusters = from_rows("clusters", [_clusters(point, cells) for point in apart], ("step",), units={})
+    dilute = [point for point in points if point not in apart]
+    gases = table("gas", dilute, _gas, inner=("frame",), units={})
+    clusters = table("clusters", apart, _clusters, settings["cells_per_side"], inner=("step",), units={})
     shown = min(apart, key=lambda point: law(point).normal)
     return xr.merge([gases, clusters, _picture(shown)], combine_attrs="drop_conflicts")
 
 
-def _gas(point: Point) -> dict:
+def _gas(point: Point) -> dict[str, Any]:
     scene, replicas = point.scene, read(point)
     restitution, dimension, kind = law(point).normal, scene.dimension, scene.species[0]
     rates, exponents, times = [], [], []
@@ -197,24 +196,24 @@ def _gas(point: Point) -> dict:
         "restitution": restitution,
         "collisions": np.mean([run.collisions for run in replicas], axis=0),
         "time": np.mean(times, axis=0),
-        **entries({"temperature": means_of([run.translation for run in replicas])}),
-        **entries({"rate": mean_of(rates), "exponent": mean_of(exponents)}),
+        "temperature": means_of([run.translation for run in replicas]),
+        "rate": mean_of(rates),
+        "exponent": mean_of(exponents),
     }
 
 
-def _clusters(point: Point, cells: int) -> dict:
+def _clusters(point: Point, cells: int) -> dict[str, Any]:
     scene, replicas = point.scene, read(point)
     collisions = np.mean([run.collisions for run in replicas], axis=0)
     restitution = law(point).normal
     rate = theory.cooling_rate(restitution, scene.dimension)
     # Of logarithms: after so many collisions replicas differ by factors.
     excess, relative = means_of([np.log(run.translation) + rate * run.collisions for run in replicas])
-    variances = [_number_variance(run, cells) for run in runs(point)]
     return {
         "cluster_restitution": restitution,
         "cluster_collisions": collisions,
-        **entries({"cluster_excess": (np.exp(excess), np.exp(excess) * relative)}),
-        **entries({"variance": means_of(variances)}),
+        "cluster_excess": (np.exp(excess), np.exp(excess) * relative),
+        "variance": means_of([_number_variance(run, cells) for run in runs(point)]),
     }
 
 

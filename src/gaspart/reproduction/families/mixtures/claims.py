@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES, rows
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.table import Row, Table, each
 
 REQUIRED = 1e-3
 """The largest uncertainty of Z, relative to it, at which its comparison means anything."""
@@ -34,71 +36,70 @@ _NAMES = {
 
 def mixture_state(dataset: xr.Dataset) -> list[Claim]:
     """Z where theory is sharp, its deviations from approximate theories, and collisions of pairs."""
-    claims = []
-    for row in rows(dataset, "point"):
-        if _sharp(row):
-            claims.append(_compressibility(row))
-        if float(row["size_ratio"]) >= NEARLY_EQUAL["size_ratio"] and float(row["small_fraction"]) == 0.5:
-            claims += [_contact(row, pair) for pair in dataset["pair"].values]
-        if np.isfinite(row["size_ratio"]):
-            claims.append(_virial(row))
-    spheres = dataset.isel(point=np.flatnonzero(dataset["dimension"] == 3))
-    if spheres.sizes["point"]:
+    gases, claims = Table(dataset, "point"), []
+    for gas in gases:
+        if _sharp(gas):
+            claims.append(_compressibility(gas))
+        if gas.size_ratio >= NEARLY_EQUAL["size_ratio"] and gas.small_fraction == 0.5:
+            claims += _contacts(gas)
+        if np.isfinite(gas.size_ratio):
+            claims.append(_virial(gas))
+    spheres = gases[gases.dimension == 3]
+    if spheres:
         claims.append(_better(spheres))
-    return [*claims, *_reported(dataset)]
+    return [*claims, *_reported(gases)]
 
 
-def _where(row: xr.Dataset) -> str:
+def _where(gas: Row) -> str:
     """What the point is."""
-    if np.isfinite(row["size_ratio"]):
-        sizes = f"size ratio {float(row['size_ratio']):g}, {float(row['small_fraction']):.0%} small"
+    if np.isfinite(gas.size_ratio):
+        sizes = f"size ratio {gas.size_ratio:g}, {gas.small_fraction:.0%} small"
     else:
-        sizes = f"{row['distribution'].item()} polydispersity {float(row['polydispersity']):g}"
-    return (
-        f"{PARTICLES[int(row['dimension'])]}, {sizes}, packing fraction {float(row['packing_fraction']):.3g}"
-    )
+        sizes = f"{gas.distribution} polydispersity {gas.polydispersity:g}"
+    return f"{PARTICLES[gas.dimension]}, {sizes}, packing fraction {gas.packing_fraction:.3g}"
 
 
-def _sharp(row: xr.Dataset) -> bool:
+def _dilute(gas: Row) -> bool:
+    return bool(gas.packing_fraction <= THEORIES_AGREE * (1.0 + 1e-6))
+
+
+def _sharp(gas: Row) -> bool:
     """Whether the uncertainty of theory is small."""
-    ratio, spread = float(row["size_ratio"]), float(row["polydispersity"])
-    alike = ratio >= NEARLY_EQUAL["size_ratio"] or spread <= NEARLY_EQUAL["polydispersity"]
-    return alike or float(row["packing_fraction"]) <= THEORIES_AGREE * (1.0 + 1e-6)
+    alike = (
+        gas.size_ratio >= NEARLY_EQUAL["size_ratio"] or gas.polydispersity <= NEARLY_EQUAL["polydispersity"]
+    )
+    return alike or _dilute(gas)
 
 
-def _compressibility(row: xr.Dataset) -> Claim:
+def _compressibility(gas: Row) -> Claim:
     """Of spheres as deviation from Boublik's equation, which must be excluded unless they are dilute."""
-    expected, base = float(row["santos"]), float(row["santos"])
-    allowance = np.hypot(float(row["reference_error"]), expected - float(row["linear"]))
-    allowance = np.hypot(allowance, abs(float(row["correction"])) * _UNSURE)
-    others: dict = {}
-    what, required = "Z over that of [Santos 2002]", REQUIRED
-    if int(row["dimension"]) == 3 and float(row["packing_fraction"]) > THEORIES_AGREE * (1.0 + 1e-6):
-        base = float(row["boublik"])
-        what, others = "Z over Boublik's and Mansoori's", {"alternative": 1.0}
-        required = abs(expected / base - 1.0) / 5.0
+    allowance = math.hypot(gas.reference_error, gas.santos - gas.linear, gas.correction * _UNSURE)
+    over, what, required, alternative = gas.santos, "Z over that of [Santos 2002]", REQUIRED, None
+    if gas.dimension == 3 and not _dilute(gas):
+        over, what, alternative = gas.boublik, "Z over Boublik's and Mansoori's", 1.0
+        required = abs(gas.santos / over - 1.0) / 5.0
     return Claim(
-        claim=f"{what}, {_where(row)}",
-        measured=Estimate.of(row, "Z") / base,
-        expected=Estimate(expected, allowance) / base,
+        claim=f"{what}, {_where(gas)}",
+        measured=gas.Z / over,
+        expected=Estimate(gas.santos, allowance) / over,
         required=required,
         source=_SYH,
-        allowance_source=BETWEEN if int(row["dimension"]) == 3 else OF_PURE,
+        allowance_source=BETWEEN if gas.dimension == 3 else OF_PURE,
         fails_if="missed or spurious contacts, wrong radii, or a fluid that is not in equilibrium",
-        **others,
+        alternative=alternative,
     )
 
 
-def _contact(row: xr.Dataset, pair: str) -> Claim:
-    at = row.sel(pair=pair)
-    expected = float(at["contact_santos"])
+def _contacts(gas: Row) -> list[Claim]:
+    pairs = Table(gas.dataset, "pair")
+    expected = pairs.contact_santos
     # of a finite number as of Z - 1, whose part it is
-    unsure = abs(float(row["correction"])) / (float(row["santos"]) - 1.0) * expected
-    allowance = np.hypot(expected - float(at["contact_linear"]), unsure)
-    return Claim(
-        claim=f"contact value of {pair}, {_where(row)}",
-        measured=Estimate.of(at, "contact"),
-        expected=Estimate(expected, allowance),
+    unsure = abs(gas.correction) / (gas.santos - 1.0) * expected
+    return each(
+        pairs,
+        f"contact value of {{pair}}, {_where(gas)}",
+        measured=pairs.contact,
+        expected=Estimate(expected, np.hypot(expected - pairs.contact_linear, unsure)),
         required=CONTACT * expected,
         source=_SYH,
         allowance_source=f"{BETWEEN}; and the part that 1/N changes of Z - 1",
@@ -106,10 +107,10 @@ def _contact(row: xr.Dataset, pair: str) -> Claim:
     )
 
 
-def _virial(row: xr.Dataset) -> Claim:
+def _virial(gas: Row) -> Claim:
     return Claim(
-        claim=f"virial sum over that of the numbers of collisions of each pair, {_where(row)}",
-        measured=Estimate.of(row, "virial") + 1.0,
+        claim=f"virial sum over that of the numbers of collisions of each pair, {_where(gas)}",
+        measured=gas.virial + 1.0,
         expected=1.0,
         required=REQUIRED,
         source="velocities at contact are Maxwellian in equilibrium [Chapman 1970]",
@@ -117,24 +118,23 @@ def _virial(row: xr.Dataset) -> Claim:
     )
 
 
-def deviations(dataset: xr.Dataset, theory: str) -> tuple[np.ndarray, np.ndarray]:
-    """(points,) Z / Z_theory - 1, and its error."""
-    value, error = estimates(dataset, "Z") / dataset[theory].values
-    return value - 1.0, error
+def deviations(gases: Table, theory: str) -> Estimate:
+    """(points,) Z / Z_theory - 1."""
+    return gases.Z / getattr(gases, theory) - 1.0
 
 
-def _better(spheres: xr.Dataset) -> Claim:
+def _better(spheres: Table) -> Claim:
     """The abstract of [Santos 1999]: their extension of Carnahan and Starling's equation agrees better with
     simulations than Boublik's."""
-    mine, its = (deviations(spheres, name) for name in ("starling", "boublik"))
-    squares = [float(np.sum(value**2)) for value, _ in (mine, its)]
+    mine, its = deviations(spheres, "starling"), deviations(spheres, "boublik")
+    squares = [np.sum(deviation.value**2) for deviation in (mine, its)]
     ratio = np.sqrt(squares[0] / squares[1])
-    parts = (mine[0] / squares[0] - its[0] / squares[1]) * ratio * its[1]  # of the gradient, times the errors
+    gradient = (mine.value / squares[0] - its.value / squares[1]) * ratio
     return Claim.at_most(
         claim="spheres: rms deviation of Z from [Santos 1999], with Carnahan and Starling's equation, over "
         "that from [Boublik 1970] and [Mansoori 1971]",
         kind="reproduction",
-        measured=Estimate(ratio, float(np.sqrt(np.sum(parts**2)))),
+        measured=Estimate(ratio, np.sqrt(np.sum((gradient * its.error) ** 2))),
         bound=1.0,
         required=0.2,
         source="abstract of [Santos 1999]",
@@ -143,18 +143,18 @@ def _better(spheres: xr.Dataset) -> Claim:
     )
 
 
-def _reported(dataset: xr.Dataset) -> list[Claim]:
+def _reported(gases: Table) -> list[Claim]:
     """The largest deviation of each theory."""
     claims = []
     for dimension, names in ((3, tuple(_NAMES)), (2, ("santos",))):
-        part = dataset.isel(point=np.flatnonzero(dataset["dimension"] == dimension))
-        for name in names if part.sizes["point"] else ():
-            value, error = deviations(part, name)
-            most = int(np.argmax(np.abs(value)))
+        part = gases[gases.dimension == dimension]
+        for name in names if part else ():
+            percent = 100.0 * deviations(part, name)
+            largest = percent[np.argmax(np.abs(percent.value))]
             claims.append(
                 Claim(
                     claim=f"largest deviation of Z of {PARTICLES[dimension]} from {_NAMES[name]}, per cent",
-                    measured=Estimate(100.0 * value[most], 100.0 * error[most]),
+                    measured=Estimate(largest.value, largest.error),
                     expected=0.0,
                     required=0.1,
                     source=_NAMES[name],

@@ -7,6 +7,7 @@ one.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -18,9 +19,9 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.series import compressibility
 from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 from gaspart.scene.gas import Mixture
 from gaspart.scene.sizes import DISTRIBUTIONS
 from gaspart.theory.speeds import mean_speed_factor
@@ -45,11 +46,10 @@ def mixture_state(points: list[Point], settings: dict) -> xr.Dataset:
     contact_boublik.
     """
     units = {"rate": "sqrt(k_B T / m) / diameter"}
-    dataset = from_rows("point", [_row(point) for point in points], ("pair",), units)
-    return dataset.assign_coords(pair=list(_PAIRS))
+    return table("point", points, _row, inner=("pair",), units=units).assign_coords(pair=list(_PAIRS))
 
 
-def _row(point: Point) -> dict:
+def _row(point: Point) -> dict[str, Any]:
     scene, settings = point.scene, point.settings
     gas = scene.mixture
     if gas is None:
@@ -57,11 +57,11 @@ def _row(point: Point) -> dict:
     eta, d = gas.packing_fraction, gas.dimension
     correction = float(theory.finite_size_correction(eta, d, scene.count, "canonical"))
     two = "size_ratio" in settings
-    found = [_of_run(run, two) for run in runs(point)]
-    means = {
-        name: [average(list(same)) for same in zip(*values, strict=True)] for name, values in _joined(found)
-    }
-    row = {
+    found = [_of_two_sizes(run) if two else _of_any(run) for run in runs(point)]
+    means = {name: average([one[name] for one in found]) for name in found[0]}
+    if two:
+        means["rate"] /= _unit_of_rate(gas)
+    return {
         "dimension": d,
         "packing_fraction": eta,
         "count": scene.count,
@@ -69,32 +69,31 @@ def _row(point: Point) -> dict:
         "small_fraction": settings.get("small_fraction", math.nan),
         "polydispersity": settings.get("polydispersity", math.nan),
         "distribution": "" if two else settings.get("radius_distribution", DISTRIBUTIONS[0]),
-        **entries({"Z": means["Z"][0] - correction}),
+        **means,
+        "Z": means["Z"] - correction,
         "correction": correction,
         "reference_error": float(theory.compressibility_uncertainty(eta, d)),
         **theories(gas),
     }
-    return row | _pairs(means, gas) if two else row
 
 
-def _joined(found: list[dict]) -> list[tuple[str, list]]:
-    """By name, the values of each run."""
-    return [(name, [one[name] for one in found]) for name in found[0]]
+def _of_any(run: Run) -> dict[str, Estimate]:
+    return {"Z": correlated_mean(compressibility(run)).estimate}
 
 
-def _of_run(run: Run, two: bool) -> dict[str, list[Estimate]]:
-    """Z, and of two sizes what the collisions of each pair of species give."""
-    found = {"Z": [correlated_mean(compressibility(run)).estimate]}
-    if two:
-        found["virial"] = [_virial(run)]
-        found["contact"] = estimates_of(run, contact_scales(run))
-        found["rate"] = estimates_of(run, rate_scales(run))
-    return found
+def _of_two_sizes(run: Run) -> dict[str, Estimate]:
+    """Beside Z what the collisions of each pair of species give; rates per time."""
+    return {
+        **_of_any(run),
+        "virial": _virial(run),
+        "contact": Estimate.stack(estimates_of(run, contact_scales(run))),
+        "rate": Estimate.stack(estimates_of(run, rate_scales(run))),
+    }
 
 
-def theories(gas: Mixture) -> dict:
+def theories(gas: Mixture) -> dict[str, Any]:
     """Z by each theory; of two sizes the contact value and the rate of each pair too."""
-    found: dict = {}
+    found: dict[str, Any] = {}
     eta, d, diameters, _ = gas.sizes
     for name, dimensions in theory.MIXTURE_THEORIES.items():
         if d not in dimensions:
@@ -116,16 +115,6 @@ def theories(gas: Mixture) -> dict:
 def _unit_of_rate(gas: Mixture) -> float:
     """sqrt(k_B T / m) over the larger diameter."""
     return math.sqrt(gas.temperature / gas.masses[0]) / gas.diameters[0]
-
-
-def _pairs(means: dict[str, list[Estimate]], gas: Mixture) -> dict:
-    """Contact values and rates of each pair of species, and the virial."""
-    row: dict = entries({"virial": means["virial"][0]})
-    for name, scale in (("contact", 1.0), ("rate", _unit_of_rate(gas))):
-        scaled = [mean / scale for mean in means[name]]
-        row |= entries({name: ([one.value for one in scaled], [one.error for one in scaled])})
-        row[f"{name}_freedom"] = [one.freedom for one in scaled]
-    return row
 
 
 def _virial(run: Run) -> Estimate:

@@ -6,7 +6,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import rows
+from gaspart.reproduction.table import Row, Table
 from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, Relaxation
 
 ENGINE_TITLES = {"step": "time-stepped", "event": "event-driven"}
@@ -17,21 +17,19 @@ KOLMOGOROV_LIMIT, KOLMOGOROV_SCATTER = 1.818, 0.26
 """sqrt(n) times the Kolmogorov distance is above 1.818 with probability 0.0027, and scatters by 0.26."""
 
 
-def speed_relaxation(ds: xr.Dataset) -> list[Claim]:
+def speed_relaxation(dataset: xr.Dataset) -> list[Claim]:
     """Kurtosis, never-hit fraction and collisions at each time of source A's figure 11, for each engine."""
-    dimension, rate = ds.attrs["dimension"], ds.attrs["collision_rate"]
-    relaxation = theory.relaxation(dimension)
     claims = []
-    for run in rows(ds, "engine"):
-        by = f"{ENGINE_TITLES[run['engine'].item()]} engine"
-        for frame in ds["shown"].values:
-            claims += _frame(run.isel(frame=int(frame)), by, relaxation)
+    for gas in Table(dataset, "engine"):
+        by, relaxation = f"{ENGINE_TITLES[gas.engine]} engine", theory.relaxation(gas.dimension)
+        frames = Table(gas.dataset, "frame")
         claims += [
-            _collisions(run.isel(frame=-1), by, relaxation, rate),
+            *(claim for frame in frames[gas.shown] for claim in _at_time(frame, by, relaxation)),
+            _collisions(frames[-1], by, relaxation),
             Claim(
                 claim=f"initial slope of the kurtosis per collision and particle ({by})",
-                measured=Estimate.of(run, "initial_slope"),
-                expected=theory.initial_kurtosis_slope(dimension),
+                measured=gas.initial_slope,
+                expected=theory.initial_kurtosis_slope(gas.dimension),
                 required=0.015,
                 source="Boltzmann's collision integral (exact)",
                 fails_if="the first collisions do not scatter as hard spheres do",
@@ -39,7 +37,7 @@ def speed_relaxation(ds: xr.Dataset) -> list[Claim]:
             Claim.at_most(
                 claim=f"relative drift of the energy ({by})",
                 kind="identity",
-                measured=Estimate(run["temperature_drift"].max()),
+                measured=Estimate(gas.temperature_drift.value.max()),
                 bound=1e-12,
                 required=1e-12,
                 source="elastic collisions (exact)",
@@ -49,14 +47,14 @@ def speed_relaxation(ds: xr.Dataset) -> list[Claim]:
     return claims
 
 
-def _frame(row: xr.Dataset, by: str, relaxation: Relaxation) -> list[Claim]:
-    """At one time. The scatter of the runs includes that of the collisions."""
-    collisions = float(row["collisions"])
-    when = f"at t = {float(row['time']):g} ({by})"
+def _at_time(frame: Row, by: str, relaxation: Relaxation) -> list[Claim]:
+    """The scatter of the runs includes that of the collisions."""
+    collisions = frame.collisions.value
+    when = f"at t = {frame.time:g} ({by})"
     return [
         Claim(
             claim=f"kurtosis of the speeds {when}",
-            measured=Estimate.of(row, "kurtosis"),
+            measured=frame.kurtosis,
             expected=Estimate(relaxation.kurtosis(collisions), RELAXATION_UNCERTAINTY),
             required=0.01,
             source=BOLTZMANN,
@@ -65,7 +63,7 @@ def _frame(row: xr.Dataset, by: str, relaxation: Relaxation) -> list[Claim]:
         ),
         Claim(
             claim=f"fraction of particles never hit {when}",
-            measured=Estimate.of(row, "never_hit"),
+            measured=frame.never_hit,
             expected=Estimate(relaxation.never_hit(collisions), RELAXATION_UNCERTAINTY),
             required=0.005,
             source=BOLTZMANN,
@@ -75,12 +73,12 @@ def _frame(row: xr.Dataset, by: str, relaxation: Relaxation) -> list[Claim]:
     ]
 
 
-def _collisions(last: xr.Dataset, by: str, relaxation: Relaxation, rate: float) -> Claim:
-    time = float(last["time"])
+def _collisions(last: Row, by: str, relaxation: Relaxation) -> Claim:
+    expected = relaxation.collisions(last.collision_rate * last.time)
     return Claim(
-        claim=f"collisions per particle until t = {time:g} ({by})",
-        measured=Estimate.of(last, "collisions"),
-        expected=Estimate(relaxation.collisions(rate * time), 3.0 * RELAXATION_UNCERTAINTY),
+        claim=f"collisions per particle until t = {last.time:g} ({by})",
+        measured=last.collisions,
+        expected=Estimate(expected, 3.0 * RELAXATION_UNCERTAINTY),
         required=0.03,
         source="Enskog's rate during relaxation, between walls (exact at low density)",
         allowance_source=MONTE_CARLO,
@@ -89,36 +87,35 @@ def _collisions(last: xr.Dataset, by: str, relaxation: Relaxation, rate: float) 
     )
 
 
-def speed_distribution_spheres(ds: xr.Dataset) -> list[Claim]:
+def speed_distribution_spheres(dataset: xr.Dataset) -> list[Claim]:
     """Maxwell's distribution at each packing fraction, in 3D."""
-    return distribution(ds)
+    return distribution(dataset)
 
 
-def speed_distribution_discs(ds: xr.Dataset) -> list[Claim]:
+def speed_distribution_discs(dataset: xr.Dataset) -> list[Claim]:
     """Maxwell's distribution in 2D."""
-    return distribution(ds)
+    return distribution(dataset)
 
 
-def distribution(ds: xr.Dataset) -> list[Claim]:
+def distribution(dataset: xr.Dataset) -> list[Claim]:
     """Chi-square, Kolmogorov's distance, kurtosis and temperature of every point."""
-    return [claim for row in rows(ds, "point") for claim in _equilibrium(row, ds.attrs["dimension"])]
+    return [claim for gas in Table(dataset, "point") for claim in _equilibrium(gas)]
 
 
-def _equilibrium(row: xr.Dataset, dimension: int) -> list[Claim]:
-    at = f"at packing fraction {float(row['packing_fraction']):.3g}"
-    samples, count = int(row["samples"]), int(row["count"])
-    kurtosis, temperature = theory.kurtosis(dimension, count), float(row["given_temperature"])
+def _equilibrium(gas: Row) -> list[Claim]:
+    at = f"at packing fraction {gas.packing_fraction:.3g}"
+    kurtosis, temperature = theory.kurtosis(gas.dimension, gas.count), gas.given_temperature
     return [
         Claim.chi_square(
-            claim=f"chi-square of {samples} speeds against Maxwell's distribution, {at}",
-            chi_square=float(row["chi_square"]),
-            degrees_of_freedom=int(row["degrees_of_freedom"]),
+            claim=f"chi-square of {gas.samples} speeds against Maxwell's distribution, {at}",
+            chi_square=gas.chi_square,
+            degrees_of_freedom=gas.degrees_of_freedom,
             source=MAXWELL,
             fails_if="speeds that are not Maxwell's, or snapshots that are not independent",
         ),
         Claim.at_most(
             claim=f"Kolmogorov distance times sqrt(samples), {at}",
-            measured=Estimate(float(row["kolmogorov_distance"]) * samples**0.5, KOLMOGOROV_SCATTER),
+            measured=Estimate(gas.kolmogorov_distance * gas.samples**0.5, KOLMOGOROV_SCATTER),
             bound=KOLMOGOROV_LIMIT,
             required=KOLMOGOROV_SCATTER,
             source=MAXWELL,
@@ -126,16 +123,16 @@ def _equilibrium(row: xr.Dataset, dimension: int) -> list[Claim]:
         ),
         Claim(
             claim=f"kurtosis of the speeds, {at}",
-            measured=Estimate.of(row, "kurtosis"),
+            measured=gas.kurtosis,
             expected=kurtosis,
             required=0.01 * kurtosis,
-            source=f"Maxwell's, at fixed energy and {count} particles (exact)",
+            source=f"Maxwell's, at fixed energy and {gas.count} particles (exact)",
             fails_if="a tail too heavy or too light: not yet in equilibrium",
         ),
         Claim(
-            claim=f"temperature <v^2>/{dimension}, {at}",
+            claim=f"temperature <v^2>/{gas.dimension}, {at}",
             kind="identity",
-            measured=Estimate(row["temperature"], 1e-12 * temperature),
+            measured=Estimate(gas.temperature, 1e-12 * temperature),
             expected=temperature,
             required=1e-9 * temperature,
             source="conservation of energy (exact)",
@@ -144,7 +141,7 @@ def _equilibrium(row: xr.Dataset, dimension: int) -> list[Claim]:
         Claim.at_least(
             claim=f"collisions per particle between snapshots, {at}",
             kind="identity",
-            measured=Estimate(row["collisions_between"]),
+            measured=Estimate(gas.collisions_between),
             bound=3.0,
             required=1.0,
             source="independent samples are 3 or more collisions per particle apart",

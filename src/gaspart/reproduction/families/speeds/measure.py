@@ -7,6 +7,7 @@ sources (all speeds 1 at first, temperature 1/d). Collisions per particle are s 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,9 +16,9 @@ from gaspart import theory
 from gaspart.analysis.bins import Grid
 from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.shared.rows import from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 from gaspart.scene.gas import plain_gas
 from gaspart.scene.scene import Scene
 
@@ -83,6 +84,11 @@ def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
     return [np.sqrt(squares / freedom / len(group)) for group in samples]
 
 
+def shared_means(samples: list[np.ndarray]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The mean over axis 0 of each group of runs, and its error; see `shared_error`."""
+    return [(group.mean(axis=0), error) for group, error in zip(samples, shared_error(samples), strict=True)]
+
+
 def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
     """Kurtosis, fraction never hit and histogram during relaxation from equal speeds to Maxwell's
     distribution.
@@ -93,53 +99,59 @@ def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
     Dimensions engine, frame, snapshot, bin. Errors are those of the mean over replicas, from the scatter of
     all runs, with their degrees of freedom. Raises SceneError if the points differ or a time is not sampled.
     """
-    dimension = points[0].settings["dimension"]
     groups = [read(point, first=0) for point in points]
-    scene = points[0].scene
-    time = groups[0][0].time
+    scene, time = points[0].scene, groups[0][0].time
     _require_alike(points, groups)
     shown = np.array([_frame_at(time, chosen) for chosen in settings["times"]])
     grid = Grid.line(0.0, settings["highest"], settings["bins"])
-    (edges,) = grid.edges
-
-    dataset = xr.Dataset(
-        coords={
-            "engine": [point.settings.get("engine", "event") for point in points],
-            "time": ("frame", time, {"units": "scene time"}),
-            "shown": ("snapshot", shown, {"units": "1", "long_name": "frame of each histogram"}),
-            "lower": ("bin", edges[:-1], {"units": "root-mean-square speed"}),
-            "upper": ("bin", edges[1:], {"units": "root-mean-square speed"}),
-        },
-        attrs={
-            "dimension": dimension,
-            "count": scene.count,
-            "packing_fraction": scene.packing_fraction,
-            "collision_rate": _rate_between_walls(scene, groups[0][0].temperature[0]),
-        },
-    )
-    freedom = sum(len(group) - 1 for group in groups)
-    measures = {
-        "collisions": lambda run: run.collisions,
-        "kurtosis": lambda run: kurtosis(run.speeds),
-        "never_hit": lambda run: never_hit(run.velocities),
-        "density": lambda run: np.stack([_density(speeds, grid) for speeds in run.speeds[shown]]),
-        "temperature_drift": lambda run: np.abs(run.temperature / run.temperature[0] - 1.0),
+    found = [[_relaxing(run, grid, shown) for run in group] for group in groups]
+    means = {
+        name: shared_means([np.stack([one[name] for one in group]) for group in found])
+        for name in found[0][0]
     }
-    for name, function in measures.items():
-        samples = [np.stack([function(run) for run in group]) for group in groups]
-        axes = ("engine", "snapshot", "bin") if name == "density" else ("engine", "frame")
-        units = {"units": "1"}
-        dataset[name] = (axes, np.stack([group.mean(axis=0) for group in samples]), units)
-        dataset[f"{name}_error"] = (axes, np.stack(shared_error(samples)), units)
-        dataset[f"{name}_freedom"] = freedom
-    slopes = [
-        np.array([_initial_slope(run.collisions, kurtosis(run.speeds)) for run in group]) for group in groups
-    ]
-    dataset["initial_slope"] = ("engine", np.array([values.mean() for values in slopes]), {"units": "1"})
-    dataset["initial_slope_error"] = ("engine", np.array(shared_error(slopes)), {"units": "1"})
-    dataset["initial_slope_freedom"] = freedom
-    dataset["replicas"] = ("engine", np.array([len(group) for group in groups]), {"units": "1"})
-    return dataset
+
+    def row(engine: int) -> dict[str, Any]:
+        return {"replicas": len(groups[engine]), **{name: means[name][engine] for name in means}}
+
+    over_time = dict.fromkeys(("collisions", "kurtosis", "never_hit", "temperature_drift"), ("frame",))
+    inner = {**over_time, "density": ("snapshot", "bin")}
+    dataset = table("engine", range(len(groups)), row, inner=inner, units={})
+    freedom = sum(len(group) - 1 for group in groups)
+    return (
+        dataset.assign({f"{name}_freedom": freedom for name in means})
+        .assign_coords(
+            engine=[point.settings.get("engine", "event") for point in points],
+            time=("frame", time, {"units": "scene time"}),
+            shown=("snapshot", shown, {"units": "1", "long_name": "frame of each histogram"}),
+            **_bins(grid),
+        )
+        .assign_attrs(
+            dimension=scene.dimension,
+            count=scene.count,
+            packing_fraction=scene.packing_fraction,
+            collision_rate=_rate_between_walls(scene, groups[0][0].temperature[0]),
+        )
+    )
+
+
+def _relaxing(run: Velocities, grid: Grid, shown: np.ndarray) -> dict[str, Any]:
+    """What a run gives, by the names of `speed_relaxation`."""
+    speeds = run.speeds
+    fourth = kurtosis(speeds)
+    return {
+        "collisions": run.collisions,
+        "kurtosis": fourth,
+        "never_hit": never_hit(run.velocities),
+        "density": np.stack([_density(frame, grid) for frame in speeds[shown]]),
+        "temperature_drift": np.abs(run.temperature / run.temperature[0] - 1.0),
+        "initial_slope": _initial_slope(run.collisions, fourth),
+    }
+
+
+def _bins(grid: Grid) -> dict[str, Any]:
+    """The coordinates of a histogram."""
+    edges, units = grid.edges[0], {"units": "root-mean-square speed"}
+    return {"lower": ("bin", edges[:-1], units), "upper": ("bin", edges[1:], units)}
 
 
 def _require_alike(points: list[Point], groups: list[list]) -> None:
@@ -219,19 +231,18 @@ def distribution(points: list[Point], settings: dict) -> xr.Dataset:
     """
     dimension = points[0].settings["dimension"]
     grid = Grid.line(0.0, settings["highest"], settings["bins"])
-    (edges,) = grid.edges
     steps = np.linspace(0.0, settings["highest"], 201)
-    rows = [_distribution(point, dimension, grid, steps, settings["classes"]) for point in points]
+    given = dimension, grid, steps, settings["classes"]
     inner = {**dict.fromkeys(("density", "expected", "residual"), ("bin",)), "difference": ("step",)}
-    dataset = from_rows("point", rows, inner, units={}).assign_coords(
-        lower=("bin", edges[:-1], {"units": "root-mean-square speed"}),
-        upper=("bin", edges[1:], {"units": "root-mean-square speed"}),
-        speed=("step", steps, {"units": "root-mean-square speed"}),
+    dataset = table("point", points, _distribution, *given, inner=inner, units={}).assign_coords(
+        **_bins(grid), speed=("step", steps, {"units": "root-mean-square speed"})
     )
     return dataset.assign_attrs(dimension=dimension)
 
 
-def _distribution(point: Point, dimension: int, grid: Grid, steps: np.ndarray, classes: int) -> dict:
+def _distribution(
+    point: Point, dimension: int, grid: Grid, steps: np.ndarray, classes: int
+) -> dict[str, Any]:
     """The numbers of one point. Speeds are over the root-mean-square speed: Maxwell's temperature is 1/d."""
     temperature = 1.0 / dimension
     found = read(point)
@@ -249,16 +260,14 @@ def _distribution(point: Point, dimension: int, grid: Grid, steps: np.ndarray, c
     energy = np.concatenate([run.temperature for run in found])
     scene = point.scene
     return {
-        "density": share / width,
-        "density_error": deviation / width,
+        "density": (share / width, deviation / width),
         "expected": chance / width,
         "residual": (share - chance) / deviation,
         "difference": np.searchsorted(ordered, steps, side="right") / speeds.size - cumulative(steps),
         "kolmogorov_distance": _kolmogorov_distance(cumulative(ordered)),
         "chi_square": test.chi_square,
         "degrees_of_freedom": test.degrees_of_freedom - 1,
-        "kurtosis": fourth.value,
-        "kurtosis_error": fourth.error * np.sqrt((1.0 + memory) / (1.0 - memory)),
+        "kurtosis": (fourth.value, fourth.error * np.sqrt((1.0 + memory) / (1.0 - memory))),
         "samples": speeds.size,
         "snapshots": sum(len(run.time) for run in found),
         "replicas": len(found),
