@@ -115,6 +115,7 @@ def test_all_optional_arguments_of_the_kernels_are_features_or_choices_of_a_meth
     optional = {
         test.left.id
         for path in (ROOT / "src/gaspart/kernels").rglob("*.py")
+        if path.parent.name != "compile"  # which compiles kernels, and has none
         for test in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         if isinstance(test, ast.Compare) and isinstance(test.ops[0], ast.Is | ast.IsNot)
         if isinstance(test.left, ast.Name) and test.left.id.islower()
