@@ -64,6 +64,13 @@ class Table(_Columns):
     def __init__(self, dataset: xr.Dataset, over: str) -> None:
         self.dataset, self._over = dataset.transpose(over, ..., missing_dims="ignore"), over
 
+    @classmethod
+    def prefixed(cls, dataset: xr.Dataset, over: str) -> Table:
+        """The rows along `over` of the variables that begin with its name; see the function `prefixed`."""
+        start = f"{over}_"
+        names = {name: str(name).removeprefix(start) for name in dataset if str(name).startswith(start)}
+        return cls(dataset[list(names)].rename(names), over)
+
     def __len__(self) -> int:
         return int(self.dataset.sizes.get(self._over, 0))
 
@@ -150,6 +157,12 @@ def _spread(row: Mapping[str, Any]) -> dict[str, Any]:
     for name, value in row.items():
         spread |= entries({name: value}) if isinstance(value, (Estimate, tuple)) else {name: value}
     return spread
+
+
+def prefixed(**tables: xr.Dataset) -> xr.Dataset:
+    """Tables with different rows in one data set, by the names of their dimensions: the column `volume` along
+    `path` is the variable `path_volume`."""
+    return xr.merge(part.rename({name: f"{over}_{name}" for name in part}) for over, part in tables.items())
 
 
 def from_rows(

@@ -7,21 +7,24 @@ ones its one species. Stretches and errors are those of `gaspart.reproduction.fa
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from gaspart.analysis.bins import Grid
-from gaspart.analysis.statistics import jackknife
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import jackknife, mean_of
 from gaspart.reproduction.families.shared.columns import (
     Field,
     Stretch,
     field,
     stretches,
 )
-from gaspart.reproduction.families.shared.rows import entries
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import prefixed, table
 from gaspart.theory.buoyancy import displaced_area
 from gaspart.theory.geometry import particle_volume
 from gaspart.theory.gravity import hydrostatic_profiles
@@ -43,30 +46,44 @@ def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
     how much larger than the large disc, in small radii, is the disc of undisturbed fluid whose weight is the
     force; `count_radius`, that of as many discs as are missing.
     """
-    own = [point for point in points if point.experiment not in settings["source"]]
+    of_source = [point for point in points if point.experiment in settings["source"]]
+    own = [point for point in points if point not in of_source]
     held = [point for point in own if point.scene.particles[0].fixed]
-    fixed = [_fixed(point, settings) for point in held]
-    free = [_free(point, settings) for point in own if point not in held]
-    of_source = [_free(point, settings) for point in points if point not in own]
-    of_source.sort(key=lambda row: row["mass"])
-    place, ratio = field(held[0]), fixed[0]["size_ratio"]
-    z = np.linspace(0.0, place.height, 201)
-    eta = np.mean([row.pop("fluid")(z) for row in fixed], axis=0)
-    return xr.Dataset(
-        {
-            f"{kind}_{name}": (kind, np.array([row[name] for row in table]))
-            for kind, table in (("fixed", fixed), ("free", free), ("source", of_source))
-            for name in (table[0] if table else ())
-        }
-        | {"displaced": ("height", eta * displaced_area(eta, ratio))},
-        coords={"height": z},
-        attrs={
-            "size_ratio": ratio,
-            "strength": place.strength,
-            "top": place.height,
-            "source_density": settings["source_density"],
-        },
+    moving = [point for point in own if point not in held]
+    fixed = table("fixed", held, _fixed, settings, inner=("place",))
+    place, ratio = field(held[0]), float(fixed["size_ratio"][0])
+    made = prefixed(
+        fixed=fixed.drop_vars("fluid"),
+        free=table("free", moving, _free, settings),
+        source=table("source", sorted(of_source, key=_mass), _free, settings),
     )
+    eta = fixed["fluid"].values.mean(axis=0)
+    made = made.assign(displaced=("height", eta * displaced_area(eta, ratio)), height=_heights(place))
+    return made.assign_attrs(
+        size_ratio=ratio,
+        strength=place.strength,
+        top=place.height,
+        source_density=settings["source_density"],
+    )
+
+
+def _heights(place: Field) -> np.ndarray:
+    """Those of the curve of the mass displaced."""
+    return np.linspace(0.0, place.height, 201)
+
+
+def _mass(point: Point) -> float:
+    """Of the large disc."""
+    return point.scene.particles[0].mass
+
+
+def _of_blocks(function: Callable[..., Any], *samples: np.ndarray) -> Estimate:
+    """A function of means over blocks, with its error from their scatter."""
+    return Estimate(*jackknife(function, *samples), len(samples[0]) - 1)
+
+
+def _grid(place: Field, settings: dict) -> Grid:
+    return Grid.line(0.0, place.height, settings["bins"])
 
 
 def _far(place: Field, stretch: Stretch, radius: float, settings: dict) -> np.ndarray:
@@ -74,7 +91,7 @@ def _far(place: Field, stretch: Stretch, radius: float, settings: dict) -> np.nd
     across = np.abs(stretch.positions[..., 0] - stretch.positions[:, :1, 0])
     distance = radius + settings["far"] * place.diameter
     far = np.minimum(across, place.width - across) > distance
-    grid = Grid.line(0.0, place.height, settings["bins"])
+    grid = _grid(place, settings)
     counts = grid.sums(grid.cells(stretch.heights[far][:, None]))
     return counts / (len(stretch.heights) * (place.width - 2.0 * distance) * grid.volume)
 
@@ -95,47 +112,42 @@ def _fluid(
 
 
 def _fixed(point: Point, settings: dict) -> dict:
-    """Force and effective radius of a fixed disc, and the fluid at its height."""
+    """Force and effective radius of a fixed disc, and the fluid at its height; `fluid`, the packing fraction
+    of the undisturbed one at `_heights`."""
     place, found = field(point), stretches(point, settings["blocks"])
     radius, height = _large(point, place)
-    ratio = 2.0 * radius / place.diameter
-    unit = place.masses[-1] * place.strength
+    ratio, volume = 2.0 * radius / place.diameter, particle_volume(2, place.diameter)
     force = np.array([s.floor - s.ceiling - place.weight - s.gain for s in found])
+    displaced = force / (place.masses[-1] * place.strength)
     density = np.array([_far(place, stretch, radius, settings) for stretch in found])
-    temperatures = np.array([stretch.temperature for stretch in found])
-    # The undisturbed density where the disc is: its mean over the disc's area.
-    z = (np.arange(settings["bins"]) + 0.5) * place.height / settings["bins"]
-    chord = np.sqrt(np.maximum(radius**2 - (z - height) ** 2, 0.0))
-    chord /= chord.sum()
-    volume = particle_volume(2, place.diameter)
-
     # One smooth profile for all blocks, scaled to each one's number: missing discs are counted relative to
     # it.
-    fluid = _fluid(place, density.mean(axis=0), temperatures.mean(), settings)
+    warm = float(np.mean([stretch.temperature for stretch in found]))
+    fluid = _fluid(place, density.mean(axis=0), warm, settings)
     reach = radius + settings["near"] * place.diameter
     across, up = _disc(reach)
     undisturbed = float((fluid(height + up) * across).sum() / volume)
-    inside = np.array([_inside(place, s, height, reach) for s in found])
-    total = density.sum(axis=1) / density.mean(axis=0).sum()
+    inside = np.array([_inside(place, stretch, height, reach) for stretch in found])
+    missing = undisturbed * density.sum(axis=1) / density.mean(axis=0).sum() - inside
+    # The undisturbed density where the disc is: its mean over the disc's area.
+    [z] = _grid(place, settings).middles
+    chord = np.sqrt(np.maximum(radius**2 - (z - height) ** 2, 0.0))
+    there = density @ (chord / chord.sum())
 
-    def radius_of(displaced: float, density: np.ndarray) -> float:
-        return np.sqrt(displaced / (np.pi * (chord @ density))) / (0.5 * place.diameter) - ratio
+    def radius_of(number: float, density: float) -> float:
+        return math.sqrt(number / (math.pi * density)) / (0.5 * place.diameter) - ratio
 
-    made = {
-        "force": jackknife(lambda f: f / unit, force),
-        "missing": jackknife(lambda n, share: undisturbed * share - n, inside, total),
-        "packing_fraction": jackknife(lambda rho: chord @ rho * volume, density),
-        "force_radius": jackknife(lambda f, rho: radius_of(f / unit, rho), force, density),
-        "count_radius": jackknife(
-            lambda n, share, rho: radius_of(undisturbed * share - n, rho), inside, total, density
-        ),
-    }
-    row = entries(made, len(found) - 1)
-    return row | {
+    packing_fraction = mean_of(there * volume)
+    return {
+        "force": mean_of(displaced),
+        "missing": mean_of(missing),
+        "packing_fraction": packing_fraction,
+        "force_radius": _of_blocks(radius_of, displaced, there),
+        "count_radius": _of_blocks(radius_of, missing, there),
+        "radius_expected": float(np.sqrt(displaced_area(packing_fraction.value, ratio)) - ratio),
         "height": height,
         "size_ratio": ratio,
-        "radius_expected": float(np.sqrt(displaced_area(row["packing_fraction"], ratio)) - ratio),
-        "fluid": fluid,
+        "fluid": fluid(_heights(place)),
     }
 
 
@@ -157,9 +169,7 @@ def _free(point: Point, settings: dict) -> dict:
     """Where a free disc is, and where Boltzmann's factor of its weight and the displaced one's wants it."""
     place, found = field(point), stretches(point, settings["blocks"])
     radius, _ = _large(point, place)
-    ratio = 2.0 * radius / place.diameter
-    mass = point.scene.particles[0].mass
-    heights = np.array([[s.heights[:, 0].mean(), (s.heights[:, 0] ** 2).mean()] for s in found])
+    ratio, mass = 2.0 * radius / place.diameter, _mass(point)
     warm = float(np.mean([stretch.temperature for stretch in found]))
     fluid = _fluid(place, np.mean([_far(place, s, radius, settings) for s in found], axis=0), warm, settings)
     margin = radius - 0.5 * place.diameter
@@ -172,14 +182,12 @@ def _free(point: Point, settings: dict) -> dict:
     chance = np.exp(exponent - exponent.max())
     chance /= chance.sum()
     expected = chance @ z
-    value, error = jackknife(lambda h: np.array([h[0], np.sqrt(max(h[1] - h[0] ** 2, 0.0))]), heights)
+    height, square = np.array([[s.heights[:, 0].mean(), (s.heights[:, 0] ** 2).mean()] for s in found]).T
+    spread = _of_blocks(lambda mean, square: math.sqrt(max(square - mean**2, 0.0)), height, square)
     return {
         "mass": mass / place.masses[-1],
-        "height": value[0],
-        "height_error": error[0],
-        "height_freedom": len(found) - 1,
-        "spread": value[1],
-        "spread_error": error[1],
+        "height": mean_of(height),
+        "spread": (spread.value, spread.error),
         "expected": expected,
         "expected_spread": np.sqrt(chance @ (z - expected) ** 2),
         "lowest": margin,

@@ -8,9 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart import theory
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import mean_of, means_of
 from gaspart.rendering import style
 from gaspart.reproduction.families.piston.claims import isothermal_variance
-from gaspart.reproduction.families.shared.claims import PARTICLES, rows
+from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.table import Row, Table
 
 _DOUBLED = 2.0
 """The volume after free expansion, over that before."""
@@ -20,60 +23,41 @@ _EXPONENTS = {2: "2", 3: "5/3"}
 def piston(ds: xr.Dataset) -> Figure:
     """Three panels: temperature along adiabats, factors at constant pressure, variances of the volume."""
     figure, (upper, middle, lower) = style.new((2.6,), (1.9, 1.9))
-    for path in rows(ds, "path"):
+    paths, states, gases = (Table.prefixed(ds, kind) for kind in ("path", "state", "expansion"))
+    for path in paths:
         _draw_path(upper, path)
-    for gas in rows(ds, "expansion")[:1]:
-        speed = gas["expansion_speed"].values ** 2
-        error = speed.std(ddof=1) / np.sqrt(speed.size)
-        style.points(upper, _DOUBLED, speed.mean(), error, 4, label="free expansion")
-    upper.set_xscale("log")
-    upper.set_yscale("log")
-    upper.set_xlabel(r"volume $V/V_0$")
-    upper.set_ylabel(r"temperature $T/T_0$")
-    upper.legend()
+    for gas in gases[:1]:
+        style.points(upper, _DOUBLED, mean_of(gas.speed**2), kind=4, label="free expansion")
+    labels = r"volume $V/V_0$", r"temperature $T/T_0$"
+    style.labelled(upper, *labels, legend="best", xscale="log", yscale="log")
     style.level(lower, 1.0)
-    for dimension in (2, 3):
-        states = ds.isel(state=(ds["state_dimension"] == dimension).values)
-        if states.sizes["state"]:
-            _draw_states(middle, lower, states, dimension)
-    middle.set_ylabel(r"$P/nk_{\mathrm{B}}T$ / reference")
-    lower.set_ylabel(r"variance of $V$ / theory")
-    lower.set_xlabel(r"packing fraction $\eta$")
-    lower.set_xlim(0.0, None)
-    middle.legend()
-    lower.legend()
+    for dimension, part in states.by("dimension"):
+        _draw_states(middle, lower, part, dimension)
+    style.labelled(middle, y=r"$P/nk_{\mathrm{B}}T$ / reference", legend="best")
+    labels = r"packing fraction $\eta$", r"variance of $V$ / theory"
+    style.labelled(lower, *labels, legend="best", xlim=(0.0, None))
     style.letters(upper, middle, lower)
     return figure
 
 
-def _draw_path(axis: Axes, path: xr.Dataset) -> None:
-    dimension, first = int(path["path_dimension"]), float(path["path_packing_fraction"])
-    volume, temperature = path["path_volume"].mean("path_replica"), path["path_temperature"]
-    scatter, replicas = temperature.std("path_replica", ddof=1), temperature.sizes["path_replica"]
-    kind, error = dimension - 2, scatter / np.sqrt(replicas)
-    style.points(axis, volume, temperature.mean("path_replica"), error, kind, label=PARTICLES[dimension])
-    fine = np.geomspace(float(volume.min()), _DOUBLED, 60)
+def _draw_path(axis: Axes, path: Row) -> None:
+    dimension, first, kind = path.dimension, path.packing_fraction, path.dimension - 2
+    volume, temperature = path.volume.mean(axis=0), Estimate(*means_of(path.temperature))
+    style.points(axis, volume, temperature, kind=kind, label=PARTICLES[dimension])
+    fine = np.geomspace(volume.min(), _DOUBLED, 60)
     expected = theory.adiabatic_temperature(first / fine, first, dimension)
     label = rf"adiabat, $\gamma={_EXPONENTS[dimension]}$"
     axis.plot(fine, expected, color=style.COLOURS[kind], zorder=1, label=label)
 
 
-def _draw_states(middle: Axes, lower: Axes, states: xr.Dataset, dimension: int) -> None:
-    eta, kind = states["state_density"].mean("state_replica").values, dimension - 2
-    factor = states["state_factor"] / theory.compressibility_factor(states["state_density"].values, dimension)
-    sound = np.asarray(theory.speed_of_sound(eta, dimension))
-    variance = states["state_fluctuation"] * sound[:, None] ** 2
-    root = np.sqrt(states.sizes["state_replica"])
+def _draw_states(middle: Axes, lower: Axes, states: Table, dimension: int) -> None:
+    eta, name = states.density.mean(axis=1), PARTICLES[dimension]
+    factor = states.factor / theory.compressibility_factor(states.density, dimension)
+    variance = states.fluctuation * theory.speed_of_sound(eta, dimension)[:, None] ** 2
     for axis, ratio in ((middle, factor), (lower, variance)):
-        mean, error = ratio.mean("state_replica"), ratio.std("state_replica", ddof=1) / root
-        style.points(axis, eta, mean, error, kind, label=PARTICLES[dimension])
-    fine = np.linspace(0.0, eta.max(), 60)
-    finite = theory.constant_enthalpy_factor(fine, dimension, int(states["state_count"][0]))
-    middle.plot(
-        fine, finite, color=style.COLOURS[kind], zorder=1, label=f"{PARTICLES[dimension]}, finite $N$"
-    )
-    isothermal = [
-        isothermal_variance(one, dimension) * theory.speed_of_sound(one, dimension) ** 2 for one in fine
-    ]
-    label = f"{PARTICLES[dimension]}, constant $T$"
-    lower.plot(fine, isothermal, color=style.COLOURS[kind], linestyle="--", label=label)
+        style.points(axis, eta, Estimate(*means_of(ratio.T)), kind=dimension - 2, label=name)
+    fine, colour = np.linspace(0.0, eta.max(), 60), style.COLOURS[dimension - 2]
+    finite = theory.constant_enthalpy_factor(fine, dimension, states.count[0])
+    middle.plot(fine, finite, color=colour, zorder=1, label=f"{name}, finite $N$")
+    isothermal = isothermal_variance(fine, dimension) * theory.speed_of_sound(fine, dimension) ** 2
+    lower.plot(fine, isothermal, color=colour, linestyle="--", label=f"{name}, constant $T$")

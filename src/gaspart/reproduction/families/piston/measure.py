@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
 from scipy.integrate import cumulative_trapezoid
 
 from gaspart.analysis.run import Run
-from gaspart.reproduction.families.shared.rows import from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import prefixed, table
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.theory.enskog import enskog_longitudinal_viscosity
@@ -34,24 +34,26 @@ def piston(points: list[Point], settings: dict) -> xr.Dataset:
     particles in the half of the container that was empty; over `expansion` dimension.
     Final are means over the second half of the frames.
     """
-    kinds: dict[str, list[dict]] = {"path": [], "state": [], "expansion": []}
-    for point in points:
-        scene, equilibration = point.scene, point.schedule.equilibration_frames
-        kind = "expansion" if not pistons(scene) else "state" if equilibration else "path"
-        read = {"path": _path, "state": _state, "expansion": _expansion}[kind]
-        replicas = [read(run) for run in runs(point, equilibration if kind == "state" else 0)]
-        row: dict[str, Any] = {name: np.stack([one[name] for one in replicas]) for name in replicas[0]}
-        row["dimension"] = scene.dimension
-        if kind == "state":
-            row["count"] = scene.count
-        if kind == "path":
-            row["packing_fraction"] = scene.packing_fraction
-        kinds[kind].append(row)
-    parts = [from_rows(kind, rows, (f"{kind}_replica", "frame"), {}) for kind, rows in kinds.items()]
-    return xr.merge(
-        part.rename({name: f"{kind}_{name}" for name in part})
-        for kind, part in zip(kinds, parts, strict=True)
-    )
+    tables = {}
+    for kind, read in {"path": _path, "state": _state, "expansion": _expansion}.items():
+        chosen = [point for point in points if _kind(point) == kind]
+        tables[kind] = table(kind, chosen, _row, read, inner=(f"{kind}_replica", "frame"), units={})
+    return prefixed(**tables)
+
+
+def _kind(point: Point) -> str:
+    if not pistons(point.scene):
+        return "expansion"
+    return "state" if point.schedule.equilibration_frames else "path"
+
+
+def _row(point: Point, read: Callable[[Run], dict]) -> dict:
+    """What `read` gives of each replica, and the numbers of its scene."""
+    first = point.schedule.equilibration_frames if _kind(point) == "state" else 0
+    replicas = [read(run) for run in runs(point, first)]
+    row = {name: np.stack([one[name] for one in replicas]) for name in replicas[0]}
+    scene = {"path": ("packing_fraction",), "state": ("count",)}.get(_kind(point), ())
+    return row | {name: getattr(point.scene, name) for name in ("dimension", *scene)}
 
 
 def _path(run: Run) -> dict[str, np.ndarray]:

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.timings import log_ratios, per_event, ratio_of_jobs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 from gaspart.scene.features import features
 from gaspart.scene.scene import Scene
 
@@ -30,29 +30,27 @@ def price_of_features(points: list[Point], settings: dict) -> xr.Dataset:
     itself has the ratio 1. Over kernel, if a point counts them: engine's name, `instructions`, and
     `stripped`, those of a kernel whose source lacks the features.
     """
-    jobs = [_row(point) for point in points if point.job == "measure_cost"]
     groups: dict[tuple, list[dict]] = {}
-    for job in jobs:
+    for job in (_job(point) for point in points if point.job == "measure_cost"):
         groups.setdefault((job["engine"], job["feature"]), []).append(job)
-    rows = [_together(group) for group in groups.values()]
-    dataset = from_rows("point", rows)
+    dataset = table("point", list(groups.values()), _row)
     for point in points:
         if point.job == "count_instructions":
             dataset = dataset.merge(xr.load_dataset(point.path).rename(engine="kernel"))
     return dataset
 
 
-def _together(jobs: list[dict]) -> dict:
+def _row(jobs: list[dict]) -> dict:
     """The row of several jobs of one feature; NaN errors for a single one."""
     return {
         "engine": jobs[0]["engine"],
         "feature": jobs[0]["feature"],
         **{name: float(np.mean([job[name] for job in jobs])) for name in ("seconds", *WORK)},
-        **entries({"ratio": ratio_of_jobs([job["log_ratio"] for job in jobs])}),
+        "ratio": ratio_of_jobs([job["log_ratio"] for job in jobs]),
     }
 
 
-def _row(point: Point) -> dict:
+def _job(point: Point) -> dict:
     """One job: its costs per event, and the mean over its repeats of ln of the time per event over that of
     the scene without the feature, timed next to it."""
     with xr.open_dataset(point.path) as run:

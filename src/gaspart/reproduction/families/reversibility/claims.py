@@ -6,8 +6,9 @@ import math
 
 import xarray as xr
 
-from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES, rows
+from gaspart.reproduction.claims import Claim
+from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.table import Row, Table
 
 ROUNDINGS = math.log(0.1 * 2.0**53)
 """ln of the distance at which the memory is lost, in diameters, over the rounding of a coordinate of 1."""
@@ -15,20 +16,17 @@ ROUNDINGS = math.log(0.1 * 2.0**53)
 
 def reversibility(ds: xr.Dataset) -> list[Claim]:
     """Growth against that of neighbouring runs, and how long the memory of exact runs lasts."""
-    claims = []
-    for row in rows(ds, "row"):
-        gas = f"{PARTICLES[int(row.dimension)]}, packing fraction {float(row.packing_fraction):g}"
-        if str(row.engine.values) == "event":  # of time steps nothing is known but what the figure shows
-            claims += _growth(row, gas)
-    return claims
+    runs = Table(ds, "row")
+    exact = runs[runs.engine == "event"]  # of time steps nothing is known but what the figure shows
+    return [claim for run in exact for claim in _growth(run)]
 
 
-def _growth(row: xr.Dataset, gas: str) -> list[Claim]:
-    growth = Estimate.of(row, "growth")
+def _growth(run: Row) -> list[Claim]:
+    gas = f"{PARTICLES[run.dimension]}, packing fraction {run.packing_fraction:g}"
     return [
         Claim(
             claim=f"growth of the echo over that of two neighbouring runs, {gas}",
-            measured=growth / Estimate.of(row, "divergence"),
+            measured=run.growth / run.divergence,
             expected=1.0,
             required=0.1,
             source="time reversal: a flow and its reverse have the same exponents",
@@ -36,7 +34,7 @@ def _growth(row: xr.Dataset, gas: str) -> list[Claim]:
         ),
         Claim(
             claim=f"growth of the echo over the largest Lyapunov exponent, {gas}",
-            measured=growth / Estimate.of(row, "exponent"),
+            measured=run.growth / run.exponent,
             expected=1.0,
             required=0.1,
             source="the linearised dynamics of the same gas, by gaspart.analysis.lyapunov; the growth of the "
@@ -45,8 +43,8 @@ def _growth(row: xr.Dataset, gas: str) -> list[Claim]:
         ),
         Claim.within(
             claim=f"growth of the echo times the memory, {gas}",
-            measured=growth * Estimate.of(row, "memory"),
-            expected=ROUNDINGS - math.log(float(row.side)),
+            measured=run.growth * run.memory,
+            expected=ROUNDINGS - math.log(run.side),
             half_width=5.0,
             source="ln(0.1 2^53 sigma / L): only the rounding of coordinates up to L is lost",
             fails_if="an error larger than rounding is made, or the engine replays instead of integrating",

@@ -2,81 +2,71 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
 from gaspart.reproduction.families.shared.claims import PARTICLES
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.table import Table
 
 LINES_OF_ENGINES = {
     ("event", "float64"): ("event-driven", "-"),
     ("step", "float64"): ("time-stepped", "--"),
     ("step", "float32"): ("time-stepped, float32", ":"),
 }
+ETA = r"packing fraction $\eta$"
 
 
 def reversibility(ds: xr.Dataset) -> Figure:
     """Echoes against collisions, their growth against density, and the memory of each engine."""
     figure, axes = style.new((2.8,), (2.1,), (2.1,))
-    gases = sorted(set(zip(ds.dimension.values.tolist(), ds.packing_fraction.values.tolist(), strict=True)))
-    for n in range(ds.sizes["row"]):
-        row = ds.isel(row=n)
-        gas = int(row.dimension), float(row.packing_fraction)
-        _, line = LINES_OF_ENGINES[str(row.engine.values), str(row.precision.values)]
-        label = f"{gas[0]}D, {gas[1]:g}" if line == "-" else None
-        colour = style.COLOURS[gases.index(gas) % len(style.COLOURS)]
-        axes[0].plot(row.collisions, row.echo, color=colour, ls=line, label=label)
-    for name, line in LINES_OF_ENGINES.values():
-        axes[0].plot([], [], color=style.GREY, ls=line, label=name)
-    axes[0].set(
-        xscale="log",
-        yscale="log",
-        xlabel="collisions per particle before the reversal",
-        ylabel=r"echo: distance / $\sigma$",
-    )
-    axes[0].set_ylim(1e-20, 1e3)
-    axes[0].legend(title=r"$\eta$", ncols=2, loc="lower right", columnspacing=0.6, handletextpad=0.4)
-    _growth(axes[1], ds)
-    _memory(axes[2], ds)
+    runs = Table(ds, "row")
+    _echoes(axes[0], runs)
+    _growth(axes[1], runs[runs.engine == "event"])
+    _memory(axes[2], runs)
     style.letters(*axes)
     return figure
 
 
-def _growth(axis: Axes, ds: xr.Dataset) -> None:
-    exact = ds.isel(row=(ds.engine == "event").values)
-    for kind, dimension in enumerate((2, 3)):
-        of = exact.isel(row=(exact.dimension == dimension).values)
-        name = PARTICLES[dimension]
-        if not of.sizes["row"]:
-            continue
-        eta = of.packing_fraction.values
-        style.measured(axis, eta, estimates(of, "growth"), kind=kind, label=f"{name}, echo")
-        style.measured(
-            axis, 1.12 * eta, estimates(of, "divergence"), kind=kind, hollow=True, label=f"{name}, two runs"
-        )
+def _echoes(axis: Axes, runs: Table) -> None:
+    gases = [gas for *gas, _ in runs.by("dimension", "packing_fraction")]
+    for run in runs:
+        gas = [run.dimension, run.packing_fraction]
+        _, line = LINES_OF_ENGINES[run.engine, run.precision]
+        label = f"{gas[0]}D, {gas[1]:g}" if line == "-" else None
+        colour = style.COLOURS[gases.index(gas) % len(style.COLOURS)]
+        axis.plot(run.collisions, run.echo, color=colour, ls=line, label=label)
+    for name, line in LINES_OF_ENGINES.values():
+        axis.plot([], [], color=style.GREY, ls=line, label=name)
+    labels = "collisions per particle before the reversal", r"echo: distance / $\sigma$"
+    style.labelled(axis, *labels, xscale="log", yscale="log", ylim=(1e-20, 1e3))
+    axis.legend(title=r"$\eta$", ncols=2, loc="lower right", columnspacing=0.6, handletextpad=0.4)
+
+
+def _growth(axis: Axes, exact: Table) -> None:
+    for dimension, runs in exact.by("dimension"):
+        kind, eta, name = dimension - 2, runs.packing_fraction, PARTICLES[dimension]
+        style.points(axis, eta, runs.growth, kind=kind, label=f"{name}, echo")
+        style.points(axis, 1.12 * eta, runs.divergence, kind=kind, hollow=True, label=f"{name}, two runs")
         label = "tangent space" if kind else None
-        axis.errorbar(eta, of.exponent, of.exponent_error, color=style.GREY, zorder=1, label=label)
-    axis.set(xscale="log", yscale="log", xlabel=r"packing fraction $\eta$", ylabel="growth per collision")
-    if exact.sizes["row"]:
-        eta = exact.packing_fraction.values
+        exponent = runs.exponent
+        axis.errorbar(eta, exponent.value, exponent.error, color=style.GREY, zorder=1, label=label)
+    style.labelled(axis, ETA, "growth per collision", xscale="log", yscale="log")
+    if exact:
+        eta = exact.packing_fraction
         axis.set_xlim(0.5 * eta.min(), 2.0 * eta.max())
     axis.legend()
 
 
-def _memory(axis: Axes, ds: xr.Dataset) -> None:
-    for kind, ((engine, precision), (label, _)) in enumerate(LINES_OF_ENGINES.items()):
-        of = ds.isel(row=((ds.engine == engine) & (ds.precision == precision)).values)
-        for dimension in (2, 3):
-            rows = of.isel(row=(of.dimension == dimension).values)
-            style.measured(
-                axis,
-                rows.packing_fraction,
-                estimates(rows, "memory"),
-                kind=kind,
-                hollow=dimension == 2,
-                label=label if dimension == 3 else None,
-            )
-    axis.set(xscale="log", yscale="log", xlabel=r"packing fraction $\eta$", ylabel="memory (collisions)")
+def _memory(axis: Axes, runs: Table) -> None:
+    for kind, ((engine, precision), (name, _)) in enumerate(LINES_OF_ENGINES.items()):
+        of_engine = runs[(runs.engine == engine) & (runs.precision == precision)]
+        for dimension in PARTICLES:
+            part = of_engine[of_engine.dimension == dimension]
+            look: dict[str, Any] = {"hollow": dimension == 2, "label": name if dimension == 3 else None}
+            style.points(axis, part.packing_fraction, part.memory, kind=kind, **look)
+    style.labelled(axis, ETA, "memory (collisions)", xscale="log", yscale="log")
     axis.legend(title="spheres; discs hollow")

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterable
+from functools import partial
 
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
-from gaspart.reproduction.families.shared.rows import from_rows
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 
 WINDOW = {"float64": (1e-13, 1e-2), "float32": (1e-5, 1e-2)}
 """Distances, in diameters, between which a growth is fitted: above the first roundings, below saturation."""
+APART = (1e-9, 1e-2)
+"""Likewise, for the distance of two runs."""
 FORGOTTEN = 0.1
 """The memory ends where the echo is so many diameters from the start."""
 
@@ -28,46 +33,37 @@ def reversibility(points: list[Point], settings: dict) -> xr.Dataset:
     and ``memory``, in collisions per particle, until the echo is `FORGOTTEN`, each with its ``_error`` over
     the seeds; ``jumps``, the part of the echoes that leave the window in one interval from its lower half.
     """
-    rows = [_row(xr.load_dataset(point.path)) for point in points]
-    rows = sorted(rows, key=lambda row: (row["dimension"], row["packing_fraction"]))
-    return from_rows("row", rows, ("sample",))
+    rows = table("row", points, _row, inner=("sample",))
+    return rows.sortby(["dimension", "packing_fraction"])
 
 
-def _row(run: xr.Dataset) -> dict:
+def _row(point: Point) -> dict:
     """One point: all seeds together."""
-    precision = run.attrs["precision"]
-    found = {
-        "growth": [_slope(s, y, *WINDOW[precision]) for s, y in _pairs(run, "echo")],
-        "divergence": [_slope(s, y, 1e-9, 1e-2) for s, y in _pairs(run, "divergence")],
-        "memory": [_memory(s, y) for s, y in _pairs(run, "echo")],
-        "exponent": run.exponent.values,
-    }
-    row = {
-        "dimension": run.attrs["dimension"],
+    run = xr.load_dataset(point.path)
+    window = WINDOW[run.attrs["precision"]]
+    collisions, echoes, apart = (run[name].values for name in ("collisions", "echo", "divergence"))
+    kept = ("dimension", "count", "side", "engine", "precision")
+    return {name: run.attrs[name] for name in kept} | {
         "packing_fraction": round(run.attrs["packing_fraction"], 12),
-        "count": run.attrs["count"],
-        "side": run.attrs["side"],
-        "engine": run.attrs["engine"],
-        "precision": precision,
-        "collisions": run.collisions.mean("seed").values,
-        "echo": run.echo.median("seed").values,
-        "jumps": float(np.mean([_jumps(y, *WINDOW[precision]) for _, y in _pairs(run, "echo")])),
+        "collisions": collisions.mean(axis=0),
+        "echo": np.median(echoes, axis=0),
+        "jumps": float(np.mean([_jumps(echo, *window) for echo in echoes])),
+        "growth": _mean(map(partial(_slope, window), collisions, echoes)),
+        "divergence": _mean(map(partial(_slope, APART), collisions, apart)),
+        "memory": _mean(map(_memory, collisions, echoes)),
+        "exponent": _mean(run.exponent.values),
     }
-    for name, values in found.items():
-        values = np.array(values)[np.isfinite(values)]
-        estimate = mean_of(values) if values.size > 1 else None
-        row[name] = estimate.value if estimate else np.nan
-        row[f"{name}_error"] = estimate.error if estimate else np.nan
-        row[f"{name}_freedom"] = estimate.freedom if estimate else np.nan
-    return row
 
 
-def _pairs(run: xr.Dataset, name: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    return zip(run.collisions.values, run[name].values, strict=True)
+def _mean(values: Iterable[float]) -> Estimate:
+    """Over the seeds of which it is known; NaN of fewer than two."""
+    known = [value for value in values if np.isfinite(value)]
+    return mean_of(known) if len(known) > 1 else Estimate(math.nan, math.nan, math.nan)
 
 
-def _slope(s: np.ndarray, distance: np.ndarray, low: float, high: float) -> float:
+def _slope(window: tuple[float, float], s: np.ndarray, distance: np.ndarray) -> float:
     """Growth of ln distance with s until it first leaves the window; NaN with fewer than three points."""
+    low, high = window
     out = np.flatnonzero(distance >= high)
     end = out[0] if out.size else distance.size
     inside = np.flatnonzero(distance[:end] > low)

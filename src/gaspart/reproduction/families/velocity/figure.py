@@ -10,112 +10,86 @@ from matplotlib.figure import Figure
 from gaspart import theory
 from gaspart.rendering import style
 from gaspart.reproduction.families.shared.claims import PARTICLES
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.table import Row, Table
+
+S = r"collisions per particle $s=\nu t$"
 
 
 def velocity_autocorrelation(ds: xr.Dataset) -> Figure:
     """Three panels: C against collisions per particle, log-log; its start; C - 1/N over the modes."""
     figure, (upper, middle, lower) = style.new((2.6,), (2.0,), (2.2,))
-    long = ds.isel(point=np.isfinite(ds["tail_ratio"].values)).sortby(["dimension", "packing_fraction"])
+    gases = Table(ds, "point")
+    long = gases[np.isfinite(gases.tail_ratio.value)].sorted_by("dimension", "packing_fraction")
     _tails(upper, long)
-    _starts(middle, ds.isel(point=np.isfinite(ds["start_rate"].values)))
+    _starts(middle, gases[np.isfinite(gases.start_rate.value)])
     _ratios(lower, long)
     style.letters(upper, middle, lower)
     return figure
 
 
-def _of(row: xr.Dataset) -> tuple[int, float, np.ndarray]:
-    """Dimension, packing fraction, and the lags after 0 that the point has."""
-    lags = np.flatnonzero(np.isfinite(row["correlation"].values))[1:]
-    return int(row["dimension"]), float(row["packing_fraction"]), lags
+def _name(gas: Row) -> str:
+    return rf"{PARTICLES[gas.dimension]}, $\eta={gas.packing_fraction:.2g}$"
 
 
-def _tails(axis: Axes, ds: xr.Dataset) -> None:
+def _lags(gas: Row) -> Table:
+    """The lags after 0 that a gas has."""
+    lags = Table(gas.dataset, "lag")
+    return lags[np.isfinite(lags.correlation.value)][1:]
+
+
+def _tails(axis: Axes, gases: Table) -> None:
     """Measured C, the initial exponentials exp(-2 s / d), and mode coupling's tails."""
     s = np.linspace(0.5, 9.0, 100)
     for dimension, line in ((2, "--"), (3, ":")):
         label = rf"$\mathrm{{e}}^{{-2s/{dimension}}}$"
         axis.plot(s, np.exp(-2.0 / dimension * s), color=style.GREY, linestyle=line, label=label)
-    for kind in range(ds.sizes["point"]):
-        row = ds.isel(point=kind)
-        dimension, eta, lags = _of(row)
-        at = row.isel(lag=lags)
-        tail = theory.velocity_autocorrelation_tail(at["time"].values, eta, dimension)
-        late = at["collisions"].values > 3.0
-        axis.plot(at["collisions"].values[late], tail[late], color=style.COLOURS[kind], zorder=1)
-        seen = at["correlation"].values > 0.0
-        style.measured(
-            axis,
-            at["collisions"].values[seen],
-            estimates(at, "correlation")[:, seen],
-            kind,
-            markersize=2.5,
-            label=rf"{PARTICLES[dimension]}, $\eta={eta:.2g}$",
-        )
+    for kind, gas in enumerate(gases):
+        lags = _lags(gas)
+        late = lags[lags.collisions > 3.0]
+        tail = theory.velocity_autocorrelation_tail(late.time, gas.packing_fraction, gas.dimension)
+        axis.plot(late.collisions, tail, color=style.COLOURS[kind], zorder=1)
+        seen = lags[lags.correlation.value > 0.0]
+        style.points(axis, seen.collisions, seen.correlation, kind=kind, markersize=2.5, label=_name(gas))
     axis.plot([], [], color=style.DATA, label="mode coupling")
-    axis.set_xscale("log")
-    axis.set_yscale("log")
-    axis.set_xlim(0.8, 65.0)
-    axis.set_ylim(1e-3, 1.0)
+    axis.set(xscale="log", yscale="log", xlim=(0.8, 65.0), ylim=(1e-3, 1.0))
     _integer_ticks(axis)
-    axis.set_xlabel(r"collisions per particle $s=\nu t$")
-    axis.set_ylabel(r"$C=\langle v(0)v(t)\rangle/\langle v^2\rangle$")
-    axis.legend(loc="lower left")
+    style.labelled(axis, S, r"$C=\langle v(0)v(t)\rangle/\langle v^2\rangle$", "lower left")
 
 
-def _starts(axis: Axes, ds: xr.Dataset) -> None:
+def _starts(axis: Axes, gases: Table) -> None:
     """ln C against collisions, and the exact initial slopes."""
-    for kind in range(ds.sizes["point"]):
-        row = ds.isel(point=kind)
-        dimension, eta, lags = _of(row)
-        at = row.isel(lag=lags[row["collisions"].values[lags] <= 2.0])
-        s = np.linspace(0.0, 2.0, 50)
-        axis.plot(s, np.exp(-2.0 / dimension * s), color=style.COLOURS[kind], zorder=1)
-        label = rf"{PARTICLES[dimension]}, $\eta={eta:.2g}$"
-        style.measured(axis, at["collisions"], estimates(at, "correlation"), kind, label=label)
+    s = np.linspace(0.0, 2.0, 50)
+    for kind, gas in enumerate(gases):
+        axis.plot(s, np.exp(-2.0 / gas.dimension * s), color=style.COLOURS[kind], zorder=1)
+        lags = _lags(gas)
+        early = lags[lags.collisions <= 2.0]
+        style.points(axis, early.collisions, early.correlation, kind=kind, label=_name(gas))
     axis.set_yscale("log")
     axis.set_yticks((0.2, 0.5, 1.0), ("0.2", "0.5", "1"))
     axis.minorticks_off()
-    axis.set_xlim(0.0, 2.0)
-    axis.set_ylabel("$C$")
-    axis.set_xlabel(r"collisions per particle $s=\nu t$")
-    if ds.sizes["point"]:
-        axis.legend(loc="upper right")
+    style.labelled(axis, S, "$C$", "upper right" if gases else "", xlim=(0.0, 2.0))
 
 
-def _ratios(axis: Axes, ds: xr.Dataset) -> None:
+def _ratios(axis: Axes, gases: Table) -> None:
     """C - 1/N over the sum of the container's modes with its fit; marked, when sound has crossed it."""
     style.level(axis, 1.0)
-    for kind in range(ds.sizes["point"]):
-        row = ds.isel(point=kind)
-        dimension, eta, lags = _of(row)
-        at = row.isel(lag=lags)
-        s = at["collisions"].values
-        shown, share = s > 5.0, 1.0 / float(row["count"])
-        time = at["time"].values[shown]
-        modes = theory.velocity_autocorrelation_modes(time, eta, dimension, int(row["count"])) - share
-        axis.axvline(float(row["sound"]), color=style.COLOURS[kind], linestyle=":", linewidth=0.8)
-        style.points(
-            axis,
-            s[shown],
-            (at["correlation"].values[shown] - share) / modes,
-            at["correlation_error"].values[shown] / modes,
-            kind,
-            markersize=2.5,
-        )
-        fitted = np.linspace(float(row["tail_from"]), float(row["tail_to"]), 50)
-        curve = float(row["tail_ratio"]) + float(row["tail_correction"]) / fitted
+    for kind, gas in enumerate(gases):
+        lags, share = _lags(gas), 1.0 / gas.count
+        shown = lags[lags.collisions > 5.0]
+        state = gas.packing_fraction, gas.dimension, gas.count
+        modes = theory.velocity_autocorrelation_modes(shown.time, *state) - share
+        axis.axvline(gas.sound, color=style.COLOURS[kind], linestyle=":", linewidth=0.8)
+        ratio = (shown.correlation - share) / modes
+        style.points(axis, shown.collisions, ratio, kind=kind, markersize=2.5)
+        fitted = np.linspace(gas.tail_from, gas.tail_to, 50)
+        curve = gas.tail_ratio.value + gas.tail_correction / fitted
         axis.plot(fitted, curve, color=style.COLOURS[kind])
-    if ds.sizes["point"]:
-        axis.axvspan(
-            float(ds["tail_from"].min()), float(ds["tail_to"].max()), color=style.GREY, alpha=0.18, lw=0
-        )
-    axis.set_xscale("log")
-    axis.set_xlim(5.0, 65.0)
-    axis.set_ylim(0.4, 1.8)
+    if gases:
+        window = gases.tail_from.min(), gases.tail_to.max()
+        axis.axvspan(*window, color=style.GREY, alpha=0.18, lw=0)
+    axis.set(xscale="log", xlim=(5.0, 65.0), ylim=(0.4, 1.8))
     _integer_ticks(axis)
-    axis.set_xlabel(r"collisions per particle $s=\nu t$")
-    axis.set_ylabel("$C-1/N$ over modes")
+    style.labelled(axis, S, "$C-1/N$ over modes")
 
 
 def _integer_ticks(axis: Axes) -> None:

@@ -22,10 +22,11 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.correlations import between
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import fit_linear, fit_polynomial, mean_of, means_of
 from gaspart.reproduction.families.shared.curves import reduced_curves
-from gaspart.reproduction.families.shared.rows import from_rows
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 
 
 def velocity_autocorrelation(points: list[Point], settings: dict) -> xr.Dataset:
@@ -39,8 +40,7 @@ def velocity_autocorrelation(points: list[Point], settings: dict) -> xr.Dataset:
     start_rate and its error (over the collision rate), tail_from, tail_to, tail_ratio and tail_correction, A
     and B of C - 1/N over the sum of the container's modes, and A's error; NaN where a point has none.
     """
-    rows = [_row(point, settings) for point in points]
-    return from_rows("point", rows, ("lag",), units={"time": "sigma sqrt(m / k_B T)"})
+    return table("point", points, _row, settings, inner=("lag",), units={"time": "sigma sqrt(m / k_B T)"})
 
 
 def _row(point: Point, settings: dict) -> dict:
@@ -49,39 +49,32 @@ def _row(point: Point, settings: dict) -> dict:
     rate = float(theory.collision_rate(eta, dimension))
     rate *= float(theory.collision_rate_finite_size_factor(eta, dimension, count))
     side = min(scene.container.lengths) / (2.0 * scene.largest_radius)
-    sound = side / float(theory.speed_of_sound(eta, dimension)) * rate
-    longest = settings["tail"][1] / rate
-    runs = [reduced_curves(point, path, longest) for path in point.replica_paths]
+    start, stop = settings["tail"]
+    runs = [reduced_curves(point, path, stop / rate) for path in point.replica_paths]
     shortest = min(len(one.time) for one in runs)
     time = np.mean([one.time[:shortest] for one in runs], axis=0)
     samples = np.stack([one.correlation[:shortest] for one in runs]) + 1.0 / count
-    correlation, error = means_of(samples)
+    collisions = time * rate
     row = {
         "dimension": dimension,
         "packing_fraction": eta,
         "count": count,
-        "sound": sound,
-        "collisions": time * rate,
+        "sound": side / float(theory.speed_of_sound(eta, dimension)) * rate,
+        "collisions": collisions,
         "time": time,
-        "correlation": correlation,
-        "correlation_error": error,
-        **dict.fromkeys(("start_rate_freedom", "tail_ratio_freedom"), len(samples) - 1),
-        **dict.fromkeys(("start_rate", "start_rate_error", "tail_from", "tail_to"), math.nan),
-        **dict.fromkeys(("tail_ratio", "tail_ratio_error", "tail_correction"), math.nan),
+        "correlation": means_of(samples),
+        **dict.fromkeys(("start_rate", "tail_ratio"), Estimate(math.nan, math.nan, len(samples) - 1)),
+        **dict.fromkeys(("tail_from", "tail_to", "tail_correction"), math.nan),
     }
-    early = between(row["collisions"], row["collisions"][1], settings["start_to"])
+    early, late = between(collisions, collisions[1], settings["start_to"]), between(collisions, start, stop)
     if early.sum() >= 4:
-        slope = mean_of([_initial_rate(row["collisions"][early], values[early]) for values in samples])
-        row |= {"start_rate": slope.value, "start_rate_error": slope.error}
-    start, stop = settings["tail"]
-    late = between(row["collisions"], start, stop)
-    if late.sum() >= 4 and early.sum() < 4:  # what is sampled finely is too short for the tail
+        row["start_rate"] = mean_of([_initial_rate(collisions[early], values[early]) for values in samples])
+    elif late.sum() >= 4:  # what is sampled finely is too short for the tail
         share = 1.0 / count  # known exactly, and not part of the tail
         modes = theory.velocity_autocorrelation_modes(time[late], eta, dimension, count) - share
-        fits = np.array([_tail(row["collisions"][late], one[late] - share, modes) for one in samples])
-        ratio = mean_of(fits[:, 0].tolist())
-        row |= {"tail_from": start, "tail_to": stop, "tail_ratio": ratio.value}
-        row |= {"tail_ratio_error": ratio.error, "tail_correction": float(fits[:, 1].mean())}
+        fits = np.array([_tail(collisions[late], values[late] - share, modes) for values in samples])
+        row |= {"tail_from": start, "tail_to": stop, "tail_ratio": mean_of(fits[:, 0])}
+        row["tail_correction"] = fits[:, 1].mean()
     return row
 
 
