@@ -135,7 +135,7 @@ def _fixed(point: Point, settings: dict) -> dict:
     there = density @ (chord / chord.sum())
 
     def radius_of(number: float, density: float) -> float:
-        return math.sqrt(number / (math.pi * density)) / (0.5 * place.diameter) - ratio
+        return float(np.sqrt(number / (np.pi * density))) / (0.5 * place.diameter) - ratio
 
     packing_fraction = mean_of(there * volume)
     return {

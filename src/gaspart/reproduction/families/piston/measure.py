@@ -34,10 +34,16 @@ def piston(points: list[Point], settings: dict) -> xr.Dataset:
     particles in the half of the container that was empty; over `expansion` dimension.
     Final are means over the second half of the frames.
     """
+    kinds: dict[str, tuple] = {
+        "path": (_path, "packing_fraction"),
+        "state": (_state, "count"),
+        "expansion": (_expansion,),
+    }
     tables = {}
-    for kind, read in {"path": _path, "state": _state, "expansion": _expansion}.items():
+    for kind, (read, *facts) in kinds.items():
         chosen = [point for point in points if _kind(point) == kind]
-        tables[kind] = table(kind, chosen, _row, read, inner=(f"{kind}_replica", "frame"), units={})
+        inner = f"{kind}_replica", "frame"
+        tables[kind] = table(kind, chosen, _row, read, ("dimension", *facts), inner=inner, units={})
     return prefixed(**tables)
 
 
@@ -47,13 +53,11 @@ def _kind(point: Point) -> str:
     return "state" if point.schedule.equilibration_frames else "path"
 
 
-def _row(point: Point, read: Callable[[Run], dict]) -> dict:
-    """What `read` gives of each replica, and the numbers of its scene."""
-    first = point.schedule.equilibration_frames if _kind(point) == "state" else 0
-    replicas = [read(run) for run in runs(point, first)]
+def _row(point: Point, read: Callable[[Run], dict], facts: tuple[str, ...]) -> dict:
+    """What `read` gives of each replica, and facts of the scene."""
+    replicas = [read(run) for run in runs(point)]
     row = {name: np.stack([one[name] for one in replicas]) for name in replicas[0]}
-    scene = {"path": ("packing_fraction",), "state": ("count",)}.get(_kind(point), ())
-    return row | {name: getattr(point.scene, name) for name in ("dimension", *scene)}
+    return row | {name: getattr(point.scene, name) for name in facts}
 
 
 def _path(run: Run) -> dict[str, np.ndarray]:
