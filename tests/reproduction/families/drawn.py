@@ -57,6 +57,11 @@ def column(dataset, x, y, some=False):
     return Points(dataset[x], dataset[y], dataset[f"{y}_error"], some=some)
 
 
+def estimates(dataset, name):
+    """(2, ...) the values of a variable and their errors."""
+    return np.stack([dataset[name].values, dataset[f"{name}_error"].values])
+
+
 def shows(axis, *expected):
     """Assert that a panel's points are these series, in order."""
     drawn = [one for one in axis.containers if isinstance(one, ErrorbarContainer)]
