@@ -47,8 +47,10 @@ def _discs_left(axis: Axes, flows: Table) -> None:
     for kind, flow in enumerate(flows):
         label = rf"$D={flow.width:.3g}\,d$"
         axis.plot(flow.flow_time, flow.left, color=style.COLOURS[kind], label=label)
-    shown = {"xlim": (0.0, np.nanmax(flows.flow_time)), "ylim": (0.0, 1.15 * np.nanmax(flows.left))}
-    style.labelled(axis, TIME, "discs left in the hopper", "upper right", **shown)
+    style.labelled(
+        axis, TIME, "discs left in the hopper", "upper right",
+        xlim=(0.0, np.nanmax(flows.flow_time)), ylim=(0.0, 1.15 * np.nanmax(flows.left)),
+    )  # fmt: skip
 
 
 def _rates(axis: Axes, flows: Table) -> None:
