@@ -29,16 +29,6 @@ def rows(dataset: xr.Dataset, dimension: str) -> list[xr.Dataset]:
     return [dataset.isel({dimension: position}) for position in range(dataset.sizes.get(dimension, 0))]
 
 
-def deviations(dataset: xr.Dataset, measured: str, expected: str | float) -> np.ndarray:
-    """measured - expected of two variables of one dimension, or of one and an exact number, in the standard
-    deviations of their difference (see `Estimate.of` and `Estimate.deviation`)."""
-    differences = []
-    for at in rows(dataset, str(dataset[measured].dims[0])):
-        stated = Estimate.of(at, expected) if isinstance(expected, str) else Estimate(expected)
-        differences.append(Estimate.of(at, measured) - stated)
-    return np.array([difference.deviation for difference in differences])
-
-
 def freedoms(dataset: xr.Dataset, name: str) -> np.ndarray:
     """Degrees of freedom of the errors of a variable of one dimension; infinite where none are stated (see
     `Estimate.of`)."""
