@@ -4,7 +4,7 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.reproduction.families.couette.measure import NUMBERS
-from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.reproduction.table import from_rows
 from gaspart.theory.shear import NORMAL_STRESSES, VELOCITY_SLIP
 
 FLOWS = (  # engine, packing fraction, Knudsen number, speed, stress over pressure

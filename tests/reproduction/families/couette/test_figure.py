@@ -1,8 +1,7 @@
 from reproduction.families.couette.data import measured
-from reproduction.families.drawn import Points, draw, shows
+from reproduction.families.drawn import Points, draw, estimates, shows
 
 from gaspart.reproduction.families.couette.figure import couette
-from gaspart.reproduction.families.shared.rows import estimates
 
 
 def test_profiles_and_coefficients_are_drawn():

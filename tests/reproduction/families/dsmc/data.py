@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.reproduction.table import from_rows
 from gaspart.theory import erpenbeck_wood_ratio
 from gaspart.theory.dsmc import cell_factor, step_factor
 

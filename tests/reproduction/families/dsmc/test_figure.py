@@ -1,9 +1,8 @@
 import numpy as np
-from reproduction.families.drawn import Points, draw, shows
+from reproduction.families.drawn import Points, draw, estimates, shows
 from reproduction.families.dsmc.data import measured
 
 from gaspart.reproduction.families.dsmc.figure import dsmc_convergence
-from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.theory.dsmc import cell_factor
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from gaspart.reproduction.families.mixtures.measure import theories
-from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.reproduction.table import from_rows
 from gaspart.scene.gas import Mixture
 from gaspart.scene.sizes import relative_radii
 

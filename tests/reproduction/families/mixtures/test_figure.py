@@ -1,10 +1,9 @@
 import numpy as np
-from reproduction.families.drawn import Points, draw, shows
+from reproduction.families.drawn import Points, draw, estimates, shows
 from reproduction.families.mixtures.data import measured
 
 from gaspart.reproduction.families.mixtures import figure as mixtures
 from gaspart.reproduction.families.mixtures.claims import deviations
-from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.reproduction.table import Table
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.shared.rows import entries, from_rows
+from gaspart.reproduction.table import entries, from_rows
 
 RATIOS = ("s0_ratio", "g_ratio", "rate_ratio")
 POINTS = ((3, 0.1), (3, 0.3), (3, 0.45), (2, 0.3), (2, 0.6))

@@ -1,8 +1,7 @@
 import numpy as np
-from reproduction.families.drawn import Points, draw, shows, varied
+from reproduction.families.drawn import Points, draw, estimates, shows, varied
 from reproduction.families.structure.data import chemical_potential, structure
 
-from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.reproduction.families.structure import figure as figures
 from gaspart.reproduction.families.structure.figure import SHIFT
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.reproduction.table import from_rows
 
 
 def measured(error=0.002, seed=1):

@@ -1,9 +1,8 @@
 import numpy as np
 import pytest
-from reproduction.families.drawn import Points, draw, shows
+from reproduction.families.drawn import Points, draw, estimates, shows
 from reproduction.families.transport.data import growing, measured
 
-from gaspart.reproduction.families.shared.rows import estimates
 from gaspart.reproduction.families.transport import figure as transport
 
 
