@@ -8,7 +8,7 @@ import xarray as xr
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.table import Table, each, from_rows, prefixed, table
+from gaspart.reproduction.table import Table, each, entries, from_rows, prefixed, table
 
 COMMON = {"source": "theory at {eta:.2g}", "fails_if": "it is wrong", "required": 0.1}
 
@@ -145,3 +145,12 @@ def test_dimensions_and_units_are_those_of_the_key_without_error():
     assert units == {"a": "length", "a_error": "length", "b": "1", "count": "1", "name": None}
     assert ds["count"].dtype.kind == "i"
     assert ds["name"].values.tolist() == ["x", "x"]
+
+
+def test_entries_are_what_an_estimate_is_read_from():
+    number = Estimate(2.0, 0.1, 7)
+    ds = from_rows("point", [entries({"a": number, "b": (np.ones(2), np.zeros(2))})], ("bin",))
+    assert list(ds) == ["a", "a_error", "a_freedom", "b", "b_error"]
+    assert Estimate.of(ds.isel(point=0), "a") == number
+    assert ds["b"].values.tolist() == [[1.0, 1.0]] and ds["b_error"].values.tolist() == [[0.0, 0.0]]
+    assert entries({"b": (1.0, 0.5)}, 3) == {"b": 1.0, "b_error": 0.5, "b_freedom": 3}

@@ -165,11 +165,6 @@ def points(
     return axis.errorbar(x, y, yerr=error, color=colour, markerfacecolor=face, markeredgewidth=0.8, **options)
 
 
-def measured(axis: Axes, x: ArrayLike, y: np.ndarray, kind: int = 0, **options: Any) -> ErrorbarContainer:
-    """`points` of values and their errors, y (2, ...)."""
-    return points(axis, x, y[0], y[1], kind, **options)
-
-
 def labelled(axis: Axes, x: str = "", y: str = "", legend: str = "", columns: int = 1, **limits: Any) -> None:
     """Label a panel's axes, and give it a legend, if its place is stated. limits: as of `Axes.set`."""
     labels = {"xlabel": x, "ylabel": y}

@@ -10,11 +10,10 @@ SPEED = np.linspace(0.1, 3.9, 20)
 
 
 def _row(kind, **values):
-    row = dict.fromkeys(
-        ("temperature", "depth", "width", "momentum", "ratio", "ratio_error", "log_ratio", "log_ratio_error",
-         "length", "length_error", "coverage", "coverage_error", "gas_density", "activity", "activity_error",
-         "filling", "filling_error", "filling_by_activity", "filling_by_activity_error"), np.nan,
-    )  # fmt: skip
+    measured = ["ratio", "log_ratio", "length", "coverage", "gas_density", "activity"]
+    measured += ["filling", "filling_by_activity"]
+    names = ["temperature", "depth", "width", "momentum", *measured, *(f"{name}_error" for name in measured)]
+    row = dict.fromkeys(names, np.nan)
     flux = theory.flux_density(SPEED) * (SPEED > 1.0 if kind == "sticky" else 1.0)
     slow = 0.0 if kind == "sticky" else theory.slow_flux_share(1.0)
     row |= {"kind": kind, "flux": flux, "flux_error": 0.01 + 0.0 * flux, "slow_speed": 1.0, "outside": 2.0}

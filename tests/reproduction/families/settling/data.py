@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.settling.measure import _fit
 
 WIDTH = np.array([4.0, 6.0, 9.0, 14.0])
@@ -34,5 +35,5 @@ def settled(exponent=1.5, head=1.0, contacts=2.0, displacement=0.0, rise=0.0, re
         "liquid_ratio": ("orifice", np.full(4, 1.2)),
         "flow_time": (("orifice", "flow_frame"), time[:4]),
         "left": (("orifice", "flow_frame"), left),
-        **_fit(WIDTH, rate, np.full(4, spread), 8),
+        **_fit(WIDTH, Estimate(np.log(rate), spread, 8)),
     })  # fmt: skip

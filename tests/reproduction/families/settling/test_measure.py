@@ -7,6 +7,7 @@ import pytest
 from reproduction.families.granular.test_measure import made
 
 import gaspart as gp
+from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.settling import measure
 
 SETTINGS = {"gap": 1e-3, "start": 0.8, "head": 0.6}
@@ -76,11 +77,11 @@ def test_a_flow_that_ends_too_early_is_refused(tmp_path):
 
 def test_a_law_is_fitted_to_its_own_numbers():
     width = np.array([4.0, 6.0, 9.0, 14.0])
-    found = measure._fit(width, 0.7 * (width - 1.2) ** 1.3, np.full(4, 0.01), 5)
+    found = measure._fit(width, Estimate(np.log(0.7 * (width - 1.2) ** 1.3), 0.01, 5))
     assert found["exponent"][1] == pytest.approx(1.3, abs=1e-4)
     assert found["offset"][1] == pytest.approx(1.2, abs=1e-3)
     assert found["amplitude"][1] == pytest.approx(0.7, rel=1e-3)
     assert found["chi_square"][1] > 1.0
-    found = measure._fit(width, 0.7 * (width - 1.2) ** 1.5, np.full(4, 0.01), 5)
+    found = measure._fit(width, Estimate(np.log(0.7 * (width - 1.2) ** 1.5), 0.01, 5))
     assert found["beverloo_offset"][1] == pytest.approx(1.2, abs=1e-4)
     assert found["chi_square"][1] < 1e-6

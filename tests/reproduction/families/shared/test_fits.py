@@ -10,10 +10,10 @@ from reproduction.families.vibrated.data import beds
 from reproduction.families.virial.data import ETA
 
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import combine_estimates
 from gaspart.reproduction.families.adsorption import claims as adsorption
 from gaspart.reproduction.families.buoyancy import claims as buoyancy
 from gaspart.reproduction.families.displacement.measure import size_series
-from gaspart.reproduction.families.shared.claims import combined
 from gaspart.reproduction.families.vibrated.claims import extrapolation
 from gaspart.reproduction.families.virial.measure import fit_coefficients
 from gaspart.reproduction.table import Table
@@ -45,9 +45,9 @@ def bed(rng):
 
 def well(rng):
     """The slope in the temperature, the power of it, and the length in place of the thermal wavelength."""
-    ds = scattered(rng, WELL, 11, ["log_ratio", "length"])
-    slope, power = (claim.measured - claim.expected for claim in adsorption._slopes(ds, 1.0))
-    return [slope, power, combined(ds, "length") / 0.2 - 1.0]
+    wells = Table(scattered(rng, WELL, 11, ["log_ratio", "length"]), "point")
+    slope, power = (claim.measured - claim.expected for claim in adsorption._slopes(wells, 1.0))
+    return [slope, power, combine_estimates(wells.length) / 0.2 - 1.0]
 
 
 def large_disc(rng):

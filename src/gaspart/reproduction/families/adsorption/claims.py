@@ -5,17 +5,13 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.statistics import fit_polynomial, fit_power_law
-from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import (
-    combined,
-    deviations,
-    freedoms,
-    rows,
-)
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.analysis.statistics import combine_estimates, fit_polynomial, fit_power_law
+from gaspart.reproduction.claims import Claim
+from gaspart.reproduction.table import Table, each
 from gaspart.theory.adsorption import planck_constant, slow_flux_share
 
+KINDS = ("ideal", "layer", "sticky")
+"""Of walls: wide wells, wells thinner than a particle, and the source's rule."""
 LANGMUIR = (
     "Boltzmann factor of the well (exact for an ideal gas; Langmuir's formula, [source A], section 4.5); "
     "what spheres close to each other is subtracted, to first order in their density"
@@ -26,40 +22,37 @@ OWN_LENGTH = (
 )
 
 
-def adsorption(ds: xr.Dataset) -> list[Claim]:
+def adsorption(dataset: xr.Dataset) -> list[Claim]:
     """Slope, prefactor, hard layer, and the detailed balance that the source's own rule violates."""
-    kinds = {kind: ds.isel(point=np.flatnonzero(ds["kind"] == kind)) for kind in ("ideal", "layer", "sticky")}
-    return [*_ideal(kinds["ideal"]), *_layer(kinds["layer"]), *_sticky(kinds["sticky"], kinds["ideal"])]
+    walls = Table(dataset, "point")
+    ideal, layer, sticky = (walls[walls.kind == kind] for kind in KINDS)
+    return [*_ideal(ideal), *_layer(layer), *_sticky(sticky, ideal)]
 
 
-def _ideal(ds: xr.Dataset) -> list[Claim]:
+def _ideal(wells: Table) -> list[Claim]:
     claims = []
-    for width in np.unique(ds["width"]):
-        same = ds.isel(point=np.flatnonzero(ds["width"] == width))
+    for width, same in wells.by("width"):
         claims.append(
             Claim(
                 claim=f"length in place of the thermal wavelength over the well's width, width {width:g}",
-                measured=combined(same, "length") / width,
+                measured=combine_estimates(same.length) / width,
                 expected=1.0,
                 required=0.01,
                 source=OWN_LENGTH,
                 fails_if="an additional prefactor: particles enter or leave against the Boltzmann factor",
             )
         )
-        for depth in np.unique(same["depth"]):
-            line = same.isel(point=np.flatnonzero(same["depth"] == depth))
-            if line.sizes["point"] > 1:
-                claims += _slopes(line, float(depth))
+        for depth, line in same.by("depth"):
+            if len(line) > 1:
+                claims += _slopes(line, depth)
     return claims
 
 
-def _slopes(ds: xr.Dataset, depth: float) -> list[Claim]:
+def _slopes(well: Table, depth: float) -> list[Claim]:
     """Dependence on temperature of one well."""
-    ratio, error = estimates(ds, "log_ratio")
-    slope = fit_polynomial(1.0 / ds["temperature"].values, ratio, error, freedoms=freedoms(ds, "log_ratio"))
-    per_length = planck_constant(1.0, ds["mass"].values, ds["temperature"].values)
-    planck, error = per_length * estimates(ds, "length")
-    power = fit_power_law(ds["temperature"].values, planck, error, freedoms(ds, "length"))
+    slope = fit_polynomial(1.0 / well.temperature, well.log_ratio)
+    planck = planck_constant(1.0, well.mass, well.temperature) * well.length
+    power = fit_power_law(well.temperature, planck)
     return [
         Claim(
             claim=f"slope of ln(N_ads/N_gas) against 1/kT over the depth, depth {depth:g}",
@@ -80,8 +73,10 @@ def _slopes(ds: xr.Dataset, depth: float) -> list[Claim]:
     ]
 
 
-def _layer(ds: xr.Dataset) -> list[Claim]:
+def _layer(layers: Table) -> list[Claim]:
     """Coverages by the gas' pressure; and that its activity is not what counts where the coverage is low."""
+    if not layers:
+        return []
     what = "coverage over that of hard discs at the gas' pressure"
     source = (
         "spheres in a layer thinner than their diameter, as hard discs (virial series to B10), at the "
@@ -89,27 +84,22 @@ def _layer(ds: xr.Dataset) -> list[Claim]:
         "in the gas' density what the layer closes to it (scaled-particle theory), and in 1/N what a gas of "
         "N loses to the layer"
     )
-    lowest = float(ds["depth"].min()) if ds.sizes["point"] else 0.0
-    claims = [
-        Claim(
-            claim=f"{what}, depth {float(row['depth']):g}",
-            measured=Estimate.of(row, "filling"),
+    by_activity = layers.filling.value / layers.filling_by_activity.value
+    return [
+        *each(
+            layers,
+            f"{what}, depth {{depth:g}}",
+            measured=layers.filling,
             expected=1.0,
             required=0.04,
             source=source,
-            alternative=_by_activity(row) if float(row["depth"]) == lowest else None,
+            alternative=np.where(layers.depth == layers.depth.min(), by_activity, None),
             fails_if="adsorbed spheres do not collide with each other, or each has a site of its own; or the "
             "gas' activity takes the place of its pressure",
-        )
-        for row in rows(ds, "point")
-    ]
-    if not claims:
-        return []
-    return [
-        *claims,
+        ),
         Claim(
             claim=f"{what}, mean of all depths",
-            measured=combined(ds, "filling"),
+            measured=combine_estimates(layers.filling),
             expected=1.0,
             required=0.005,
             source=source,
@@ -117,22 +107,16 @@ def _layer(ds: xr.Dataset) -> list[Claim]:
         ),
         Claim.joint(
             claim=f"{what}, all depths",
-            deviations=deviations(ds, "filling", 1.0),
+            deviations=(layers.filling - 1.0).deviation,
             source=source,
             fails_if="uncertainties too small, as from time blocks that are not independent",
         ),
     ]
 
 
-def _by_activity(row: xr.Dataset) -> float:
-    """What the coverage would be if the layer felt nothing of the gas in front of it."""
-    return float(row["filling"] / row["filling_by_activity"])
-
-
-def _sticky(ds: xr.Dataset, wells: xr.Dataset) -> list[Claim]:
-    coverage, error = estimates(ds, "coverage")
-    power = fit_power_law(ds["gas_density"].values, coverage, error, freedoms(ds, "coverage"))
-    slow = float(slow_flux_share(ds["slow_speed"].values[0]))
+def _sticky(walls: Table, wells: Table) -> list[Claim]:
+    power = fit_power_law(walls.gas_density.value, walls.coverage)
+    slow = float(slow_flux_share(walls.slow_speed[0]))
     return [
         Claim.at_most(
             claim="sticky rule: power of the gas' density in the coverage of a wall at low coverage",
@@ -144,7 +128,7 @@ def _sticky(ds: xr.Dataset, wells: xr.Dataset) -> list[Claim]:
         ),
         Claim.at_most(
             claim="sticky rule: slow particles that leave the wall, over those that would in equilibrium",
-            measured=combined(ds, "slow_share") / slow,
+            measured=combine_estimates(walls.slow_share) / slow,
             bound=0.5,
             required=0.1,
             source="slow particles stick, and none is sent back so slowly: only those slowed down when freed "
@@ -153,7 +137,7 @@ def _sticky(ds: xr.Dataset, wells: xr.Dataset) -> list[Claim]:
         ),
         Claim(
             claim="wells: share of the particles that leave below sqrt(kT/m)",
-            measured=combined(wells, "slow_share"),
+            measured=combine_estimates(wells.slow_share),
             expected=slow_flux_share(1.0),
             required=0.005,
             source="flux of a Maxwellian, 1 - e^(-1/2) (exact)",

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,9 +16,9 @@ import xarray as xr
 from gaspart.analysis.bins import Grid
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import jackknife
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import entries, table
 from gaspart.scene.faces import Sticky, Well, thermal_face
 from gaspart.theory.adsorption import (
     excess_in_well,
@@ -143,14 +144,15 @@ def adsorption(points: list[Point], settings: dict) -> xr.Dataset:
     `theory.adsorption.layer_activity`); filling_by_activity, the same with the gas's activity alone in the
     place of its pressure. `_freedom` are the degrees of freedom of the errors.
     """
-    edges = np.linspace(0.0, _REACH, settings["bins"] + 1)
-    return from_rows("point", [_measured(point, settings) for point in points], ("bin",)).assign_coords(
-        experiment=("point", [point.experiment for point in points]),
-        speed=("bin", 0.5 * (edges[1:] + edges[:-1])),
-    )
+    dataset = table("point", points, _measured, settings, inner=("bin",))
+    return dataset.assign_coords(speed=("bin", _speeds(settings).middles[0])).set_coords("experiment")
 
 
-def _measured(point: Point, settings: dict) -> dict:
+def _speeds(settings: dict) -> Grid:
+    return Grid.line(0.0, _REACH, settings["bins"])
+
+
+def _measured(point: Point, settings: dict) -> dict[str, Any]:
     """The values of one point."""
     holder = Holder.of(point)
     slow = holder.momentum / np.sqrt(holder.mass * holder.temperature) or 1.0
@@ -170,11 +172,15 @@ def _measured(point: Point, settings: dict) -> dict:
         estimates |= {"flux": (np.full(bins, np.nan),) * 2, "slow_share": absent}
         estimates |= _isotherm(holder, held, free, far)
     else:
-        estimates |= _desorption(slowly, flux, _REACH / bins)
+        estimates |= _desorption(slowly, flux, _speeds(settings).volume)
         estimates |= {"activity": absent, "filling": absent, "filling_by_activity": absent}
     facts = ("kind", "temperature", "depth", "width", "momentum", "mass", "outside")
-    row = entries(estimates, len(held) - 1) | {name: getattr(holder, name) for name in facts}
-    return row | {"slow_speed": slow}
+    return {
+        "experiment": point.experiment,
+        **{name: getattr(holder, name) for name in facts},
+        "slow_speed": slow,
+        **entries(estimates, len(held) - 1),
+    }
 
 
 def _amounts(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray) -> dict[str, tuple]:
@@ -243,7 +249,7 @@ def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings
     leaving = ~held & (above < settings["near"]) & (velocity > 0.0)
     speed = velocity[leaving] / np.sqrt(holder.temperature / holder.mass)
     # a particle is near for a time proportional to 1 / speed
-    grid = Grid.line(0.0, _REACH, settings["bins"])
+    grid = _speeds(settings)
     flux = grid.sums(grid.cells(speed[:, None]), speed)
     frames = len(height)
     parts = held.sum(), (~held).sum(), far.sum(), speed[speed < slow].sum(), flux

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -14,9 +15,9 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
 from gaspart.analysis.series import face_pressures
 from gaspart.analysis.statistics import average, correlated_mean, fit_polynomial, mean_of, means_of
-from gaspart.reproduction.families.shared.rows import entries, from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import Table, entries, table
 from gaspart.scene.gas import plain_gas
 from gaspart.state.random import stream
 
@@ -59,42 +60,60 @@ def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
     bulk_chemical_potential; period, period_error of the damped oscillation.
     """
     points = sorted(points, key=lambda point: point.extents[2][2])
-    bulk = theory.number_density(settings["bulk_packing_fraction"], 3)
-    potential = math.log(bulk) + float(theory.excess_chemical_potential(settings["bulk_packing_fraction"], 3))
-    rows, truncation, functional, widths = [], [], [], []
+    eta = settings["bulk_packing_fraction"]
+    bulk, rows = theory.number_density(eta, 3), []
     for point in points:
         slits = [slit_of(run) for run in runs(point)]
-        widths.append(slits[0].width)
-        place, density = theory.white_bear_slit(bulk, slits[0].width)
-        functional.append(density[0])
-        rows.append(_estimates(slits, settings["insertions"] // len(slits), point))
-        truncation.append(_truncation(place, density) * rows[-1]["contact"])
-    dataset = from_rows("width", rows).assign_coords(width=widths)
-    # The chemical potentials differ slightly from the bulk's.
-    lacking, response = potential - dataset["chemical_potential"], _responses(bulk, widths)
-    dataset["at_bulk"] = dataset["pressure"] + response * lacking
-    uncertain = response * dataset["chemical_potential_error"]
-    dataset["at_bulk_error"] = np.hypot(dataset["pressure_error"], uncertain)
-    dataset["truncation"], dataset["functional_pressure"] = ("width", truncation), ("width", functional)
-    dataset["count"] = "width", [point.extents[0] for point in points]
+        functional = theory.white_bear_slit(bulk, slits[0].width)
+        rows.append(_row(point, slits, settings["insertions"] // len(slits), *functional))
     first, last, number = settings["theory_widths"]
-    curve = np.linspace(first, last, int(number))
-    dataset["curve"] = "theory_width", np.array([theory.white_bear_slit(bulk, w, 0.02)[1][0] for w in curve])
-    dataset = dataset.assign_coords(theory_width=curve).merge(_profile(slits, place, density))
-    dataset.attrs |= {
-        "bulk_density": bulk,
-        "bulk_pressure": bulk * float(theory.compressibility_factor(settings["bulk_packing_fraction"], 3)),
-        "bulk_chemical_potential": potential,
-        "functional_bulk_pressure": theory.white_bear_pressure(bulk),
+    widths = np.linspace(first, last, int(number))
+    curve = [theory.white_bear_slit(bulk, width, 0.02)[1][0] for width in widths]
+    dataset = table("width", rows, dict).merge(_profile(slits, *functional))
+    dataset = dataset.assign_coords(theory_width=widths).assign(curve=("theory_width", curve))
+    return _at_the_bulks_potential(
+        dataset.assign_attrs(
+            bulk_density=bulk,
+            bulk_pressure=bulk * float(theory.compressibility_factor(eta, 3)),
+            bulk_chemical_potential=math.log(bulk) + float(theory.excess_chemical_potential(eta, 3)),
+            functional_bulk_pressure=theory.white_bear_pressure(bulk),
+        )
+    )
+
+
+def _row(
+    point: Point, slits: list[Slit], insertions: int, place: np.ndarray, functional: np.ndarray
+) -> dict[str, Any]:
+    """Pressure, density at contact and chemical potential: means over the replicas; functional (B,): density
+    by the functional at `place`."""
+    contact = average([_contact(slit) for slit in slits])
+    potentials = [_widom(slit, insertions, point.seed(k)) for k, slit in enumerate(slits)]
+    return {
+        "width": slits[0].width,
+        "count": point.extents[0],
+        "pressure": average([correlated_mean(slit.pressure).estimate for slit in slits]),
+        "contact": contact,
+        "truncation": _truncation(place, functional) * contact.value,
+        "chemical_potential": average(potentials),
+        "functional_pressure": functional[0],
     }
-    excess = dataset["at_bulk"] - dataset.attrs["bulk_pressure"]
-    dataset.attrs["period"], dataset.attrs["period_error"] = _period(dataset, excess)
-    excess = dataset["functional_pressure"] - dataset.attrs["functional_bulk_pressure"]
-    dataset.attrs["functional_period"], _ = _period(dataset, excess)
-    return dataset
 
 
-def _responses(bulk: float, widths: list[float]) -> np.ndarray:
+def _at_the_bulks_potential(dataset: xr.Dataset) -> xr.Dataset:
+    """With the pressures corrected for chemical potentials that differ slightly from the bulk's, and with the
+    periods."""
+    slits = Table(dataset, "width")
+    response = _responses(slits.bulk_density, slits.width)
+    pressure = slits.pressure + response * (slits.bulk_chemical_potential - slits.chemical_potential)
+    excess = slits.functional_pressure - slits.functional_bulk_pressure
+    measured = _period(slits.width, pressure - slits.bulk_pressure)
+    functional = _period(slits.width, Estimate(excess, pressure.error))
+    return slits.assign(at_bulk=(pressure.value, pressure.error)).dataset.assign_attrs(
+        period=measured.value, period_error=measured.error, functional_period=functional.value
+    )
+
+
+def _responses(bulk: float, widths: np.ndarray) -> np.ndarray:
     """dP/dmu of slits of fixed widths, by the density functional; that of a bulk, rho (Gibbs and Duhem),
     holds for the widest only."""
     densities = bulk * np.array([0.99, 1.01])
@@ -102,16 +121,6 @@ def _responses(bulk: float, widths: list[float]) -> np.ndarray:
     potentials = np.log(densities) + theory.excess_chemical_potential(eta, 3)
     pressures = [[theory.white_bear_slit(rho, w, 0.02)[1][0] for rho in densities] for w in widths]
     return np.diff(pressures, axis=1)[:, 0] / np.diff(potentials)
-
-
-def _estimates(slits: list[Slit], insertions: int, point: Point) -> dict[str, float]:
-    """Pressure, density at contact and chemical potential: means over the replicas."""
-    potentials = [_widom(slit, insertions, point.seed(k)) for k, slit in enumerate(slits)]
-    return entries({
-        "pressure": average([correlated_mean(slit.pressure).estimate for slit in slits]),
-        "contact": average([_contact(slit) for slit in slits]),
-        "chemical_potential": average(potentials),
-    })  # fmt: skip
 
 
 def _truncation(place: np.ndarray, density: np.ndarray) -> float:
@@ -175,33 +184,27 @@ def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr
     """Density above the nearer wall of the widest slit, to its middle, and its mean around the middle."""
     top = 0.5 * (slits[0].width - 1.0)
     grid = Grid.line(0.0, top, 4 * _BINS * round(slits[0].width / 4.0))
-    density, error = means_of(np.concatenate([_densities(slit, grid) for slit in slits]))
+    density = means_of(np.concatenate([_densities(slit, grid) for slit in slits]))
     inner = Grid.line(top - 1.0, top, 1)
     middle = np.concatenate([_densities(slit, inner)[:, 0] for slit in slits])
     (centre,) = grid.middles
-    return xr.Dataset(
-        {
-            "place": ("bin", centre),
-            "density": ("bin", density),
-            "density_error": ("bin", error),
-            "functional": ("bin", np.interp(centre, place, functional)),
-            **entries({"middle": mean_of(middle)}),
-        }
-    )
+    functional = np.interp(centre, place, functional)
+    profile = entries({"density": density}) | {"place": centre, "functional": functional}
+    profile = {name: ("bin", values) for name, values in profile.items()}
+    return xr.Dataset(profile | entries({"middle": mean_of(middle)}))
 
 
-def _period(dataset: xr.Dataset, excess: xr.DataArray) -> tuple[float, float]:
-    """The period, and its error, of a damped oscillation that is fitted to the excess of the pressure over
-    the bulk's against the width, with the errors of the measured one; NaN through fewer than six widths."""
+def _period(width: np.ndarray, excess: Estimate) -> Estimate:
+    """The period of a damped oscillation that is fitted to the excess of the pressure over the bulk's against
+    the width; NaN through fewer than six widths."""
     from scipy.optimize import curve_fit
 
-    if dataset.sizes["width"] < 6:
-        return math.nan, math.nan
+    if len(width) < 6:
+        return Estimate(math.nan, math.nan)
 
     def wave(width: np.ndarray, amplitude: float, decay: float, period: float, phase: float) -> np.ndarray:
         return amplitude * np.exp(-(width - 2.0) / decay) * np.cos(2.0 * np.pi * (width - phase) / period)
 
-    start, error = (1.5, 1.0, 1.0, 2.0), dataset["at_bulk_error"].values
-    seen = dataset["width"].values, excess.values
-    values, covariance = curve_fit(wave, *seen, start, error, absolute_sigma=True)
-    return float(values[2]), float(np.sqrt(covariance[2, 2]))
+    start = (1.5, 1.0, 1.0, 2.0)
+    values, covariance = curve_fit(wave, width, excess.value, start, excess.error, absolute_sigma=True)
+    return Estimate(values[2], np.sqrt(covariance[2, 2]))

@@ -7,7 +7,8 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES, rows
+from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.table import Row, Table
 from gaspart.theory.insertion import insertion_saturation_uncertainty
 
 NO_PROGRAM = "the wall excess was fitted to insertions by a program that is not in this repository"
@@ -23,66 +24,65 @@ NAMES = {
 
 def fill_failures(dataset: xr.Dataset) -> list[Claim]:
     """Saturations, source A's 52 %, the approach to saturation, and the failures at low density."""
-    claims = []
-    for one in rows(dataset, "container"):
-        saturates = bool(np.isfinite(one["saturation"][0]))
-        if saturates:
-            claims.append(_saturation(one))
-            if str(one["rule"].values) == "centres_to_walls":
-                claims.append(_source(one))
-        if np.isfinite(one["approach"]):
-            claims.append(_approach(one))
-        # Of a fill that continues to saturation, the first few particles carry little information.
-        if np.isfinite(one["dilute_failures"]) and not saturates:
-            claims.append(_dilute(one, float(dataset.attrs["dilute_up_to"])))
+    return [claim for one in Table(dataset, "container") for claim in _of_container(one)]
+
+
+def _of_container(one: Row) -> list[Claim]:
+    claims, saturates = [], np.isfinite(one.saturation.value[0])
+    if saturates:
+        claims.append(_saturation(one))
+        if one.rule == "centres_to_walls":
+            claims.append(_source(one))
+    if np.isfinite(one.approach.value):
+        claims.append(_approach(one))
+    # Of a fill that continues to saturation, the first few particles carry little information.
+    if np.isfinite(one.dilute_failures.value) and not saturates:
+        claims.append(_dilute(one))
     return claims
 
 
-def _particles(one: xr.Dataset) -> str:
-    particles = PARTICLES[int(one["dimension"])]
-    return f"{particles} {NAMES[str(one['rule'].values)]} (L/σ = {float(one['side_over_diameter']):.3g})"
+def _particles(one: Row) -> str:
+    return f"{PARTICLES[one.dimension]} {NAMES[one.rule]} (L/σ = {one.side_over_diameter:.3g})"
 
 
-def _saturation(one: xr.Dataset) -> Claim:
-    dimension, side, rule = int(one["dimension"]), float(one["side_over_diameter"]), str(one["rule"].values)
-    wall = "" if rule == "periodic" else ", times the wall excess (1 + 0.64 σ/L')^3 of saturated fills"
+def _saturation(one: Row) -> Claim:
+    container = one.dimension, one.side_over_diameter, one.rule
+    periodic = one.rule == "periodic"
+    wall = "" if periodic else ", times the wall excess (1 + 0.64 σ/L')^3 of saturated fills"
     return Claim(
-        claim=f"saturation of random insertion, {_particles(one)}, extrapolated in attempts^(-1/{dimension})",
-        measured=Estimate.of(one.isel(window=0), "saturation"),
+        claim=f"saturation of random insertion, {_particles(one)}, extrapolated in "
+        f"attempts^(-1/{one.dimension})",
+        measured=one.saturation[0],
         expected=Estimate(
-            theory.insertion_saturation(dimension, side, rule),
-            insertion_saturation_uncertainty(dimension, side, rule),
+            theory.insertion_saturation(*container), insertion_saturation_uncertainty(*container)
         ),
-        required=1e-3 if rule == "periodic" else 4e-3,
+        required=1e-3 if periodic else 4e-3,
         source=f"[Zhang 2013]{wall}",
-        allowance_source="its last digits"
-        if rule == "periodic"
-        else "a fit to insertions, not in this repository",
-        no_verdict="" if rule == "periodic" else NO_PROGRAM,
+        allowance_source="its last digits" if periodic else "a fit to insertions, not in this repository",
+        no_verdict="" if periodic else NO_PROGRAM,
         fails_if="free places are missed, overlaps are accepted, or the late window is not asymptotic",
     )
 
 
-def _approach(one: xr.Dataset) -> Claim:
-    dimension = int(one["dimension"])
+def _approach(one: Row) -> Claim:
     return Claim.within(
         claim=f"exponent p of (saturation - packing fraction) ~ attempts^-p, {_particles(one)}",
-        measured=Estimate.of(one, "approach"),
-        expected=1.0 / dimension,
-        half_width=0.15 / dimension,
+        measured=one.approach,
+        expected=1.0 / one.dimension,
+        half_width=0.15 / one.dimension,
         source="[Feder 1980], [Swendsen 1981]: 1/d, once only single holes remain",
         fails_if="the window is too early, or attempts are counted wrongly",
     )
 
 
-def _source(one: xr.Dataset) -> Claim:
+def _source(one: Row) -> Claim:
     """Source A's one fill beside many of ours: a draw from their distribution, if its attempts sufficed."""
     return Claim(
         claim=f"packing fraction at which insertion ends, {_particles(one)}, whole spheres counted: "
         "source A's 52 %",
         kind="reproduction",
-        measured=Estimate.of(one.isel(window=0), "saturation"),
-        expected=Estimate(SOURCE_FRACTION, np.hypot(one["final_spread"], SOURCE_ROUNDING)),
+        measured=one.saturation[0],
+        expected=Estimate(SOURCE_FRACTION, one.final_spread) + Estimate(0.0, SOURCE_ROUNDING),
         required=4e-3,
         source="[source A], section 3.2: a single fill",
         allowance_source="the scatter of our fills, as that of its one fill, and its rounding to a percent",
@@ -91,10 +91,11 @@ def _source(one: xr.Dataset) -> Claim:
     )
 
 
-def _dilute(one: xr.Dataset, up_to: float) -> Claim:
+def _dilute(one: Row) -> Claim:
     return Claim(
-        claim=f"failed attempts up to packing fraction {up_to:g} over those expected, {_particles(one)}",
-        measured=Estimate.of(one, "dilute_failures"),
+        claim=f"failed attempts up to packing fraction {one.dilute_up_to:g} over those expected, "
+        f"{_particles(one)}",
+        measured=one.dilute_failures,
         expected=1.0,
         required=0.02,
         source="available fraction 1 - 2^d η + c η^2, exact to that order",

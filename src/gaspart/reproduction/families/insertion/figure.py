@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.rendering import style
+from gaspart.reproduction.table import Row, Table
 
 SERIES = {
     (3, "centres_to_walls"): "spheres, centres up to walls",
@@ -24,12 +25,10 @@ SOURCE = 0.52
 def fill_failures(dataset: xr.Dataset) -> Figure:
     """Failures per particle, to saturation and at low density; packing fraction against attempts^(-1/d)."""
     figure, (upper, middle, lower) = style.new((3.4,), (1.6,), (2.2,))
-    for kind, (key, label) in enumerate(SERIES.items()):
-        for k in range(dataset.sizes["container"]):
-            one = dataset.isel(container=k)
-            if (int(one["dimension"]), str(one["rule"].values)) != key:
-                continue
-            if np.isfinite(one["saturation"][0]):
+    containers = Table(dataset, "container")
+    for kind, ((dimension, rule), label) in enumerate(SERIES.items()):
+        for one in containers[(containers.dimension == dimension) & (containers.rule == rule)]:
+            if np.isfinite(one.saturation.value[0]):
                 _failures(upper, one, kind, label)
                 _saturation(lower, one, kind)
             else:
@@ -40,20 +39,16 @@ def fill_failures(dataset: xr.Dataset) -> Figure:
     figure.legend(
         *upper.get_legend_handles_labels(), loc="outside upper center", ncols=columns, columnspacing=1.0
     )
-    lower.set_xlim(-0.008, 0.47)
-    lower.set_ylim(0.2, 0.58)
-    lower.set_xlabel("(attempts $\\times\\ v/V)^{-1/d}$")
-    lower.set_ylabel("packing fraction $\\eta$")
+    axes = "(attempts $\\times\\ v/V)^{-1/d}$", "packing fraction $\\eta$"
+    style.labelled(lower, *axes, xlim=(-0.008, 0.47), ylim=(0.2, 0.58))
     style.letters(upper, middle, lower)
     return figure
 
 
-def _failures(axis: Axes, one: xr.Dataset, kind: int, label: str) -> None:
-    style.points(
-        axis, one["packing_fraction"], one["failures_per_particle"].where(one["failures_per_particle"] > 0),
-        one["failures_per_particle_error"], kind=kind, markersize=2.5,
-        label=label,
-    )  # fmt: skip
+def _failures(axis: Axes, one: Row, kind: int, label: str) -> None:
+    failures = one.failures_per_particle
+    some = np.where(failures.value > 0.0, failures.value, np.nan)  # the scale is logarithmic
+    style.points(axis, one.packing_fraction, some, failures.error, kind, markersize=2.5, label=label)
 
 
 def _limits(axis: Axes) -> None:
@@ -67,10 +62,8 @@ def _limits(axis: Axes) -> None:
         axis.axvline(place, color=colour, linestyle="--", linewidth=0.8, zorder=1)
         axis.text(place + shift, 0.013, text, color=colour, rotation=90, ha=side, va="bottom")
     axis.set_yscale("log")
-    axis.set_xlim(0.0, 0.59)
-    axis.set_ylim(0.01, 6e6)
-    axis.set_xlabel("packing fraction $\\eta$")
-    axis.set_ylabel("failed attempts per particle")
+    labels = "packing fraction $\\eta$", "failed attempts per particle"
+    style.labelled(axis, *labels, xlim=(0.0, 0.59), ylim=(0.01, 6e6))
 
 
 def _low_density(axis: Axes) -> None:
@@ -80,25 +73,17 @@ def _low_density(axis: Axes) -> None:
         axis.plot(eta, theory.failures_per_particle(eta, dimension), color="black", linewidth=0.8, zorder=4)
     axis.text(0.036, 0.48, "$2^3\\eta+\\ldots$", ha="right")
     axis.text(0.058, 0.03, "$2^2\\eta+\\ldots$", ha="right")
-    axis.set_xlim(0.0, 0.06)
-    axis.set_ylim(0.0, 0.85)
-    axis.set_xlabel("packing fraction $\\eta$")
-    axis.set_ylabel("failures per particle")
+    labels = "packing fraction $\\eta$", "failures per particle"
+    style.labelled(axis, *labels, xlim=(0.0, 0.06), ylim=(0.0, 0.85))
 
 
-def _saturation(axis: Axes, one: xr.Dataset, kind: int) -> None:
+def _saturation(axis: Axes, one: Row, kind: int) -> None:
     """The growing packing fraction, its fitted line, and the predicted saturation."""
-    dimension = int(one["dimension"])
-    colour = style.COLOURS[kind]
-    axis.plot(
-        one["time"] ** (-1.0 / dimension), one["filled"], linestyle="none", marker=style.MARKERS[kind],
-        markersize=2.5, color=colour, zorder=3,
-    )  # fmt: skip
+    colour, marker = style.COLOURS[kind], style.MARKERS[kind]
+    x = one.time ** (-1.0 / one.dimension)
+    axis.plot(x, one.filled, color=colour, linestyle="none", marker=marker, markersize=2.5, zorder=3)
     x = np.linspace(0.0, 0.45, 2)
-    axis.plot(
-        x, one["saturation"].values[0] + one["saturation_slope"].values[0] * x, color=colour, linewidth=0.8
-    )
-    expected = theory.insertion_saturation(
-        dimension, float(one["side_over_diameter"]), str(one["rule"].values)
-    )
+    line = one.saturation.value[0] + one.saturation_slope[0] * x
+    axis.plot(x, line, color=colour, linewidth=0.8)
+    expected = theory.insertion_saturation(one.dimension, one.side_over_diameter, one.rule)
     axis.plot([0.0], [expected], marker="_", markersize=12, color="black", clip_on=False, zorder=5)

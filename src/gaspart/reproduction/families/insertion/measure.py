@@ -10,6 +10,7 @@ a straight line in :math:`t^{-1/d}` leads to the saturation :math:`\eta_s`, alth
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -17,6 +18,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.statistics import fit_polynomial, jackknife, mean_of
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
 
 SAMPLES = 24
 """Times, equally spaced in ln t, at which a window's line is fitted."""
@@ -77,67 +79,44 @@ def fill_failures(points: list[Point], settings: dict) -> xr.Dataset:
     eta ~ t^-p with the literature's eta_s (saturated periodic containers only); dilute_failures with error:
     failures over those expected at low density (periodic containers only). Attribute dilute_up_to.
     """
-    fills = [_read(point) for point in points]
-    names = [
-        point.experiment if point.name == "single" else f"{point.experiment}/{point.name}" for point in points
-    ]
-    windows = settings["windows"]
-    saturated = [point.experiment in settings["saturated"] for point in points]
-    periodic = [point.scene.container.periodic[0] for point in points]
-
-    curves = np.array([np.transpose(failures_by_density(one, settings["bins"])) for one in fills])
-    ends = np.array([
-        [saturation(one, window) if ends else (np.nan,) * 3 for window in windows]
-        for one, ends in zip(fills, saturated, strict=True)
-    ])  # fmt: skip
-    times = np.array([np.geomspace(1.0, max(one.last_time, 1.0), TIMES) for one in fills])
-    filled = np.array([one.packing_fraction(t).mean(axis=0) for one, t in zip(fills, times, strict=True)])
-    approach = np.array([
-        approach_exponent(one, windows[0]) if ends and free else (np.nan, np.nan)
-        for one, ends, free in zip(fills, saturated, periodic, strict=True)
-    ])  # fmt: skip
-    dilute = np.array([
-        dilute_failures(one, settings["dilute"]) if free else (np.nan, np.nan)
-        for one, free in zip(fills, periodic, strict=True)
-    ])  # fmt: skip
-    containers, bins, ends_of = "container", ("container", "bin"), ("container", "window")
-    samples = ("container", "sample")
-    return xr.Dataset(
-        {
-            **_columns(
-                bins, curves, "packing_fraction", "failures_per_particle", "failures_per_particle_error"
-            ),
-            **_columns(ends_of, ends, "saturation", "saturation_error", "saturation_slope"),
-            "saturation_freedom": ("container", [len(one.attempts) - 1 for one in fills]),
-            "time": (samples, times, {"units": "attempts v / V"}),
-            "filled": (samples, filled, {"units": "1"}),
-            **_columns(containers, approach, "approach", "approach_error"),
-            **_columns(containers, dilute, "dilute_failures", "dilute_failures_error"),
-            **_properties(points, fills),
-        },
-        coords={"container": names, "window": np.array(windows, dtype=float)},
-        attrs={"dilute_up_to": settings["dilute"]},
-    )
+    inner = {
+        **dict.fromkeys(("packing_fraction", "failures_per_particle"), ("bin",)),
+        **dict.fromkeys(("time", "filled"), ("sample",)),
+        **dict.fromkeys(("saturation", "saturation_slope"), ("window",)),
+    }
+    units = dict.fromkeys(("time", "last_time"), "attempts v / V")
+    dataset = table("container", points, _container, settings, inner=inner, units=units)
+    windows = np.array(settings["windows"], dtype=float)
+    return dataset.assign_coords(window=windows).assign_attrs(dilute_up_to=settings["dilute"])
 
 
-def _columns(dimensions: str | tuple[str, ...], table: np.ndarray, *names: str) -> dict[str, tuple]:
-    """Variables from the last axis of a table."""
-    return {name: (dimensions, table[..., k], {"units": "1"}) for k, name in enumerate(names)}
-
-
-def _properties(points: list[Point], fills: list[Fill]) -> dict[str, tuple]:
-    """Variables of the containers and of their state at the end."""
-    sides = [min(point.extents[2]) / (2.0 * point.extents[1]) for point in points]
-    final = [one.placed * one.particle for one in fills]
+def _container(point: Point, settings: dict) -> dict[str, Any]:
+    fill, windows, absent = _read(point), settings["windows"], (np.nan, np.nan)
+    saturates, periodic = point.experiment in settings["saturated"], point.scene.container.periodic[0]
+    eta, failures, error = failures_by_density(fill, settings["bins"])
+    ends = [saturation(fill, window) if saturates else (*absent, np.nan) for window in windows]
+    end, end_error, slope = np.transpose(ends)
+    times = np.geomspace(1.0, max(fill.last_time, 1.0), TIMES)
+    final = fill.placed * fill.particle
     return {
-        "dimension": ("container", [one.dimension for one in fills]),
-        "side_over_diameter": ("container", sides, {"units": "1"}),
-        "rule": ("container", [_rule(point) for point in points]),
-        "replicas": ("container", [len(one.attempts) for one in fills]),
-        "placed": ("container", [float(one.placed.mean()) for one in fills]),
-        "final": ("container", [float(end.mean()) for end in final], {"units": "1"}),
-        "final_spread": ("container", [float(end.std(ddof=1)) for end in final], {"units": "1"}),
-        "last_time": ("container", [one.last_time for one in fills], {"units": "attempts v / V"}),
+        "container": point.experiment if point.name == "single" else f"{point.experiment}/{point.name}",
+        "dimension": fill.dimension,
+        "side_over_diameter": min(point.extents[2]) / (2.0 * point.extents[1]),
+        "rule": _rule(point),
+        "replicas": len(fill.attempts),
+        "placed": fill.placed.mean(),
+        "final": final.mean(),
+        "final_spread": final.std(ddof=1),
+        "last_time": fill.last_time,
+        "packing_fraction": eta,
+        "failures_per_particle": (failures, error),
+        "time": times,
+        "filled": fill.packing_fraction(times).mean(axis=0),
+        "saturation": (end, end_error),
+        "saturation_freedom": len(fill.attempts) - 1,
+        "saturation_slope": slope,
+        "approach": approach_exponent(fill, windows[0]) if saturates and periodic else absent,
+        "dilute_failures": dilute_failures(fill, settings["dilute"]) if periodic else absent,
     }
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from gaspart.analysis.observable import label_of
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.rows import estimates
+from gaspart.reproduction.table import Table
 
 _THEORY: dict[str, Any] = {"marker": "_", "markersize": 12, "linestyle": ":", "linewidth": 0.8, "zorder": 2}
 """Theory is known at the points only, which thin lines connect."""
@@ -22,13 +22,11 @@ _FEW = 3
 
 def observable(dataset: xr.Dataset) -> Figure:
     """The observable of each series of points, with theory's values; one curve for each point of a curve."""
-    settings = json.loads(dataset.attrs["settings"])
-    theory = settings.get("theory", True) and bool(np.isfinite(dataset["theory"]).any())
+    points, settings = Table(dataset, "point"), json.loads(dataset.attrs["settings"])
+    theory = settings.get("theory", True) and bool(np.isfinite(points.theory.value).any())
     figure, (axis,) = style.new((2.8,))
-    if "along_places" in dataset:
-        _curves(axis, dataset, theory)
-    else:
-        _numbers(axis, dataset, theory)
+    draw = _curves if "along_places" in dataset else _numbers
+    draw(axis, points, theory)
     axis.set_ylabel(label_of(dataset["value"]))
     scales = settings.get("logarithmic", "none")
     if scales in ("x", "both"):
@@ -39,35 +37,32 @@ def observable(dataset: xr.Dataset) -> Figure:
     return figure
 
 
-def _numbers(axis: Axes, dataset: xr.Dataset, theory: bool) -> None:
+def _numbers(axis: Axes, points: Table, theory: bool) -> None:
     """One series of points for each text of `series`, and theory's values at their places."""
-    for kind, (series, part) in enumerate(dataset.groupby("series")):
-        label = str(series) or "measured"
-        style.measured(axis, part["against"], estimates(part, "value"), kind, label=label)
+    for kind, (series, part) in enumerate(points.by("series")):
+        style.points(axis, part.against, part.value, kind=kind, label=series or "measured")
         if theory:
-            axis.plot(part["against"], part["theory"], color=_colour(kind), **_THEORY)
+            axis.plot(part.against, part.theory.value, color=_colour(kind), **_THEORY)
     if theory:
         axis.plot([], [], color=style.GREY, label="theory", **_THEORY)
-    axis.set_xlabel(_words(dataset.attrs["against"]))
+    axis.set_xlabel(_words(points.dataset.attrs["against"]))
 
 
-def _curves(axis: Axes, dataset: xr.Dataset, theory: bool) -> None:
+def _curves(axis: Axes, points: Table, theory: bool) -> None:
     """One curve for each point, with a band of one standard error, and theory's in the same colour."""
     look: dict[str, Any] = {"linestyle": "--", "zorder": 4}
-    if dataset["theory"].notnull().sum("along").max() < _FEW:  # as at contact
+    if (~np.isnan(points.theory.value)).sum(axis=1).max() < _FEW:  # as at contact
         look = {"marker": "x", "linestyle": "none", "zorder": 4}
-    for kind in range(dataset.sizes["point"]):
-        row = dataset.isel(point=kind)
-        x, (value, error) = row["along_places"].values, estimates(row, "value")
-        series = str(row["series"].values)
-        label = f"{_words(dataset.attrs['against'])} {float(row['against']):g}"
-        axis.plot(x, value, color=_colour(kind), label=f"{label}, {series}" if series else label)
-        axis.fill_between(x, value - error, value + error, color=_colour(kind), alpha=0.3, linewidth=0)
+    for kind, point in enumerate(points):
+        x, y, colour = point.along_places, point.value, _colour(kind)
+        label = f"{_words(points.dataset.attrs['against'])} {point.against:g}"
+        axis.plot(x, y.value, color=colour, label=f"{label}, {point.series}" if point.series else label)
+        axis.fill_between(x, y.value - y.error, y.value + y.error, color=colour, alpha=0.3, linewidth=0)
         if theory:
-            axis.plot(x, row["theory"], color=_colour(kind), **look)
+            axis.plot(x, point.theory.value, color=colour, **look)
     if theory:
         axis.plot([], [], color=style.GREY, label="theory", **look)
-    axis.set_xlabel(label_of(dataset["along_places"]))
+    axis.set_xlabel(label_of(points.dataset["along_places"]))
 
 
 def _colour(kind: int) -> str:

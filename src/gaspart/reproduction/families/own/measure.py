@@ -10,9 +10,10 @@ import xarray as xr
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.observables import OBSERVABLES
-from gaspart.reproduction.families.shared.rows import from_rows
+from gaspart.analysis.statistics import average
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.sweep_table import mean_of, measured
+from gaspart.reproduction.table import from_rows
 
 _PARTS = {"value": "", "value_error": "_error", "theory": "_theory", "theory_error": "_theory_error"}
 
@@ -81,7 +82,5 @@ def _numbers(replicas: list[Observable]) -> dict[str, Any]:
         (dim,) = replicas[0].estimate.dims
         shortest = min((one[dim].values for one in replicas), key=len)
         return {**row, "along_places": shortest, "value_freedom": np.inf}
-    total = Estimate(0.0)
-    for one in replicas:
-        total += Estimate(one.estimate, one.error, one.attrs.get("freedom", np.inf))
-    return {**row, "value_freedom": total.freedom}
+    estimates = [Estimate(one.estimate, one.error, one.attrs.get("freedom", np.inf)) for one in replicas]
+    return {**row, "value_freedom": average(estimates).freedom}

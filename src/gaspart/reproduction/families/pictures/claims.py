@@ -8,21 +8,22 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
+from gaspart.reproduction.table import Table
 from gaspart.scene.geometry import ball_volume
 
 
-def gas_render(ds: xr.Dataset) -> list[Claim]:
+def gas_render(dataset: xr.Dataset) -> list[Claim]:
     """All are present, as dilute as the source states, without overlaps after a step, with Maxwell's mean
     speed."""
-    resolved = float(ds["resolved"])
-    expected = 2.0 * resolved**2 / ds.attrs["count"]
+    spheres = Table(dataset, "particle")
+    expected = 2.0 * spheres.resolved**2 / spheres.count
     scatter = math.sqrt(max(expected, 1.0))
     return [
-        _number(ds),
+        _number(spheres),
         Claim.within(
             claim="packing fraction of the spheres drawn",
             kind="reproduction",
-            measured=Estimate(_drawn_fraction(ds)),
+            measured=Estimate(_drawn_fraction(spheres)),
             expected=0.001,
             half_width=0.0005,
             source="[source A]: about 0.1 %",
@@ -30,31 +31,33 @@ def gas_render(ds: xr.Dataset) -> list[Claim]:
         ),
         Claim(
             claim="pairs that overlap at the end of a step",
-            measured=Estimate(ds["overlaps"], scatter),
+            measured=Estimate(spheres.overlaps, scatter),
             expected=expected,
             required=scatter,
-            source=f"almost none of the {resolved:.3g} found: a particle in two contacts (at most, Poisson)",
+            source=f"almost none of the {spheres.resolved:.3g} found: a particle in two contacts (at most, "
+            "Poisson)",
             fails_if="overlaps that a step finds and does not resolve",
         ),
         Claim(
             claim="mean speed",
-            measured=Estimate.of(ds, "mean_speed"),
-            expected=theory.mean_speed(3, float(ds["mean_square_speed"]) / 3.0),
-            required=0.02 * float(ds["mean_speed"]),
+            measured=spheres.mean_speed,
+            expected=theory.mean_speed(3, spheres.mean_square_speed / 3.0),
+            required=0.02 * spheres.mean_speed.value,
             source="Maxwell at the temperature <v^2>/3",
             fails_if="speeds that are not Maxwell's",
         ),
     ]
 
 
-def brownian_render(ds: xr.Dataset) -> list[Claim]:
+def brownian_render(dataset: xr.Dataset) -> list[Claim]:
     """All are present, and none overlaps another."""
+    spheres = Table(dataset, "particle")
     return [
-        _number(ds),
+        _number(spheres),
         Claim(
             claim="pairs that overlap",
             kind="identity",
-            measured=Estimate(ds["overlaps"]),
+            measured=Estimate(spheres.overlaps),
             expected=0.0,
             required=0.0,
             source="hard spheres (exact)",
@@ -63,8 +66,8 @@ def brownian_render(ds: xr.Dataset) -> list[Claim]:
         Claim(
             claim="packing fraction of the spheres drawn",
             kind="identity",
-            measured=Estimate(_drawn_fraction(ds), 1e-12),
-            expected=ds.attrs["packing_fraction"],
+            measured=Estimate(_drawn_fraction(spheres), 1e-12),
+            expected=spheres.packing_fraction,
             required=1e-9,
             source="the scene's",
             fails_if="a particle that is not drawn, or not in its size",
@@ -72,18 +75,17 @@ def brownian_render(ds: xr.Dataset) -> list[Claim]:
     ]
 
 
-def _number(ds: xr.Dataset) -> Claim:
+def _number(spheres: Table) -> Claim:
     return Claim(
         claim="spheres drawn",
         kind="identity",
-        measured=Estimate(ds.sizes["particle"]),
-        expected=ds.attrs["count"],
+        measured=Estimate(len(spheres)),
+        expected=spheres.count,
         required=0.0,
         source="the scene's number of particles",
         fails_if="a particle that is lost",
     )
 
 
-def _drawn_fraction(ds: xr.Dataset) -> float:
-    volume = ball_volume(3) * float((ds["radius"] ** 3).sum())
-    return volume / float(ds["length"].prod())
+def _drawn_fraction(spheres: Table) -> float:
+    return float(ball_volume(3) * (spheres.radius**3).sum() / spheres.length.prod())

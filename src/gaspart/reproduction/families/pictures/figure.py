@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from gaspart.rendering import style
 from gaspart.rendering.particles import FASTEST, DrawnParticles, colours_of
 from gaspart.rendering.pictures import picture
+from gaspart.reproduction.table import Table
 
 DOTS = 300
 """Pixels per inch of the pictures, as those of a saved figure."""
@@ -19,13 +20,14 @@ HIGHEST = 4.2
 """Largest height of a picture, in inches."""
 
 
-def gas_render(ds: xr.Dataset) -> Figure:
+def gas_render(dataset: xr.Dataset) -> Figure:
     """The gas, coloured by speed."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    figure, axis = _shown(ds, "speed", bar=0.5)
-    fastest = FASTEST * float(np.sqrt((ds["speed"] ** 2).mean()))
+    spheres = Table(dataset, "particle")
+    figure, axis = _shown(spheres, "speed", bar=0.5)
+    fastest = FASTEST * float(np.sqrt((spheres.speed**2).mean()))
     scale = ScalarMappable(Normalize(0.0, fastest), cmap="viridis")
     bar = figure.colorbar(
         scale, ax=axis, orientation="horizontal", fraction=0.05, pad=0.02, aspect=40, extend="max"
@@ -34,19 +36,19 @@ def gas_render(ds: xr.Dataset) -> Figure:
     return figure
 
 
-def brownian_render(ds: xr.Dataset) -> Figure:
+def brownian_render(dataset: xr.Dataset) -> Figure:
     """The large sphere and its gas, coloured by species."""
-    return _shown(ds, "species")[0]
+    return _shown(Table(dataset, "particle"), "species")[0]
 
 
-def _shown(ds: xr.Dataset, colour: str, bar: float = 0.0) -> tuple[Figure, Axes]:
-    """A figure filled by a picture of the particles of a dataset; bar: height in inches of what is below."""
+def _shown(spheres: Table, colour: str, bar: float = 0.0) -> tuple[Figure, Axes]:
+    """A figure filled by a picture of the spheres; bar: height in inches of what is below."""
     particles = DrawnParticles(
-        positions=ds["position"].values,
-        radii=ds["radius"].values,
-        species=ds["species"].values,
-        speeds=ds["speed"].values,
-        lengths=ds["length"].values,
+        positions=spheres.position,
+        radii=spheres.radius,
+        species=spheres.species,
+        speeds=spheres.speed,
+        lengths=spheres.length,
         walls=np.zeros((0, 2, 2)),
     )
     height = min(HIGHEST, HEIGHT * style.width())

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 from scipy.spatial import cKDTree
 
+from gaspart.analysis.statistics import means_of
+from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
-from gaspart.trajectory.reading import open_trajectory
+from gaspart.reproduction.table import entries
 
 ROUNDING = 1e-5
 """Depth, in diameters, up to which an overlap is put down to the single precision of frames."""
@@ -33,35 +34,29 @@ def _scene(point: Point) -> xr.Dataset:
     collisions of the step before each frame, overlaps that it found and put right; with the other none.
     `mean_speed` of the last species, with the standard error over particles.
     """
-    scene, overlaps, collisions, speeds = point.scene, [], [], []
-    for path in point.replica_paths:
-        with open_trajectory(path) as dataset:
-            last = dataset.isel(frame=-1)
-            places, radii = last["coordinates"].values.astype(float), dataset["radius"].values
-            overlaps.append(
-                overlapping(places, radii, np.array(scene.container.lengths), scene.container.periodic)
-            )
-            rate = np.diff(dataset["collisions"].values[-2:]) / np.diff(dataset["time"].values[-2:])
-            collisions.append(float(rate[0]))
-            velocities = last["velocities"].values.astype(float)
-            speeds.append(np.sqrt((velocities**2).sum(axis=1)))
-            if len(overlaps) == 1:
-                shown, kind = places, dataset["type"].values
-    gas = kind == len(scene.species) - 1
-    chosen = np.concatenate([one[gas] for one in speeds])
+    scene, lengths = point.scene, np.array(point.scene.container.lengths)
+    frames, overlaps, collisions = [], 0, 0.0
+    for run in runs(point):
+        last = run.data[["coordinates", "velocities", "radius", "type"]].isel(frame=-1).load().astype(float)
+        places, radii = last["coordinates"].values, last["radius"].values
+        overlaps += overlapping(places, radii, lengths, scene.container.periodic)
+        collisions += run.increments("collisions")[-1] / np.diff(run.time)[-1]
+        frames.append(last)
+    speeds = [np.sqrt((last["velocities"].values ** 2).sum(axis=1)) for last in frames]
+    first, kind = frames[0], frames[0]["type"].values.astype(int)
+    of_gas = np.concatenate([one[kind == len(scene.species) - 1] for one in speeds])
     step = point.settings["time_step"] if point.settings.get("engine") == "step" else 0.0
     return xr.Dataset(
         {
-            "position": (("particle", "axis"), shown, {"units": "length"}),
-            "radius": ("particle", radii, {"units": "length"}),
+            "position": (("particle", "axis"), first["coordinates"].values, {"units": "length"}),
+            "radius": ("particle", first["radius"].values, {"units": "length"}),
             "species": ("particle", kind),
             "speed": ("particle", speeds[0], {"units": "length/time"}),
-            "length": ("axis", np.array(scene.container.lengths), {"units": "length"}),
-            "overlaps": float(sum(overlaps)),
-            "resolved": step * sum(collisions),
-            "mean_speed": float(chosen.mean()),
-            "mean_speed_error": float(chosen.std(ddof=1) / math.sqrt(len(chosen))),
-            "mean_square_speed": float((chosen**2).mean()),
+            "length": ("axis", lengths, {"units": "length"}),
+            "overlaps": float(overlaps),
+            "resolved": step * collisions,
+            **entries({"mean_speed": means_of(of_gas)}),
+            "mean_square_speed": (of_gas**2).mean(),
         },
         attrs={"count": scene.count, "packing_fraction": scene.packing_fraction},
     )

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
-from gaspart.reproduction.families.shared.rows import from_rows
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import entries, from_rows, table
 from gaspart.scene.scene import Scene
 from gaspart.theory.granular import DISCHARGE_EXPONENT
 
@@ -34,14 +35,10 @@ def settling(points: list[Point], settings: dict) -> xr.Dataset:
     (liquid_ratio); over `orifice` and `flow_frame` the discs `left` at `flow_time`; and the parameters of
     `_fit`.
     """
-    walls = [bool(point.scene.walls) for point in points]
-    piles = [
-        _pile(run, settings["gap"])
-        for point, flows in zip(points, walls, strict=True)
-        if not flows
-        for run in runs(point, first=0)
-    ]
-    flows = [_flow(point, settings) for point, flows in zip(points, walls, strict=True) if flows]
+    hoppers = [point for point in points if point.scene.walls]
+    floors = [point for point in points if not point.scene.walls]
+    piles = [_pile(run, settings["gap"]) for point in floors for run in runs(point, first=0)]
+    flows = [_flow(point, settings) for point in hoppers]
     return from_rows("pile", piles, ("frame",)).merge(_flows(flows))
 
 
@@ -110,11 +107,6 @@ class Flow:
     time: np.ndarray
     left: np.ndarray
 
-    @property
-    def rate(self) -> float:
-        """Geometric mean of the rates."""
-        return float(np.exp(np.log(self.rates).mean()))
-
 
 def _flow(point: Point, settings: dict) -> Flow:
     """The flow of a point. Raises ValueError if fewer discs leave the hopper than are to be timed."""
@@ -152,50 +144,54 @@ def _flow(point: Point, settings: dict) -> Flow:
 
 
 def _flows(flows: list[Flow]) -> xr.Dataset:
-    """The variables over `orifice`, the narrowest first, and those of the fits.
-
-    The relative variance of a rate is taken to be inversely proportional to the number of discs, by one
-    factor for all orifices, which is measured by all replicas; likewise that of a ratio.
-    """
+    """The variables over `orifice`, the narrowest first, and those of the fits."""
     flows = sorted(flows, key=lambda flow: flow.width)
-    width, rate = np.array([(flow.width, flow.rate) for flow in flows]).T
-    error, freedom = _relative_errors(flows, "rates")
-    ratio = np.array([np.exp(np.log(flow.ratios).mean()) for flow in flows])
-    ratio_error, _ = _relative_errors(flows, "ratios")
-    degrees = np.full(len(flows), freedom)
-    columns = {
-        "width": ("orifice", width, {"units": "diameters"}),
-        "rate": ("orifice", rate, {"units": "sqrt(g / d)"}),
-        "rate_error": ("orifice", rate * error),
-        "rate_freedom": ("orifice", degrees),
-        "head_ratio": ("orifice", ratio),
-        "head_ratio_error": ("orifice", ratio * ratio_error),
-        "head_ratio_freedom": ("orifice", degrees),
-        **_fit(width, rate, error, freedom),
-    }
-    series = [
-        {"liquid_ratio": flow.liquid, "flow_time": flow.time, "left": flow.left.astype(float)}
-        for flow in flows
+    rates = _mean_logarithms(flows, [flow.rates for flow in flows])
+    ratios = _mean_logarithms(flows, [flow.ratios for flow in flows])
+    rows = [
+        {
+            "width": flow.width,
+            "rate": _exponential(rate),
+            "head_ratio": _exponential(ratio),
+            "liquid_ratio": flow.liquid,
+            "flow_time": flow.time,
+            "left": flow.left.astype(float),
+        }
+        for flow, rate, ratio in zip(flows, rates, ratios, strict=True)
     ]
-    return from_rows("orifice", series, ("flow_frame",)).assign(columns)
+    dataset = table("orifice", rows, dict, inner=("flow_frame",))
+    dataset["width"].attrs["units"], dataset["rate"].attrs["units"] = "diameters", "sqrt(g / d)"
+    return dataset.assign(_fit(dataset["width"].values, rates))
 
 
-def _relative_errors(flows: list[Flow], name: str) -> tuple[np.ndarray, int]:
-    """(orifices,) errors of the means of the logarithms of `name`, and their degrees of freedom."""
-    logarithms = [np.log(getattr(flow, name)) for flow in flows]
+def _mean_logarithms(flows: list[Flow], replicas: list[np.ndarray]) -> Estimate:
+    """(orifices,) means of the logarithms of what each replica gives, (R,) for each flow.
+
+    Their variance is taken to be inversely proportional to the number of discs, by one factor for all
+    orifices, which is measured by all replicas.
+    """
+    logarithms = [np.log(values) for values in replicas]
     freedom = sum(len(values) - 1 for values in logarithms)
     scatter = sum(
         flow.count * ((values - values.mean()) ** 2).sum()
         for flow, values in zip(flows, logarithms, strict=True)
     )
     discs = np.array([flow.count * len(flow.rates) for flow in flows])
-    return np.sqrt(scatter / freedom / discs), freedom
+    means = [values.mean() for values in logarithms]
+    return Estimate(means, np.sqrt(scatter / freedom / discs), freedom)
 
 
-def _fit(width: np.ndarray, rate: np.ndarray, error: np.ndarray, freedom: int) -> dict:
-    """rate = amplitude (width - offset)^exponent, fitted to the logarithms with their errors: with the
-    exponent as a parameter, and with that of Beverloo's law (beverloo_amplitude, beverloo_offset and the
-    chi_square of this fit). The offset is not negative."""
+def _exponential(logarithm: Estimate) -> Estimate:
+    value = math.exp(logarithm.value)
+    return Estimate(value, value * logarithm.error, logarithm.freedom)
+
+
+def _fit(width: np.ndarray, rate: Estimate) -> dict[str, tuple]:
+    """The variables of fits of rate = amplitude (width - offset)^exponent: with the exponent as a parameter,
+    and with that of Beverloo's law (beverloo_amplitude, beverloo_offset and the chi_square of this fit).
+
+    width (orifices,); rate (orifices,): logarithms. The offset is not negative.
+    """
     from scipy.optimize import curve_fit
 
     def law(
@@ -203,22 +199,22 @@ def _fit(width: np.ndarray, rate: np.ndarray, error: np.ndarray, freedom: int) -
     ) -> np.ndarray:
         return np.log(amplitude) + exponent * np.log(width - offset)
 
-    start = (rate[-1] / width[-1] ** DISCHARGE_EXPONENT, 0.5 * width.min(), DISCHARGE_EXPONENT)
+    amplitude = math.exp(rate.value[-1]) / width[-1] ** DISCHARGE_EXPONENT
+    start = (amplitude, 0.5 * width.min(), DISCHARGE_EXPONENT)
     bounds = ((0.0, 0.0, 0.0), (np.inf, 0.95 * width.min(), 2.0 * DISCHARGE_EXPONENT))
-    data = (width, np.log(rate))
+    data = (width, rate.value)
     fixed, _ = curve_fit(
         lambda width, amplitude, offset: law(width, amplitude, offset),
-        *data, start[:2], error, True, bounds=(bounds[0][:2], bounds[1][:2]),
+        *data, start[:2], rate.error, True, bounds=(bounds[0][:2], bounds[1][:2]),
     )  # fmt: skip
-    free, covariance = curve_fit(law, *data, start, error, True, bounds=bounds)
-    errors = np.sqrt(np.diag(covariance))
-    deviations = (np.log(rate) - law(width, *fixed)) / error
-    names = ("amplitude", "offset", "exponent")
-    found = {name: ((), value) for name, value in zip(names, free, strict=True)}
-    found |= {f"{name}_error": ((), value) for name, value in zip(names, errors, strict=True)}
-    return found | {
-        "exponent_freedom": ((), freedom),
-        "beverloo_amplitude": ((), fixed[0]),
-        "beverloo_offset": ((), fixed[1]),
-        "chi_square": ((), float((deviations**2).sum())),
+    free, covariance = curve_fit(law, *data, start, rate.error, True, bounds=bounds)
+    deviations = (rate.value - law(width, *fixed)) / rate.error
+    fitted = zip(free, np.sqrt(np.diag(covariance)), strict=True)
+    found = entries(dict(zip(("amplitude", "offset", "exponent"), fitted, strict=True)))
+    found |= {
+        "exponent_freedom": rate.freedom[0],
+        "beverloo_amplitude": fixed[0],
+        "beverloo_offset": fixed[1],
+        "chi_square": (deviations**2).sum(),
     }
+    return {name: ((), value) for name, value in found.items()}
