@@ -119,8 +119,3 @@ def follows(drawn, x, y):
     """Assert that a line goes through these points (n,)."""
     _close(np.asarray(drawn.get_xdata(), dtype=float), np.asarray(x, dtype=float))
     _close(np.asarray(drawn.get_ydata(), dtype=float), np.asarray(y, dtype=float))
-
-
-def estimates(dataset, name):
-    """(2, ...) the values of a variable and their errors."""
-    return np.stack([dataset[name].values, dataset[f"{name}_error"].values])
