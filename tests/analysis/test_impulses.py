@@ -71,9 +71,16 @@ def counted(run):
 def test_the_density_of_a_run_has_less_error_with_impulses(column):
     with open_trajectory(column) as run:
         found, other = A.profile(run), A.profile(counted(run), bins=80)
-        row = A.profile(run, bins=20)
+        row, other_bins = A.profile(run, bins=20), A.profile(run, bins=30)
+        layers, plain_layers = (A.field(one, axes="z", cells=20) for one in (run, counted(run)))
+        sideways = A.field(run, axes="x", cells=20)
     assert (found.attrs["estimator"], other.attrs["estimator"]) == ("counts and impulses", "counts")
     assert "--impulses z:200" in other.attrs["note"] and "note" not in found.attrs
+    assert "kept in 80 bins, which 30 do not divide" in other_bins.attrs["note"]
+    assert (
+        layers.attrs["estimator"] == "counts and impulses" and (layers.estimate == row.estimate.values).all()
+    )
+    assert "--impulses z:200" in plain_layers.attrs["note"] and "--impulses x:200" in sideways.attrs["note"]
     inside = other.error > 0.0
     assert float(((other.error / found.error)[inside] ** 2).median()) > 15.0
     assert float(found.estimate.sum()) * 36.0 * 0.1 == pytest.approx(20.0)

@@ -18,11 +18,11 @@ import xarray as xr
 from gaspart.analysis.profiles import BLOCKS, LEAST_FRAMES, Cells, Means, ratio
 from gaspart.analysis.run import Run
 from gaspart.engines import ENGINES
-from gaspart.errors import SceneError
 from gaspart.scene.impulses import face_temperatures
-from gaspart.state.optional_tallies import ImpulseTally, tally_from_dict
+from gaspart.state.optional_tallies import ImpulseTally, tally_from_dict, useful_impulses
 
-_BINS = 40
+USUAL_BINS = 40
+"""Of a profile, unless others are asked for or the run has kept impulses."""
 _ROUNDING = 1e-10
 """Part of the highest density that is attributed to rounding."""
 _GROUPS = 16
@@ -240,23 +240,20 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
 def default_bins(run: Run, axis: int, of: str) -> int:
     """The number of bins along an axis: of a density those of the impulses that the run has kept."""
     has = kept(run.data)
-    return has.bins if of == "density" and has is not None and has.axis == "xyz"[axis] else _BINS
+    return has.bins if of == "density" and has is not None and has.axis == "xyz"[axis] else USUAL_BINS
 
 
-def estimator(run: Run, axis: int, by_impulses: bool) -> dict[str, str]:
+def estimator(run: Run, axis: int, bins: int, by_impulses: bool) -> dict[str, str]:
     """Attributes of a density: of what it was estimated; and if that was counts alone, where impulses would
-    have served, how a run keeps them."""
+    have served, which bins do or how a run keeps them."""
     if by_impulses:
         return {"estimator": "counts and impulses"}
-    found = {"estimator": "counts"}
+    found, has = {"estimator": "counts"}, kept(run.data)
     engine = json.loads(run.data.attrs.get("engine", "{}")).get("name")
-    if engine in ENGINES and ImpulseTally.name in ENGINES[engine].tallies:
-        asked = ImpulseTally("xyz"[axis], 200)
-        try:
-            asked.check(run.scene)
-        except SceneError:
-            return found
-        found["note"] = (
-            f"by counts; a run with --impulses {asked.to_text()} makes it several times as accurate"
-        )
+    tallies = ENGINES[engine].tallies if engine in ENGINES else ()
+    for asked in useful_impulses(run.scene, tallies, axis, 200):
+        if has is None or has.axis != asked.axis:
+            found["note"] = f"by counts; a run with --impulses {asked.to_text()} makes it more accurate"
+        elif has.bins % bins:
+            found["note"] = f"by counts; impulses are kept in {has.bins} bins, which {bins} do not divide"
     return found
