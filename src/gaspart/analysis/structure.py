@@ -109,7 +109,7 @@ def profile(
         along = {"position": (middle, {"units": "length", "long_name": names[k]})}
         result = observable(of, along, found.values, found.errors, **about)
         if of == "density":
-            result.attrs |= estimator(run, k, by_impulses is not None)
+            result.attrs |= estimator(run, k, bins, by_impulses is not None)
         return with_freedom(result, found)
 
 
