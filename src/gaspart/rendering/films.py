@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import os
 from collections.abc import Callable, Iterator
 from itertools import islice
 from pathlib import Path
@@ -23,6 +22,7 @@ from gaspart.rendering.shown import Film
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
+from gaspart.system import path_for_others
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -200,7 +200,7 @@ def _mp4(scratch: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate
     write_frames = _ffmpeg().write_frames
     with scratch.open("rb") as file:
         # as this process has it open: by its name ffmpeg would make it anew if a signal has removed it
-        path = f"/proc/{os.getpid()}/fd/{file.fileno()}"
+        path = path_for_others(file)
         writer = write_frames(path, size, fps=rate, macro_block_size=2, output_params=options, **quiet)
         try:
             writer.send(None)

@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError, optional
-from gaspart.files import FileKind, begins_with, descriptor_path, output_path, writing
+from gaspart.files import FileKind, begins_with, output_path, writing
 from gaspart.state.insertion import per_particle
+from gaspart.system import descriptor_path
 from gaspart.trajectory.opening import check_frames, opened
 from gaspart.trajectory.recipe import read_recipe
 

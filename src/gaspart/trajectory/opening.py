@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from gaspart.errors import SceneError
-from gaspart.files import descriptor_path, open_regular
+from gaspart.files import open_regular
+from gaspart.system import descriptor_path
 from gaspart.trajectory import amber
 from gaspart.trajectory.frames import CheckedFrames, damaged_frame, frame_count
 from gaspart.trajectory.partial import PARTIAL

@@ -142,6 +142,7 @@ def _carry_out(wanted: Recipe, path: Path, options: WriteOptions) -> Path:
             # again: another process may have finished or begun a run before the lock
             if not is_finished(wanted, path, options.examiner, options.overwrite):
                 _record(wanted, simulation, file, path, options)
+                file.close()  # Windows renames no open file
                 place(partial, path, TRAJECTORY, options.overwrite or is_beginning(path, wanted))
                 if not options.keep_checkpoint:
                     remove_checkpoint(checkpoint)
