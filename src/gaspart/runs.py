@@ -22,7 +22,7 @@ from gaspart.analysis.observables import (
 from gaspart.engines import Engine
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import is_same_file, output_path
-from gaspart.scene.scene import Scene
+from gaspart.scene.scene import Scene, require_scene
 from gaspart.state.optional_tallies import impulse_tallies
 from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
@@ -111,6 +111,7 @@ def run(
     Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
     SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
     """
+    require_scene(scene)
     wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, engine, follow, correlations)

@@ -16,8 +16,7 @@ from gaspart.engines.engine import constructors
 from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys.values import count_of, number
-from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene
-from gaspart.scene.species import Particle, Species
+from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene, require_scene
 from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.given import check_apart, state_at_time_zero
 from gaspart.state.initial import initial_state
@@ -64,6 +63,9 @@ class Simulation:
     overlap or are not inside the container.
     """
 
+    scene: Scene
+    engine: Engine
+
     def __init__(
         self,
         scene: Scene,
@@ -73,8 +75,7 @@ class Simulation:
         initial: State | None = None,
         tallies: Iterable[OptionalTally] = (),
     ) -> None:
-        if not isinstance(scene, Scene):
-            raise SceneError("scene", scene, "must be a Scene, such as Scene.from_file(path)")
+        require_scene(scene)
         if not isinstance(engine, Engine):
             raise SceneError("engine", engine, f"must be an engine: {constructors()}")
         self.scene, self.engine, self.seed = scene, engine, seed
@@ -120,12 +121,14 @@ class Simulation:
         """Add one particle (properties as in `Particle`): `scene` becomes a new, validated scene. Refused
         once the simulation has advanced."""
         self._change(
-            self.scene.with_particles(Particle(tuple(position), tuple(velocity), radius, mass, **properties))
+            self.scene.with_particles(
+                gaspart.Particle(tuple(position), tuple(velocity), radius, mass, **properties)
+            )
         )
 
     def add_random(self, count: int, radius: float, **properties: Any) -> None:
         """Add `count` particles at random places (properties as in `Species`), before the first advance."""
-        self._change(self.scene.with_species(Species(count, radius, **properties)))
+        self._change(self.scene.with_species(gaspart.Species(count, radius, **properties)))
 
     def add_wall(self, start: Iterable[float], end: Iterable[float]) -> None:
         """Add an interior wall from `start` to `end`. Refused after the first advance."""
@@ -199,13 +202,13 @@ class Simulation:
 
     @property
     def state(self) -> State:
-        """All particles now; a copy."""
-        return self._dynamics.state
+        """All particles now; read-only, of which `copy` can be changed."""
+        return self._dynamics.state.read_only()
 
     @property
     def initial_state(self) -> State:
-        """All particles at the start; a copy."""
-        return self._initial.copy()
+        """All particles at the start; read-only, of which `copy` can be changed."""
+        return self._initial.copy().read_only()
 
     @property
     def tally(self) -> Tally:

@@ -27,7 +27,7 @@ from gaspart.reproduction.sweep_axes import axes_of, names_of
 from gaspart.reproduction.sweep_points import make_all
 from gaspart.reproduction.sweep_table import Measured, measured, table
 from gaspart.runs import Accuracy
-from gaspart.scene.scene import Scene
+from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
 from gaspart.trajectory.until import Until
@@ -118,8 +118,7 @@ class _Plan:
 
 def _checked(scene: Any, engine: Any) -> Engine:
     """The engine. Raises SceneError for other things."""
-    if not isinstance(scene, Scene):
-        raise SceneError("scene", scene, "must be a gaspart.Scene")
+    require_scene(scene)
     if not isinstance(engine, Engine):
         raise SceneError("engine", engine, "must be an engine, such as gaspart.EventDriven()")
     return engine

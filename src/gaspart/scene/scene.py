@@ -23,6 +23,7 @@ from gaspart.keys import (
     from_mapping,
     instance_of,
     instances_of,
+    refuse_unknown,
     set_fields,
     validate,
     vector,
@@ -344,6 +345,7 @@ class Scene:
             if not isinstance(mapping, dict):
                 raise SceneError("scene", mapping, "must be a mapping of keys to values")
             parts = dict(mapping)
+            refuse_unknown(cls, parts, "scene")
             if "container" not in parts:
                 raise SceneError("container", None, "is required")
             parts["container"] = from_mapping(Container, parts["container"], "container")
@@ -372,3 +374,9 @@ class Scene:
     def to_file(self, path: str | Path) -> None:
         """Write the scene as YAML."""
         write_yaml(path, self.to_dict())
+
+
+def require_scene(value: object) -> None:
+    """Raise SceneError for what is no scene, such as the path of its file."""
+    if not isinstance(value, Scene):
+        raise SceneError("scene", value, "must be a Scene, such as Scene.from_file(path)")
