@@ -74,9 +74,9 @@ WORDS = {
     "run output": (lambda: gp.run(SCENE, output="a.nc"), "here it is path"),
     "run every": (lambda: gp.run(SCENE, every=1.0), "here it is sample_interval"),
     "run integrator": (lambda: gp.run(SCENE, integrator="event"), "here it is engine"),
-    "run a file": (lambda: gp.run("gas.yaml", gp.EventDriven(), 1), "such as Scene.from_file(path)"),
+    "run a file": (lambda: gp.run("gas.yaml"), "such as Scene.from_file(path)"),
     "simulation of a file": (
-        lambda: gp.Simulation("gas.yaml", gp.EventDriven()),
+        lambda: gp.Simulation("gas.yaml"),
         "such as Scene.from_file(path)",
     ),
     "simulation dt": (lambda: gp.Simulation(SCENE, dt=0.1), "unknown argument of Simulation"),

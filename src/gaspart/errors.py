@@ -7,8 +7,6 @@ from importlib import import_module
 from itertools import islice
 from types import ModuleType
 
-from gaspart.synonyms import meant
-
 TYPE_CHECKING = False
 if TYPE_CHECKING:  # this module is imported before signals are handled: no slow imports
     from importlib.metadata import EntryPoint
@@ -51,6 +49,8 @@ def unknown_word(word: object, known: Iterable[str], what: str = "key") -> str:
     """The rule for a word that is none of `known`: its new name, what other programs mean by it, the most
     similar one, or all of them."""
     from difflib import get_close_matches
+
+    from gaspart.synonyms import meant
 
     words = list(known)
     renamed = str(word).replace("bodies", "particles").replace("body", "particle")  # names of version 0.2

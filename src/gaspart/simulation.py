@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import gaspart
-from gaspart.engines import Engine
+from gaspart.engines import Engine, chosen
 from gaspart.engines.checkpoint_identity import check_identity, checkpoint_identity
-from gaspart.engines.engine import constructors
 from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys.values import count_of, number
@@ -50,6 +49,7 @@ PROPERTIES = (
 class Simulation:
     """One run of a scene by an engine, which is advanced in time.
 
+    `engine`: by default event-driven; "event", "step" or "dsmc" is one with default settings.
     `seed`: a whole number, or a tuple of them, that fixes the initial state and the random
     numbers of thermal walls. stress: whether `tally` has the stress tensor and the heat flux, of a periodic
     scene without gravity; tallies: what it has that not every run counts (`state.optional_tallies`), of which
@@ -69,17 +69,15 @@ class Simulation:
     def __init__(
         self,
         scene: Scene,
-        engine: Engine,
+        engine: Engine | str | None = None,
         seed: int | tuple[int, ...] = 0,
         stress: bool = False,
         initial: State | None = None,
         tallies: Iterable[OptionalTally] = (),
     ) -> None:
         require_scene(scene)
-        if not isinstance(engine, Engine):
-            raise SceneError("engine", engine, f"must be an engine: {constructors()}")
-        self.scene, self.engine, self.seed = scene, engine, seed
-        self._asked, self._given = engine, initial
+        self.scene, self.engine, self.seed = scene, chosen(engine), seed
+        self._asked, self._given = self.engine, initial
         self.tallies: tuple[OptionalTally, ...] = (*tallies, *([StressTally()] if stress else []))
         self._log: EventLog | None = None
         self._advanced = False

@@ -33,7 +33,7 @@ from gaspart.scene.container import Container
 from gaspart.scene.driving import check_driven
 from gaspart.scene.face_checks import check_faces
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
-from gaspart.scene.faces import LeesEdwards, Sticky, Surface, surface_from_dict, surface_to_dict
+from gaspart.scene.faces import LeesEdwards, Sticky, Surface, key_of, surface_from_dict, surface_to_dict
 from gaspart.scene.features import FEATURES, check_features, features
 from gaspart.scene.gas import Gas, Mixture, mixture_of
 from gaspart.scene.geometry import ball_volume
@@ -102,6 +102,8 @@ class Scene:
 
     def __post_init__(self) -> None:
         validate(self)
+        if isinstance(self.faces, dict):
+            set_fields(self, faces={key_of(name): face for name, face in self.faces.items()})
         if self.count > MOST_PARTICLES:
             raise SceneError("count", self.count, f"there may be {MOST_PARTICLES} particles")
         self._check_gravity()
