@@ -391,3 +391,26 @@ def test_what_cannot_be_measured_is_not_advised():
     assert is_tabulated(many, "D") and not is_tabulated(few, "D")
     with pytest.raises(gp.SceneError, match="an error needs 16 moving particles or more"):
         plan.piloted(few, "D", 0.1, pilot_seconds=0.2)
+
+
+def test_a_density_is_advised_with_the_impulses_that_an_engine_keeps():
+    """Of which the run is shorter than by counts, which are what other engines have."""
+    container = gp.Container((6.0, 6.0, 8.0), ("periodic", "periodic", "wall"))
+    scene = gp.Scene(container, [gp.Species(20, 0.4, temperature=1.0)], gravity=(0.0, 0.0, -0.5))
+    uneven = replace(scene, species=[replace(scene.species[0], polydispersity=0.2)])
+    (kept,) = Target(scene, "density").tallies(EventDriven())
+    assert kept.to_text() == "z:40"
+    for target, engine in (
+        (Target(scene, "density"), gp.DSMC(0.1)),
+        (Target(scene, "temperature"), EventDriven()),
+        (Target(uneven, "density"), EventDriven()),
+    ):
+        assert target.tallies(engine) == ()
+    made = plan.piloted(scene, "density", 0.02, pilot_seconds=0.4)
+    exact = made.pilots[0]
+    assert exact.component.length(0.01) < 0.5 * exact.counted.length(0.01)
+    for option in made.options:
+        assert (option.noise == exact.component) == (option.engine == EventDriven())
+    own = next(option for option in made.options if option.engine == EventDriven())
+    advised = replace(made, options=(own,))
+    assert "--impulses z:40" in " ".join(_lines(advised, "scene.yaml"))

@@ -33,7 +33,7 @@ def test_a_row_for_each_species_that_moves(table):
     assert table["count"].values.tolist() == [100, 40, 1]
     rows = table[["count", "temperature", "temperature_error", "mean_speed", "D", "D_error"]].to_dataframe()
     assert rows.index.tolist() == [0, 1, 3] and rows["D"].notna().tolist() == [True, True, False]
-    assert "D of species 3: an error needs 16 moving particles or more" in table.attrs["not_measured"]
+    assert "D of species 3: must cover 768 collisions of a particle or more" in table.attrs["not_measured"]
     assert all("units" in table[name].attrs for name in table.data_vars)
 
 

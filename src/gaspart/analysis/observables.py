@@ -277,6 +277,7 @@ OBSERVABLES: dict[str, Named] = {
         selections=("axis", "species"),
         conditions=(where.unsheared, where.has_axis, where.has_species),
         theory="places.density",
+        by_impulses=True,
     ),
     "velocity": Named(
         title="mean velocity",

@@ -10,10 +10,10 @@ from gaspart.errors import SceneError
 from gaspart.yaml_text import read_yaml
 
 _EXAMPLES = """examples:
-  gaspart check scene.yaml                          validity, and placement of its particles
-  gaspart check config/paper.yaml                   every point of every grid
-  gaspart check run.nc                              a trajectory of gaspart, AMBER or LAMMPS (dump netcdf)
-  gaspart check dump.gsd --time-step 0.005          of HOOMD, which counts steps
+  gaspart check scene.yaml                   # validity, placement
+  gaspart check config/paper.yaml            # every point of every grid
+  gaspart check run.nc                       # of gaspart, AMBER or LAMMPS
+  gaspart check dump.gsd --time-step 0.005   # of HOOMD, which counts steps
   gaspart check frames.xyz --radius 0.5 --lengths 10,10,10
 
 exit code: 0 if all checks pass, 1 if one fails, 2 if the file cannot be read"""

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 _EXAMPLES = """examples:
   gaspart info run.nc
-  gaspart info run.nc --scene > scene.yaml      then the printed command, for the same bits"""
+  gaspart info run.nc --scene > scene.yaml   # to run it again"""
 
 
 def add_info(parser: Parser) -> None:
