@@ -20,10 +20,10 @@ from gaspart.analysis.observables import (
     require_steady_value,
     walls_of,
 )
-from gaspart.engines import Engine
+from gaspart.engines import Engine, chosen
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import is_same_file, output_path
-from gaspart.scene.scene import Scene
+from gaspart.scene.scene import Scene, require_scene
 from gaspart.state.optional_tallies import impulse_tallies
 from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
@@ -60,13 +60,13 @@ class Accuracy(Requirement):
     def named(cls, name: str, accuracy: float, start: float | None = None) -> Self:
         """From its `name`, as on the command line and in a config: `Z`, or `pressure:x low`."""
         observable, colon, face = name.partition(":")
-        return cls(observable.strip(), accuracy, start, face.strip() if colon else None)
+        return cls(observable.strip(), accuracy, start, face if colon else None)
 
 
 def run(
     scene: Scene,
-    engine: Engine,
-    seed: int | tuple[int, ...],
+    engine: Engine | str | None = None,
+    seed: int | tuple[int, ...] = 0,
     duration: float | None = None,
     sample_interval: float | None = None,
     path: str | Path | None = None,
@@ -87,6 +87,7 @@ def run(
 ) -> Path:
     """Run a scene and write its trajectory to `path`; returns `path`.
 
+    engine: by default event-driven, or by a name as on the command line; of a seed see `Simulation`.
     A frame at time 0 and at every sample_interval to the duration, which is an integer multiple of it; with
     `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also the
     spins; with `follow` only so many particles, from the first on (counters are still those of all). With
@@ -113,6 +114,8 @@ def run(
     Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
     SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
     """
+    require_scene(scene)
+    engine = chosen(engine)
     wanted, tallies = _request(duration, sample_interval, until, at_most), impulse_tallies(impulses)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, engine, follow, correlations)

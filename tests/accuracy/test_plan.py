@@ -66,7 +66,7 @@ def test_lags_are_those_of_correlations(tmp_path, observable):
         BOX, coarse.engine, 3, coarse.duration, coarse.sample_interval, tmp_path / "run.nc",
         correlations=coarse.correlations, displacements=coarse.displacements,
     )  # fmt: skip
-    found = measure(observable, path)
+    found = measure(path, observable)
     assert found["lag"][-1] == pytest.approx(coarse.correlations.lags * coarse.correlations.interval)
     error = float((found.error**2).mean() / (found.estimate**2).mean()) ** 0.5
     assert 1.96 * error <= 0.05
@@ -82,9 +82,9 @@ def test_paths_are_followed_however_far_frames_are_apart(tmp_path, observable):
     for path, kept in zip(paths, (recipe.displacements, False), strict=True):
         interval = recipe.sample_interval
         gp.run(scene, gp.EventDriven(), 3, 400 * interval, interval, path, displacements=kept)
-    assert float(measure(observable, paths[0]).estimate) > 0.0
+    assert float(measure(paths[0], observable).estimate) > 0.0
     with pytest.raises(gp.SceneError, match="is too long to follow particles"):
-        measure(observable, paths[1])
+        measure(paths[1], observable)
 
 
 def test_particles_that_start_at_rest_set_the_lags_by_their_collisions_later():

@@ -41,7 +41,7 @@ def test_what_accepts_a_species_has_its_value_there(path, table):
     motion = [name for name in selecting("species") if name in having(scatter="particles")]
     assert {"D", "msd", "vacf"} <= set(motion)
     for name in motion:
-        found = gp.analysis.measuring.measure(name, path, species=1)
+        found = gp.analysis.measuring.measure(path, name, species=1)
         assert np.array_equal(table[name].sel(species=1), found.estimate)
         assert np.array_equal(table[f"{name}_error"].sel(species=1), found.error)
         assert table[name].attrs["units"] == found.estimate.attrs["units"]

@@ -115,7 +115,7 @@ def measured(name, data, axes, start=None):
     if plain in selecting("axis"):
         selection = {"axis": AXES[along]}
     if plain not in COSTLY:
-        return measure(plain, data, start, **selection)
+        return measure(data, plain, start, **selection)
     few = data if start is None else data.isel(frame=data["time"].values >= start - 1e-9)
     few = few.isel(frame=slice(None, None, max(1, (few.sizes["frame"] - 1) // ENOUGH)))
     first = float(few["time"].values[0])

@@ -24,6 +24,7 @@ from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, reference_engine
 from gaspart.engines.dsmc.rates import rates
 from gaspart.errors import SceneError
+from gaspart.scene.faces import wall_of
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
@@ -62,6 +63,7 @@ class Target:
         """From a name as on the command line: `Z`, or `pressure:x low`. Raises SceneError for an unknown one,
         one that the scene does not have, and a wall that is not there."""
         observable, colon, face = str(name).partition(":")
+        face = wall_of(face)
         known(observable)
         walls = walls_of(observable, scene)
         if scene.count:  # an empty one has no advice at all

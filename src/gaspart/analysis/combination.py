@@ -55,7 +55,7 @@ def replicas(
             recipe = _recipe(run, str(source) if isinstance(source, str | Path) else f"run {number}")
             _check_replica(recipe, recipes)
             recipes.append(recipe)
-            found.append(measure(name, run, start, end, **selection))
+            found.append(measure(run, name, start, end, **selection))
     return _mean(found, recipes)
 
 

@@ -23,6 +23,7 @@ from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
 from gaspart.system import path_for_others
+from gaspart.trajectory.opening import run_path
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,7 +78,9 @@ def film(
         _ffmpeg()  # before a picture is drawn
     to = _gif if path.suffix == ".gif" else _mp4
     with opened(trajectory) as source:
-        if isinstance(source, Simulation | State | Scene):
+        if isinstance(source, Scene):
+            run_path(source)
+        if isinstance(source, Simulation | State):
             raise SceneError(
                 "trajectory", source, "must be a path or an open trajectory: a film needs frames"
             )

@@ -26,7 +26,7 @@ from gaspart.trajectory.checkpoint import (
 )
 from gaspart.trajectory.extension import is_beginning, longer, take_over
 from gaspart.trajectory.frames import Frames, frame_count
-from gaspart.trajectory.opening import check_frames, checked
+from gaspart.trajectory.opening import check_frames, checked, run_path
 from gaspart.trajectory.partial import TRAJECTORY, locked, partial_path, writing
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
 from gaspart.trajectory.recording import Progress, Recording
@@ -69,7 +69,7 @@ def resume(path: str | Path, options: WriteOptions) -> Path:
     Raises SceneError if there is nothing to resume, if another version of the program began it, and for a
     file at `path` that is no complete trajectory of gaspart.
     """
-    path = Path(path)
+    path = run_path(path)
     partial = partial_path(path)
     try:
         with writing(path):
