@@ -89,6 +89,14 @@ def test_the_conda_environment_has_every_dependency_at_its_locked_version():
         assert locked.startswith(versions[names.get(name, name)]), name
 
 
+def test_binder_installs_extras_that_exist():
+    (line,) = (ROOT / "binder/requirements.txt").read_text(encoding="utf-8").splitlines()
+    extras = re.fullmatch(r"\.\[([\w,]+)\]", line)[1].split(",")
+    assert set(extras) <= set(project()["optional-dependencies"])
+    python = (ROOT / "binder/runtime.txt").read_text(encoding="utf-8").strip().removeprefix("python-")
+    assert project()["requires-python"] == f">={python}"
+
+
 CASES = [
     ("setup", ".venv"),
     ("distclean", ".venv"),
