@@ -11,7 +11,6 @@ from typing import Self
 
 from gaspart.accuracy.reached import AccuracyStatus, Examiner
 from gaspart.accuracy.steady import require_steady
-from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import (
     OBSERVABLES,
     having,
@@ -24,7 +23,7 @@ from gaspart.engines import Engine, chosen
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import is_same_file, output_path
 from gaspart.scene.scene import Scene, require_scene
-from gaspart.state.optional_tallies import impulse_tallies
+from gaspart.state.optional_tallies import OptionalTally, impulse_tallies
 from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
@@ -121,13 +120,20 @@ def run(
         require_measurable(asked, scene, engine, follow, correlations)
         require_end(asked, scene, at_most, initial is not None)
         displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
-        tallies = tallies or Target(scene, asked.observable).tallies(engine)
+        tallies = tallies or _useful_tallies(asked.observable, scene, engine)
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
     kept = pairs, _start(initial, scene, _required(path)), tallies
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return trajectory.record(Recipe(*settings, *kept), _required(path), options)
+
+
+def _useful_tallies(observable: str, scene: Scene, engine: Engine) -> tuple[OptionalTally, ...]:
+    """Those that make an observable more accurate."""
+    from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
+
+    return Target(scene, observable).tallies(engine)
 
 
 def _start(initial: State | str | Path | None, scene: Scene, path: str | Path) -> State | None:
