@@ -11,6 +11,7 @@ from typing import Self
 
 from gaspart.accuracy.reached import AccuracyStatus, Examiner
 from gaspart.accuracy.steady import require_steady
+from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import (
     OBSERVABLES,
     having,
@@ -19,10 +20,10 @@ from gaspart.analysis.observables import (
     require_steady_value,
     walls_of,
 )
-from gaspart.engines import Engine
+from gaspart.engines import Engine, chosen
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import is_same_file, output_path
-from gaspart.scene.scene import Scene
+from gaspart.scene.scene import Scene, require_scene
 from gaspart.state.optional_tallies import impulse_tallies
 from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
@@ -39,8 +40,8 @@ from gaspart.trajectory.until import Requirement, Until
 class Accuracy(Requirement):
     """The accuracy that a run is to reach: standard error / |value| of an observable.
 
-    observable: Z, D, collision_rate, pressure, heat_flux, wall_shear, velocity or shear_viscosity, as
-    `gaspart measure` names them; accuracy: relative, of one standard error that includes correlations; of
+    observable: Z, D, collision_rate, pressure, heat_flux, wall_shear, density, velocity or shear_viscosity,
+    as `gaspart measure` names them; accuracy: relative, of one standard error that includes correlations; of
     those with components that vanish, and of a profile, relative to their root mean square; start: the time
     from which frames count, by default a quarter of the run; face: of one of the walls (`x low`), by default
     each of them. Raises SceneError for other values.
@@ -59,13 +60,13 @@ class Accuracy(Requirement):
     def named(cls, name: str, accuracy: float, start: float | None = None) -> Self:
         """From its `name`, as on the command line and in a config: `Z`, or `pressure:x low`."""
         observable, colon, face = name.partition(":")
-        return cls(observable.strip(), accuracy, start, face.strip() if colon else None)
+        return cls(observable.strip(), accuracy, start, face if colon else None)
 
 
 def run(
     scene: Scene,
-    engine: Engine,
-    seed: int | tuple[int, ...],
+    engine: Engine | str | None = None,
+    seed: int | tuple[int, ...] = 0,
     duration: float | None = None,
     sample_interval: float | None = None,
     path: str | Path | None = None,
@@ -86,6 +87,7 @@ def run(
 ) -> Path:
     """Run a scene and write its trajectory to `path`; returns `path`.
 
+    engine: by default event-driven, or by a name as on the command line; of a seed see `Simulation`.
     A frame at time 0 and at every sample_interval to the duration, which is an integer multiple of it; with
     `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also the
     spins; with `follow` only so many particles, from the first on (counters are still those of all). With
@@ -104,22 +106,26 @@ def run(
 
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
     examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
-    without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
+    without a contact. sample_interval: by default the mean time between collisions; D keeps displacements,
+    and the density impulses, where the engine can and they serve.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
     examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
     Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
     SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
     """
-    wanted = _request(duration, sample_interval, until, at_most)
+    require_scene(scene)
+    engine = chosen(engine)
+    wanted, tallies = _request(duration, sample_interval, until, at_most), impulse_tallies(impulses)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, engine, follow, correlations)
         require_end(asked, scene, at_most, initial is not None)
         displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
+        tallies = tallies or Target(scene, asked.observable).tallies(engine)
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
-    kept = pairs, _start(initial, scene, _required(path)), impulse_tallies(impulses)
+    kept = pairs, _start(initial, scene, _required(path)), tallies
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return trajectory.record(Recipe(*settings, *kept), _required(path), options)
 

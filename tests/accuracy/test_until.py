@@ -279,8 +279,8 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
             "until = 'pressure': container.boundary: has no walls: measure comp",
         ),
         (
-            {"scene": WALLS, "until": gp.Accuracy("pressure", 0.1, face="x_low")},
-            "until = 'pressure:x_low': the walls are x low, x high, y low",
+            {"scene": WALLS, "until": gp.Accuracy("pressure", 0.1, face="x_lo")},
+            "until = 'pressure:x lo': the walls are x low, x high, y low",
         ),
         (
             {"until": gp.Accuracy("shear_viscosity", 0.1)},

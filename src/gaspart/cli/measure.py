@@ -167,7 +167,7 @@ def _measured(
                 if name == _FIELD:
                     found = _measure_field(trajectory, times, selection | field)
                 else:
-                    found = measure(name, trajectory, *times, **selection)
+                    found = measure(trajectory, name, *times, **selection)
             yield name, found
 
 

@@ -23,6 +23,7 @@ from gaspart.rendering.style import COLOURS
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
+from gaspart.trajectory.opening import run_path
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,7 +78,9 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
     """
     count_of("frames", frames, least=1)
     with opened(source) as found:
-        if isinstance(found, State | Scene):
+        if isinstance(found, Scene):
+            run_path(found)
+        if isinstance(found, State):
             raise SceneError(
                 "source",
                 f"a {type(found).__name__}",

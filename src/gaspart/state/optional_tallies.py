@@ -6,7 +6,7 @@ its name in `Engine.tallies`, and a part (`engines.features.part.TallyPart`) tha
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, ClassVar
 
@@ -85,6 +85,20 @@ class ImpulseTally(OptionalTally):
     def axes(self, scene: Scene) -> dict[str, int]:
         """Species and bins."""
         return {"species": row_count(scene), "bin": self.bins}
+
+
+def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int) -> tuple[ImpulseTally, ...]:
+    """Those along an axis, if a run of a scene can keep them and the density follows from them; tallies: the
+    names of those that its engine can make."""
+    asked = ImpulseTally("xyz"[axis], bins)
+    try:
+        asked.check(scene)
+    except SceneError:
+        return ()
+    one_mass = all(kind.alike for kind in scene.kinds)
+    pulled = bool(scene.gravity and scene.gravity[axis])
+    by_mass = pulled or scene.container.periodic[axis]
+    return (asked,) if asked.name in tallies and (one_mass or not by_mass) else ()
 
 
 def impulse_tallies(text: str | None) -> tuple[OptionalTally, ...]:

@@ -77,7 +77,7 @@ def echo(
     for n, seed in enumerate(seeds):
         equilibrium = Simulation(scene, EventDriven(), seed=seed)
         equilibrium.advance(duration=equilibration)
-        state = equilibrium.state
+        state = equilibrium.state.copy()
         there = engine.start(scene, state)
         start = there.state  # rounded to the engine's precision
         pair = [EventDriven().start(scene, one) for one in (state, _displaced(state, seed))]
