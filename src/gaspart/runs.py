@@ -43,7 +43,8 @@ class Accuracy(Requirement):
     as `gaspart measure` names them; accuracy: relative, of one standard error that includes correlations; of
     those with components that vanish, and of a profile, relative to their root mean square; start: the time
     from which frames count, by default a quarter of the run; face: of one of the walls (`x low`), by default
-    each of them. Raises SceneError for other values.
+    each of them. A run until the density is accurate keeps impulses, where its engine can and they serve.
+    Raises SceneError for other values.
     """
 
     def __post_init__(self) -> None:
@@ -105,8 +106,7 @@ def run(
 
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
     examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
-    without a contact. sample_interval: by default the mean time between collisions; D keeps displacements,
-    and the density impulses, where the engine can and they serve.
+    without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
     examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
@@ -115,25 +115,29 @@ def run(
     """
     require_scene(scene)
     engine = chosen(engine)
-    wanted, tallies = _request(duration, sample_interval, until, at_most), impulse_tallies(impulses)
+    wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, engine, follow, correlations)
         require_end(asked, scene, at_most, initial is not None)
         displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
-        tallies = tallies or _useful_tallies(asked.observable, scene, engine)
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
-    kept = pairs, _start(initial, scene, _required(path)), tallies
+    kept = pairs, _start(initial, scene, _required(path)), _tallies(impulses, wanted, scene, engine)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return trajectory.record(Recipe(*settings, *kept), _required(path), options)
 
 
-def _useful_tallies(observable: str, scene: Scene, engine: Engine) -> tuple[OptionalTally, ...]:
-    """Those that make an observable more accurate."""
+def _tallies(
+    impulses: str | None, wanted: Until | None, scene: Scene, engine: Engine
+) -> tuple[OptionalTally, ...]:
+    """The optional tallies that are asked for, or else those that make what is wanted more accurate."""
+    if impulses is not None or wanted is None:
+        return impulse_tallies(impulses)
     from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
 
-    return Target(scene, observable).tallies(engine)
+    each = (Target(scene, asked.observable).tallies(engine) for asked in wanted.accuracies)
+    return next(filter(None, each), ())
 
 
 def _start(initial: State | str | Path | None, scene: Scene, path: str | Path) -> State | None:
