@@ -5,6 +5,7 @@ The rule that ends a run is in `gaspart.accuracy.reached`; this module refuses w
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Self
@@ -251,20 +252,14 @@ def require_end(asked: Requirement, scene: Scene, at_most: float | None, given: 
 
 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
-    """The mean time between two collisions of a particle, to two digits, as a multiple of the engine's steps
-    and the samples of correlations. Raises SceneError where theory does not give it."""
-    from gaspart import theory
+    """The mean time between two collisions of a particle, or else to cross the container, to two digits, as a
+    multiple of the engine's steps and the samples of correlations. Raises SceneError if nothing moves."""
+    from gaspart.accuracy.scales import scales, two_digits
 
-    gas, rate = scene.gas, 0.0
-    if gas is not None and gas.temperature > 0.0:
-        try:
-            rate = float(theory.collision_rate(**gas.parameters))
-        except ValueError:  # denser than theory goes
-            rate = 0.0
-    if not rate > 0.0:
-        rule = "must be given: the time between collisions is known only of plain gases"
-        raise SceneError("sample_interval", None, rule)
-    interval = float(f"{1.0 / rate:.2g}")
+    shortest = scales(scene).event_time
+    if not math.isfinite(shortest):
+        raise SceneError("sample_interval", None, "must be given: nothing moves at the start")
+    interval = two_digits(shortest)
     unit = correlations.interval if correlations else engine.quantum
     if unit is None:
         return interval

@@ -5,8 +5,18 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from gaspart.cli.arguments import CheckFailed, Parser, config_command, print_line, real, set_command, several
+from gaspart.cli.arguments import (
+    CheckFailed,
+    Parser,
+    config_command,
+    print_line,
+    print_lines,
+    real,
+    set_command,
+    several,
+)
 from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene
 from gaspart.yaml_text import read_yaml
 
 _EXAMPLES = """examples:
@@ -53,7 +63,7 @@ def _check(given: argparse.Namespace) -> None:
         for key in ("radius", "lengths", "boundary", "time_step"):
             if getattr(given, key) is not None:
                 raise SceneError(key, getattr(given, key), "has a meaning for trajectories only")
-        checks = _written(given.file, given.tolerance)
+        checks, scales = _written(given.file, given.tolerance)
     else:
         from gaspart.inspection.checks import judge
         from gaspart.inspection.readers import read_frames
@@ -61,18 +71,20 @@ def _check(given: argparse.Namespace) -> None:
         frames = read_frames(given.file, given.radius, given.lengths, given.boundary, given.time_step)
         kind = "discs" if frames.dimension == 2 else "spheres"
         print_line(f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames")
-        checks = judge(frames, given.tolerance)
+        checks, scales = judge(frames, given.tolerance), []
     for check in checks:
         print_line(check)
+    print_lines(scales)
     if any(check.passed is False for check in checks):
         raise CheckFailed
 
 
-def _written(file: str, tolerance: float | None) -> list:
-    """The checks of a YAML file: a scene, or a config of the workflow."""
+def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:
+    """The checks of a YAML file: a scene, with the lines of its scales, or a config of the workflow."""
+    from gaspart.accuracy.scales import scales
     from gaspart.inspection.written import judge_scene
 
     content, path = read_yaml(file), Path(file)
     if isinstance(content, dict) and ("experiments" in content or "figures" in content):
-        return config_command("check")(path)
-    return judge_scene(path, tolerance)
+        return config_command("check")(path), []
+    return judge_scene(path, tolerance), scales(Scene.from_file(path)).lines

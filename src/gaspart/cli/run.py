@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart.analysis.observables import having
-from gaspart.cli.arguments import Parser, UsageError, alone, print_line, set_command, several
+from gaspart.cli.arguments import Parser, UsageError, alone, print_line, print_lines, set_command, several
 from gaspart.cli.engine_options import add_setting, as_option, engine_settings, joined, one_of, stated
 from gaspart.cli.progress import clear_line, progress, waiting
 from gaspart.engines import ENGINES, engine_from_dict, engine_to_dict
@@ -139,15 +139,18 @@ def _add_checkpoints(group: argparse._ActionsContainer) -> None:
 
 def _run(given: argparse.Namespace) -> None:
     set_note("no state was saved yet; the same command starts it again")
+    from gaspart.accuracy.scales import scales
     from gaspart.runs import run
 
-    until = _until(given)
+    scene = Scene.from_file(given.scene)
+    until, correlations = _until(given, scene), _correlations(given.correlations, given.stress)
     settings = {key: getattr(given, key) for key in engine_settings() if getattr(given, key) is not None}
-    scene, correlations = Scene.from_file(given.scene), _correlations(given.correlations, given.stress)
     try:
         engine = engine_from_dict({"name": given.engine, **settings})
     except SceneError as error:
         raise UsageError(as_option(error, given.engine)) from None
+    if not given.quiet:
+        print_lines(line for line in scales(scene).lines if not line.startswith("suggested"))
     status = _Status()
     with waiting(_PREPARING, given.quiet) as started:
         load_numba(ours=True)
@@ -188,8 +191,9 @@ def _requests(text: str) -> list[tuple[str, float]]:
     return requests
 
 
-def _until(given: argparse.Namespace) -> list[Accuracy] | None:
-    """What --until asks for. Raises UsageError for options that exclude or need each other."""
+def _until(given: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
+    """What --until asks for. Raises UsageError for options that exclude or need each other, with a duration
+    for the scene where there is none."""
     if given.until is not None:
         if given.duration is not None:
             raise UsageError("--duration: excludes --until; the longest duration is --at-most")
@@ -203,8 +207,12 @@ def _until(given: argparse.Namespace) -> list[Accuracy] | None:
         if value is None
     ]
     if missing:
-        rule = "the following arguments are required"
-        raise UsageError(f"{rule}: {', '.join(missing)}, or --until; see `gaspart run --help`")
+        from gaspart.accuracy.scales import scales
+
+        rule = f"the following arguments are required: {', '.join(missing)}, or --until"
+        proposal = scales(scene).proposal
+        hint = f"for this scene {proposal}" if proposal else "see `gaspart run --help`"
+        raise UsageError(f"{rule}; {hint}")
     return None
 
 

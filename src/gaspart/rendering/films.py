@@ -23,7 +23,7 @@ from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
 from gaspart.system import path_for_others
-from gaspart.trajectory.opening import run_path
+from gaspart.trajectory.opening import no_run
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -79,7 +79,7 @@ def film(
     to = _gif if path.suffix == ".gif" else _mp4
     with opened(trajectory) as source:
         if isinstance(source, Scene):
-            run_path(source)
+            raise no_run(source)
         if isinstance(source, Simulation | State):
             raise SceneError(
                 "trajectory", source, "must be a path or an open trajectory: a film needs frames"

@@ -23,7 +23,7 @@ from gaspart.rendering.style import COLOURS
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
-from gaspart.trajectory.opening import run_path
+from gaspart.trajectory.opening import no_run
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -79,7 +79,7 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
     count_of("frames", frames, least=1)
     with opened(source) as found:
         if isinstance(found, Scene):
-            run_path(found)
+            raise no_run(found)
         if isinstance(found, State):
             raise SceneError(
                 "source",

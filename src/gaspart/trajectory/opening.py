@@ -24,10 +24,15 @@ def run_path(given: object) -> Path:
     """The path of a trajectory that a user gives. Raises SceneError for other things."""
     if isinstance(given, str | os.PathLike):
         return Path(given)
+    raise no_run(given)
+
+
+def no_run(given: object) -> SceneError:
+    """The error of what is no trajectory."""
     rule = "must be the path of a trajectory, which gaspart.run writes"
     if isinstance(given, Scene):
         rule = "this is a scene: run it first, gaspart.run(scene, duration=..., path=...)"
-    raise SceneError("trajectory", f"a {type(given).__name__}", rule)
+    return SceneError("trajectory", f"a {type(given).__name__}", rule)
 
 
 @contextmanager
