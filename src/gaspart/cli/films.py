@@ -70,7 +70,7 @@ def _films(given: argparse.Namespace) -> None:
             with tempfile.TemporaryDirectory() as scratch:
                 with waiting(f"running {name}"):
                     trajectory = run_template(known[name], Path(scratch))
-                look = {"size": given.size, "colour": colour_of(known[name]), "clock": True}
-                film(trajectory, output, **look, progress=counted())
+                colour = colour_of(known[name])
+                film(trajectory, output, size=given.size, colour=colour, clock=True, progress=counted())
                 print(clear_line(), end="", file=sys.stderr)
         print_line(output)
