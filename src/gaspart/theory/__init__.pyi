@@ -135,6 +135,7 @@ from gaspart.theory.structure import percus_yevick_structure_factor as percus_ye
 from gaspart.theory.structure import verlet_weis_rdf as verlet_weis_rdf
 from gaspart.theory.structure import verlet_weis_structure_factor as verlet_weis_structure_factor
 from gaspart.theory.tables import literature as literature
+from gaspart.theory.tables import measured as measured
 from gaspart.theory.vibrated import bed_height as bed_height
 from gaspart.theory.vibrated import bed_loss as bed_loss
 from gaspart.theory.vibrated import sawtooth_temperature as sawtooth_temperature
