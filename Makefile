@@ -1,6 +1,7 @@
 # make            set up, reproduce every figure, write results/report.html, print the verdicts
 # make test       set up, run all tests (among them the whole workflow, small); OPTIONS=... are options of pytest
 # make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and the slow tests
+# make precise    all figures from longer runs: results/precise/report.html
 # make smoke      all figures, small: results/smoke/report.html
 # make docs       the documentation site, with executed notebooks: results/docs/html/index.html; after a complete
 #                 reproduction also docs/gallery.png, the picture of the README, and docs/figures, its small pictures
@@ -18,7 +19,7 @@
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
-.PHONY: all setup test check-all smoke wheel archive benchmark referees coverage lint report docs clean distclean
+.PHONY: all setup test check-all precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
@@ -67,10 +68,10 @@ check-all: lint test
 	.venv/bin/python -m pytest --numprocesses=auto -m hypothesis --hypothesis-profile=search
 	.venv/bin/python -m pytest -m thorough
 
-smoke: setup
-	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml
-	$(VERDICTS) results/smoke/tables/claims.csv
-	@echo "report: results/smoke/report.html"
+precise smoke: setup
+	$(SNAKEMAKE) --quiet rules --configfile config/$@.yaml
+	$(VERDICTS) results/$@/tables/claims.csv
+	@echo "report: results/$@/report.html"
 
 wheel: setup
 	.venv/bin/python release/ship_kernels.py dist
