@@ -24,7 +24,7 @@ from gaspart.engines import Engine, chosen
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import is_same_file, output_path
 from gaspart.scene.scene import Scene, require_scene
-from gaspart.state.optional_tallies import impulse_tallies
+from gaspart.state.optional_tallies import OptionalTally, impulse_tallies
 from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
@@ -40,11 +40,12 @@ from gaspart.trajectory.until import Requirement, Until
 class Accuracy(Requirement):
     """The accuracy that a run is to reach: standard error / |value| of an observable.
 
-    observable: Z, D, collision_rate, pressure, heat_flux, wall_shear, velocity or shear_viscosity, as
-    `gaspart measure` names them; accuracy: relative, of one standard error that includes correlations; of
+    observable: Z, D, collision_rate, pressure, heat_flux, wall_shear, density, velocity or shear_viscosity,
+    as `gaspart measure` names them; accuracy: relative, of one standard error that includes correlations; of
     those with components that vanish, and of a profile, relative to their root mean square; start: the time
     from which frames count, by default a quarter of the run; face: of one of the walls (`x low`), by default
-    each of them. Raises SceneError for other values.
+    each of them. A run until the density is accurate keeps impulses, where its engine can and they serve.
+    Raises SceneError for other values.
     """
 
     def __post_init__(self) -> None:
@@ -120,7 +121,7 @@ def run(
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
-    kept = pairs, _start(initial, scene, _required(path)), impulse_tallies(impulses)
+    kept = pairs, _start(initial, scene, _required(path)), _tallies(impulses, wanted, scene, engine)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return trajectory.record(Recipe(*settings, *kept), _required(path), options)
 
@@ -129,6 +130,18 @@ def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
     """The engine of a run (`chosen`). Raises SceneError for it, and for what is no scene."""
     require_scene(scene)
     return chosen(engine)
+
+
+def _tallies(
+    impulses: str | None, wanted: Until | None, scene: Scene, engine: Engine
+) -> tuple[OptionalTally, ...]:
+    """The optional tallies that are asked for, or else those that make what is wanted more accurate."""
+    if impulses is not None or wanted is None:
+        return impulse_tallies(impulses)
+    from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
+
+    each = (Target(scene, asked.observable).tallies(engine) for asked in wanted.accuracies)
+    return next(filter(None, each), ())
 
 
 def _start(initial: State | str | Path | None, scene: Scene, path: str | Path) -> State | None:

@@ -393,7 +393,7 @@ def test_what_cannot_be_measured_is_not_advised():
         plan.piloted(few, "D", 0.1, pilot_seconds=0.2)
 
 
-def test_a_density_is_advised_with_the_impulses_that_an_engine_keeps():
+def test_a_density_is_advised_with_the_impulses_that_an_engine_keeps(tmp_path):
     """Of which the run is shorter than by counts, which are what other engines have."""
     container = gp.Container((6.0, 6.0, 8.0), ("periodic", "periodic", "wall"))
     scene = gp.Scene(container, [gp.Species(20, 0.4, temperature=1.0)], gravity=(0.0, 0.0, -0.5))
@@ -413,4 +413,11 @@ def test_a_density_is_advised_with_the_impulses_that_an_engine_keeps():
         assert (option.noise == exact.component) == (option.engine == EventDriven())
     own = next(option for option in made.options if option.engine == EventDriven())
     advised = replace(made, options=(own,))
-    assert "--impulses z:40" in " ".join(_lines(advised, "scene.yaml"))
+    lines = " ".join(_lines(advised, "scene.yaml"))
+    assert "--until density=" in lines and "--impulses z:40" in lines
+    until = gp.Accuracy("density", 0.05)
+    path = gp.run(scene, EventDriven(), 3, None, 1.0, tmp_path / "run.nc", until=until, at_most=400.0)
+    (reached,) = gp.reached_accuracy(path)
+    found = measure(path, "density")
+    assert reached.met and found.attrs["estimator"] == "counts and impulses"
+    assert float((found.error**2).mean() / (found.estimate**2).mean()) ** 0.5 < 0.05

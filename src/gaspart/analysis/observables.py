@@ -278,6 +278,7 @@ OBSERVABLES: dict[str, Named] = {
         conditions=(where.unsheared, where.has_axis, where.has_species),
         theory="places.density",
         by_impulses=True,
+        ends_runs=True,
     ),
     "velocity": Named(
         title="mean velocity",

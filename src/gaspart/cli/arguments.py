@@ -79,6 +79,15 @@ def _reader(kind: Callable[[str], T], name: str, limits: dict[str, float]) -> Ca
     return read
 
 
+def pixels(text: str) -> tuple[int, int]:
+    """A reader of a width and a height, such as 1000x750."""
+    try:
+        width, height = (int(part) for part in text.split("x"))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} must be of the form 1000x750") from None
+    return width, height
+
+
 def set_command(
     parser: Parser,
     run: Callable[[argparse.Namespace], None],

@@ -98,10 +98,10 @@ def _new(given: argparse.Namespace) -> None:
     with writing(output, _SCENE, given.force) as scratch:
         scratch.write_text(_renamed(template, output), encoding="utf-8")
     print_line(f"{output}: {template.title}. Run it:")
-    print_line(_command(template, output))
+    print_line(named_command(template, output))
 
 
-def _command(template: Template, path: Path) -> str:
+def named_command(template: Template, path: Path) -> str:
     """The command that runs the scene, with the names of the file and of its trajectory."""
     scene, trajectory = shlex.quote(str(path)), shlex.quote(str(path.with_suffix(".nc")))
     command = template.command.replace(f"{template.name}.yaml", scene)
@@ -111,4 +111,4 @@ def _command(template: Template, path: Path) -> str:
 def _renamed(template: Template, path: Path) -> str:
     """The text of the file, without the note on the figure."""
     kept = [line for line in template.text.splitlines(keepends=True) if not line.startswith("#   figure")]
-    return "".join(kept).replace(template.command, _command(template, path))
+    return "".join(kept).replace(template.command, named_command(template, path))

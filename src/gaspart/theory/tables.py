@@ -1,4 +1,4 @@
-"""Numbers that programs have measured, as tables: those of others."""
+"""Numbers that programs have measured, as tables: those of others, and this one."""
 
 from functools import cache
 from pathlib import Path
@@ -20,6 +20,20 @@ def literature(quantity: str, dimension: int) -> np.recarray:
     Raises SceneError for a quantity that the table does not have.
     """
     return _of("literature", quantity, dimension)
+
+
+def measured(quantity: str, dimension: int) -> np.recarray:
+    """What this program has measured of fluids of hard discs and spheres: a row for each value, to be cited.
+
+    quantity: "Z" or "contact_value", both of the infinite system (finite numbers taken off to first order in
+    1/N); "viscosity", "bulk_viscosity" and "conductivity", by Green and Kubo until 16 collisions of a
+    particle (30 in dense gases); of spheres "diffusion" too, N / (N - 1) times that of particles whose total
+    momentum is zero. The last four are those of `count` particles; of discs they grow with the logarithm of
+    time and of the container. Fields and units are those of `literature`; source is the figure of the
+    reproduction. The commit and the command that made the table are in `data/README.md`. Raises SceneError
+    for a quantity that the table does not have.
+    """
+    return _of("measured", quantity, dimension)
 
 
 def _of(table: str, quantity: str, dimension: int) -> np.recarray:

@@ -33,7 +33,7 @@ KEYS: dict[str, Kind] = {
         "number of echoes, after 1, 2 ... of the intervals into which the length is divided", default=1
     ),
 }
-DISPLACEMENT = 1e-10
+DISPLACEMENT = 1e-13
 """Root-mean-square displacement, in diameters, from which the exact flow's divergence is measured."""
 TANGENT_COLLISIONS = 100.0
 """Collisions per particle over which the exponent of the linearised dynamics is measured, for each seed."""
