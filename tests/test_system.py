@@ -13,7 +13,7 @@ WITHOUT = """
     import os, signal, sys, warnings
     sys.modules["fcntl"] = None  # an import of it fails
     for module, names in {
-        os: "fork pread pwrite sysconf O_NOFOLLOW O_NONBLOCK",
+        os: "fork getuid geteuid pread pwrite sysconf O_NOFOLLOW O_NONBLOCK",
         signal: "siginterrupt SIGHUP SIGKILL",
     }.items():
         for name in names.split():

@@ -86,9 +86,8 @@ def run(
     overwrite: bool = False,
     keep_checkpoint: bool = False,
 ) -> Path:
-    """Run a scene and write its trajectory to `path`; returns `path`.
+    """Run a scene, by default by the event-driven engine, and write its trajectory to `path`; returns `path`.
 
-    engine: by default event-driven, or by a name as on the command line; of a seed see `Simulation`.
     A frame at time 0 and at every sample_interval to the duration, which is an integer multiple of it; with
     `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also the
     spins; with `follow` only so many particles, from the first on (counters are still those of all). With
@@ -103,19 +102,17 @@ def run(
 
     With `initial`, a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`), the run
     starts from it (`Simulation`). Particles and the size of the container must be the scene's; the rest may
-    differ. Defaults of engines follow from the scene's `speed` or `temperature` all the same.
-
-    With `until` the run ends when standard error / |value| of all these observables is as small as required,
-    examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
-    without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
+    differ. Defaults of engines follow from the scene's `speed` or `temperature` all the same. With `until`
+    the run ends when standard error / |value| of all these observables is as small as required, examined at
+    64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames without a
+    contact. sample_interval: by default the mean time between collisions; D keeps displacements.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
     examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
     Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
     SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
     """
-    require_scene(scene)
-    engine = chosen(engine)
+    engine = _engine_of(scene, engine)
     wanted = _request(duration, sample_interval, until, at_most)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, engine, follow, correlations)
@@ -127,6 +124,12 @@ def run(
     kept = pairs, _start(initial, scene, _required(path)), _tallies(impulses, wanted, scene, engine)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return trajectory.record(Recipe(*settings, *kept), _required(path), options)
+
+
+def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
+    """The engine of a run (`chosen`). Raises SceneError for it, and for what is no scene."""
+    require_scene(scene)
+    return chosen(engine)
 
 
 def _tallies(

@@ -34,6 +34,15 @@ def memory() -> int | None:
         return None
 
 
+def user() -> str:
+    """A short name of this user, for a folder among those of others."""
+    if hasattr(os, "getuid"):
+        return str(os.getuid())
+    from getpass import getuser
+
+    return getuser()
+
+
 def is_own(found: os.stat_result) -> bool:
     """Whether a file belongs to this user. True on Windows, where files have no number of a user."""
     return not hasattr(os, "geteuid") or found.st_uid == os.geteuid()

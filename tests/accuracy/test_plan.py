@@ -418,6 +418,6 @@ def test_a_density_is_advised_with_the_impulses_that_an_engine_keeps(tmp_path):
     until = gp.Accuracy("density", 0.05)
     path = gp.run(scene, EventDriven(), 3, None, 1.0, tmp_path / "run.nc", until=until, at_most=400.0)
     (reached,) = gp.reached_accuracy(path)
-    found = measure("density", path)
+    found = measure(path, "density")
     assert reached.met and found.attrs["estimator"] == "counts and impulses"
     assert float((found.error**2).mean() / (found.estimate**2).mean()) ** 0.5 < 0.05

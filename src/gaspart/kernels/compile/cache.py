@@ -8,6 +8,8 @@ import tempfile
 import warnings
 from pathlib import Path
 
+from gaspart.system import is_private, user
+
 _REMEDY = "set GASPART_CACHE to a writable folder"
 
 
@@ -67,13 +69,13 @@ def _obstacle(directory: Path) -> str:
 
 def _is_private(found: os.stat_result) -> bool:
     """Whether a folder is one that only this user may write to: no other places machine code in it."""
-    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid() and not found.st_mode & 0o022
+    return stat.S_ISDIR(found.st_mode) and is_private(found)
 
 
 def _temporary(version: str) -> Path | None:
     """A folder of this user in the one for temporary files, where others may have made it before."""
     try:
-        own = Path(tempfile.gettempdir()) / f"gaspart-{os.getuid()}"
+        own = Path(tempfile.gettempdir()) / f"gaspart-{user()}"
         own.mkdir(mode=0o700, exist_ok=True)
         private = _is_private(own.lstat())
     except OSError:

@@ -21,6 +21,7 @@ from gaspart.files import scratch_beside
 from gaspart.kernels.compile.cache import report_unwritable
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.kernels.compile.shipped import shipped_content, shipped_key
+from gaspart.system import is_own
 
 caching: Any = load_numba().core.caching
 
@@ -45,7 +46,7 @@ def _own_content(path: str) -> bytes | None:
     would run in this one's name."""
     try:
         with open(path, "rb") as file:
-            return file.read() if os.fstat(file.fileno()).st_uid == os.geteuid() else None
+            return file.read() if is_own(os.fstat(file.fileno())) else None
     except OSError:
         return None
 
