@@ -146,9 +146,8 @@ def enskog_mean_squared_displacement(
     D (2D) or 1e-5 (3D), before that to less. No correlated collisions and no long-time tail. `time`
     broadcasts with eta.
     """
-    gas = {"diameter": diameter, "temperature": temperature, "mass": mass, "contact": contact}
-    frequency = collision_rate(packing_fraction, dimension, **gas)
-    total = 0.0
+    frequency = collision_rate(packing_fraction, dimension, diameter, temperature, mass, contact)
+    total: Values = 0.0
     for relative, weight in zip(*_VELOCITY_DECAY[checked_dimension(dimension)], strict=True):
         rate = relative * frequency
         total = total + weight * langevin_msd(time, temperature / (mass * rate), rate, dimension)
