@@ -15,7 +15,7 @@ copyright = "The gaspart developers, BSD 3-Clause licence"
 language = "en"
 
 extensions = ["sphinx.ext.autodoc", "sphinx.ext.viewcode", "myst_nb", "sphinx_copybutton", "pages", "mathml"]
-exclude_patterns = ["README.md"]
+exclude_patterns = ["README.md", "paper.md"]  # pages.py fills the numbers of paper.md in
 default_role = "py:obj"  # `name` in a docstring is a link where there is one
 
 html_math_renderer = "mathml"

@@ -223,6 +223,17 @@ def referees():
     return {"referees.rst": text + heading("What is not judged", "-") + NOT_JUDGED}
 
 
+def paper():
+    """The page of method and results: docs/paper.md with the numbers of the claims that have been judged. Its
+    places begin with the figure, {{figure: beginning of a claim}}."""
+    rows = []
+    for path in sorted((ROOT / "results/claims").glob("*.csv")):
+        with path.open(newline="", encoding="utf-8") as file:
+            rows += [{**row, "claim": f"{row['figure']}: {row['claim']}"} for row in csv.DictReader(file)]
+    text = (ROOT / "docs/paper.md").read_text(encoding="utf-8")
+    return {"paper.md": filled(text, rows, "(see the claims)")}
+
+
 def table(columns, rows):
     """A table of rows: title of a column -> pattern of its cells."""
     text = ".. list-table::\n   :header-rows: 1\n\n"
@@ -235,7 +246,7 @@ def write(folder):
     """Write all pages; those that are up to date are not touched, so that Sphinx reads only what is new."""
     for part in ("api", "figures"):
         (folder / part).mkdir(parents=True, exist_ok=True)
-    pages = {**api(), **command_line(), **gallery(folder), **figures(folder), **referees()}
+    pages = {**api(), **command_line(), **gallery(folder), **figures(folder), **referees(), **paper()}
     pages["symmetries.rst"] = symmetries.page(heading, table)
     for path, text in pages.items():
         target = folder / path

@@ -88,7 +88,7 @@ def crystal_finite_size_correction(compressibility_factor: Values, count: Values
     """Z_N - Z_infinity = -(Z - 1) / N of a periodic crystal of N particles, its centre of mass free.
 
     The centre of mass explores the complete volume V, the other N - 1 particles their free volumes: Q_N ~ V
-    v_f^(N-1), so Z_N = 1/N + (1 - 1/N) Z (exact towards close packing; further terms of order 1/N elsewhere
-    are small).
+    v_f^(N-1), so Z_N = 1/N + (1 - 1/N) Z. Exact towards close packing; elsewhere further terms of order 1/N
+    are not known, of the order of V / V_c - 1 times this one.
     """
     return -(compressibility_factor - 1.0) / count

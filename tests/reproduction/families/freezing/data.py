@@ -90,6 +90,7 @@ def spheres(error=0.005, seed=1):
     both = "start", "packing_fraction"
     dataset["Z"] = dataset["pressure"] / dataset["density"]
     dataset["Z_error"] = dataset["pressure_error"] / dataset["density"]
+    dataset["finite_size"] = both, np.full(order.shape, -0.01)
     dataset["reference"] = both, np.where(np.isfinite(order), z, np.nan)
     position = np.linspace(0.5, 30.5, 31)
     solid = (position < 15.0).astype(float)

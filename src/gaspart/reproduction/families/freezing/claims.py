@@ -206,7 +206,8 @@ def _branch(state: Row) -> Claim:
     known = not solid and math.isfinite(reference)
     allowance = float(theory.compressibility_uncertainty(eta, 3)) if known else 0.0
     if solid:
-        allowance = theory.ETOMICA_CRYSTAL_UNCERTAINTY * reference
+        next_order = (theory.CLOSE_PACKING[3] / eta - 1.0) * state.finite_size
+        allowance = math.hypot(theory.ETOMICA_CRYSTAL_UNCERTAINTY * reference, next_order)
     superheated = solid and eta < theory.coexistence_packing_fractions(3)[1]
     return Claim(
         claim=f"Z of the {'crystal' if solid else 'fluid'} at packing fraction {eta:.4g}, "
@@ -215,7 +216,7 @@ def _branch(state: Row) -> Claim:
         expected=Estimate(reference, allowance),
         required=2e-3 * reference,
         source="etomica's fit to simulations of its authors" if solid else "[Kolafa 2004]",
-        allowance_source="its distance from runs of an author of [Pieprzyk 2019]"
+        allowance_source="its distance from runs behind [Pieprzyk 2019]; the next order of finite numbers"
         if solid
         else "its distance from etomica's equation, or from the virial series",
         no_verdict="a superheated crystal, which may be melting" if superheated else "",

@@ -40,7 +40,14 @@ def _ratios(axis: Axes, values: Table) -> None:
         eta, theirs = part.packing_fraction, part.theirs.value
         known = 100.0 * part.theirs.error / theirs
         axis.errorbar(
-            eta, 0.0 * eta, known, linestyle="none", color=style.COLOURS[kind], elinewidth=4.0, alpha=0.35
+            eta,
+            0.0 * eta,
+            known,
+            linestyle="none",
+            color=style.COLOURS[kind],
+            elinewidth=4.0,
+            capsize=0.0,
+            alpha=0.35,
         )
         style.points(axis, eta, 100.0 * (part.ours / theirs - 1.0), kind=kind, label=label)
     style.labelled(axis, r"packing fraction $\eta$", "ours over others' $-1$  (%)", legend="best")

@@ -86,7 +86,7 @@ def _known(gas: Gas, quantity: str) -> np.recarray:
 def _of_infinite_system(point: Point, gas: Gas) -> Iterator[dict[str, Any]]:
     """Z of a fluid or a crystal of spheres. Ours is that of the canonical ensemble (see
     `analysis.series.compressibility`), theirs that of a fixed energy and momentum, which a crystal shifts by
-    nothing to first order."""
+    nothing to first order; the next order in V / V_c - 1 of ours is not known, and part of its error."""
     eta = gas.packing_fraction
     fluid = eta <= theory.HIGHEST_PACKING_FRACTION[3]
     quantity = "Z" if fluid else "Z_crystal"
@@ -95,10 +95,12 @@ def _of_infinite_system(point: Point, gas: Gas) -> Iterator[dict[str, Any]]:
         return
     z = pressure(point).z
     if fluid:
-        shift = float(theory.finite_size_correction(eta, 3, gas.count, ensemble="canonical"))
+        shift = Estimate(float(theory.finite_size_correction(eta, 3, gas.count, ensemble="canonical")))
         shifts = np.array([theory.finite_size_correction(eta, 3, int(count)) for count in known["count"]])
     else:
-        shift, shifts = float(theory.crystal_finite_size_correction(z.value, gas.count)), np.zeros(len(known))
+        first = float(theory.crystal_finite_size_correction(z.value, gas.count))
+        shift = Estimate(first, abs(first) * (theory.CLOSE_PACKING[3] / eta - 1.0))
+        shifts = np.zeros(len(known))
     theirs = combine_estimates(Estimate(known.value - shifts, known.error))
     yield _row(gas, quantity, z - shift, theirs, str(known.source[0]))
 
