@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import FrozenInstanceError, is_dataclass
+from dataclasses import FrozenInstanceError
 from difflib import get_close_matches
 from functools import wraps
 from inspect import Parameter, signature
@@ -98,7 +98,7 @@ def _guide(cls: Any) -> None:
         elif isinstance(member, classmethod) and not name.startswith("_"):
             setattr(cls, name, classmethod(_answering(member.__func__, f"{cls.__name__}.{name}")))
     if isinstance(cls.__init__, FunctionType):
-        cls.__init__ = _answering(cls.__init__, cls.__name__)
+        setattr(cls, "__init__", _answering(cls.__init__, cls.__name__))  # noqa: B010  # a method for mypy
     before = getattr(cls, "__getattr__", None)
 
     def missing(instance: Any, name: str) -> Any:
@@ -110,7 +110,8 @@ def _guide(cls: Any) -> None:
         raise MissingName(type(instance), name)
 
     cls.__getattr__ = missing
-    if is_dataclass(cls) and cls.__dataclass_params__.frozen:
+    parameters = getattr(cls, "__dataclass_params__", None)
+    if parameters is not None and parameters.frozen:
 
         def fixed(instance: Any, name: str, value: Any) -> None:
             raise FixedValue(type(instance), name)

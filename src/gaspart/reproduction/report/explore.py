@@ -78,7 +78,7 @@ def engines(dataset: xr.Dataset) -> dict[str, Any]:
     found = []
     for quantity in dataset["quantity"].values:
         of = dataset.sel(quantity=quantity)
-        of = of.isel(fraction=np.isfinite(of["cost"]).any(("accuracy", "solver")).values)
+        of = of.isel(fraction=(of["cost"] < np.inf).any(("accuracy", "solver")).values)
         if of.sizes["fraction"]:
             cost = of["cost"].transpose("fraction", "accuracy", "solver")
             found.append(
