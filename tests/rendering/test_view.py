@@ -106,11 +106,11 @@ def test_the_local_order_of_every_particle_is_in_the_page(lengths, name):
     simulation = gp.Simulation(scene, gp.EventDriven(search="direct"), seed=1)
     simulation.advance(duration=0.5)
     found = content(gp.view(simulation, frames=2, order=True).page)["order"]
-    values = np.frombuffer(base64.b64decode(found["values"]), "u1").reshape(2, 14) / 255.0 * found["highest"]
+    values = np.frombuffer(base64.b64decode(found["values"]), "u1").reshape(2, 14) / 254.0 * found["highest"]
     state = simulation.state
     measure = order.hexatic if len(lengths) == 2 else order.local_steinhardt
     expected = abs(measure(state.positions, state.lengths))
-    assert found["name"] == name and np.allclose(values[-1], expected, atol=0.5 / 255.0 * found["highest"])
+    assert found["name"] == name and np.allclose(values[-1], expected, atol=0.5 / 254.0 * found["highest"])
     assert content(gp.view(simulation).page)["order"] is None
 
 

@@ -19,7 +19,7 @@ _SIZE = 1280, 720  # of slides, 16:9
 _BY_SPECIES = ("separation", "brownian", "hourglass", "shaken", "slit", "packing")
 """Templates whose species are seen better than speeds."""
 _EXAMPLES = """examples:
-  gaspart films slides                     # of all scenes of `gaspart new --list`
+  gaspart films slides              # of all scenes of `gaspart new --list`
   gaspart films slides shaken hourglass --gif --size 640x360"""
 
 
