@@ -6,6 +6,7 @@ The rule that ends a run is in `gaspart.accuracy.reached`; this module refuses w
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Self
 
@@ -22,6 +23,8 @@ from gaspart.analysis.observables import (
 from gaspart.engines import Engine
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import is_same_file, output_path
+from gaspart.keys.values import count_of
+from gaspart.replicas import record_together, resume_together
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import impulse_tallies
 from gaspart.state.state import State
@@ -30,8 +33,9 @@ from gaspart.trajectory.checkpoint import checkpoint_path
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.partial import partial_path
-from gaspart.trajectory.recipe import Recipe
+from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.recording import Progress
+from gaspart.trajectory.replicas import found, in_replicas, replica_paths
 from gaspart.trajectory.run import WriteOptions
 from gaspart.trajectory.until import Requirement, Until
 
@@ -83,6 +87,7 @@ def run(
     examined: Callable[[list[AccuracyStatus]], None] | None = None,
     overwrite: bool = False,
     keep_checkpoint: bool = False,
+    replicas: int = 1,
 ) -> Path:
     """Run a scene and write its trajectory to `path`; returns `path`.
 
@@ -106,12 +111,18 @@ def run(
     examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
     without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
 
+    With `replicas` so many independent runs are made at a time, in a process each, with the files `run-1.nc`,
+    `run-2.nc` ... for the path `run.nc` (`gaspart.replica_paths`) and the seed with 1, 2 ... behind it. With
+    `until` their mean is to be as accurate, and they end together; at_most is of each. Their number is part
+    of what is run: the result depends on it, and not on the machine.
+
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
     examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
     Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
     SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
     """
     wanted = _request(duration, sample_interval, until, at_most)
+    replicas = count_of("replicas", replicas, least=1, most=MOST_REPLICAS)
     for asked in wanted.accuracies if wanted else ():
         require_measurable(asked, scene, engine, follow, correlations)
         require_end(asked, scene, at_most, initial is not None)
@@ -119,23 +130,27 @@ def run(
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
-    kept = pairs, _start(initial, scene, _required(path)), impulse_tallies(impulses)
+    start = _start(initial, scene, replica_paths(_required(path), replicas))
+    kept = pairs, start, impulse_tallies(impulses)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    return trajectory.record(Recipe(*settings, *kept), _required(path), options)
+    recipes = in_replicas(Recipe(*settings, *kept), replicas)
+    if replicas == 1:
+        return trajectory.record(recipes[0], _required(path), options)
+    return record_together(recipes, _required(path), options, examined)
 
 
-def _start(initial: State | str | Path | None, scene: Scene, path: str | Path) -> State | None:
-    """The initial state of a run at `path`: of a file its last state. Raises SceneError if that is the same
-    file, by whatever name: it would be lost."""
+def _start(initial: State | str | Path | None, scene: Scene, paths: list[Path]) -> State | None:
+    """The initial state of a run with these files: of a file its last state. Raises SceneError if that is one
+    of them, by whatever name: it would be lost."""
     if not isinstance(initial, str | Path):
         return initial
     from gaspart.inspection.start import STARTS, read_state  # which few runs need
 
-    output = output_path(path)
-    for place in (output, partial_path(output), checkpoint_path(output)):
-        if is_same_file(initial, place):
-            rule = f"is the file that is to be written, {path}: choose another name for the new run"
-            raise SceneError("initial", str(initial), rule)
+    for output in map(output_path, paths):
+        for place in (output, partial_path(output), checkpoint_path(output)):
+            if is_same_file(initial, place):
+                rule = f"is the file that is to be written, {output}: choose another name for the new run"
+                raise SceneError("initial", str(initial), rule)
     return read_state(initial, scene) if Path(initial).suffix in STARTS else last_state(initial)
 
 
@@ -175,7 +190,8 @@ def resume(
     duration: float | None = None,
     keep_checkpoint: bool = False,
 ) -> Path:
-    """Finish the run that left `path.partial`, from its files only; returns `path`.
+    """Finish the run that left `path.partial`, from its files only; returns `path`. Replicas, of which it may
+    be one, are finished together.
 
     With a `duration`, the complete run at `path` goes on to that time, and its file is then the one of a run
     of this duration in one go, to the same bytes. It continues from the state at its end if the run had
@@ -188,9 +204,19 @@ def resume(
     """
     examiner = Examiner(examined)
     options = WriteOptions(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
+    if replica := _replica(path):
+        return resume_together(*replica, options, examined, duration)
     if duration is None:
         return trajectory.resume(path, options)
     return trajectory.extend(path, duration, options)
+
+
+def _replica(path: str | Path) -> tuple[Path, Recipe] | None:
+    """A file of the replicas at a path and its recipe; None if there are none."""
+    with suppress(SceneError):
+        file, recipe = found(path)
+        return (file, recipe) if recipe.replica else None
+    return None
 
 
 def require_measurable(
