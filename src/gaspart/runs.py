@@ -110,11 +110,8 @@ def run(
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
     examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
     without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
-
-    With `replicas` so many independent runs are made at a time, in a process each, with the files `run-1.nc`,
-    `run-2.nc` ... for the path `run.nc` (`gaspart.replica_paths`) and the seed with 1, 2 ... behind it. With
-    `until` their mean is to be as accurate, and they end together; at_most is of each. Their number is part
-    of what is run: the result depends on it, and not on the machine.
+    With `replicas` so many runs are made at a time, a process each: `run-1.nc`, `run-2.nc` ... of `run.nc`
+    (`gaspart.replica_paths`), of the seed with 1, 2 ... behind it. With `until` their mean is as accurate.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
     examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
@@ -122,26 +119,51 @@ def run(
     SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
     """
     wanted = _request(duration, sample_interval, until, at_most)
-    replicas = count_of("replicas", replicas, least=1, most=MOST_REPLICAS)
-    for asked in wanted.accuracies if wanted else ():
-        require_measurable(asked, scene, engine, follow, correlations)
-        require_end(asked, scene, at_most, initial is not None)
-        displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
+    displacements |= _needs_paths(wanted, scene, engine, follow, correlations, initial)
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
-    start = _start(initial, scene, replica_paths(_required(path), replicas))
-    kept = pairs, start, impulse_tallies(impulses)
+    recipe = Recipe(*settings, pairs, _start(initial, scene, path, replicas), impulse_tallies(impulses))
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    recipes = in_replicas(Recipe(*settings, *kept), replicas)
-    if replicas == 1:
-        return trajectory.record(recipes[0], _required(path), options)
-    return record_together(recipes, _required(path), options, examined)
+    return _record(in_replicas(recipe, replicas), _required(path), options, examined)
 
 
-def _start(initial: State | str | Path | None, scene: Scene, paths: list[Path]) -> State | None:
-    """The initial state of a run with these files: of a file its last state. Raises SceneError if that is one
-    of them, by whatever name: it would be lost."""
+def _record(
+    recipes: list[Recipe],
+    path: str | Path,
+    options: WriteOptions,
+    examined: Callable[[list[AccuracyStatus]], None] | None,
+) -> Path:
+    """Make the trajectory of a recipe, or those of all replicas."""
+    if len(recipes) > 1:
+        return record_together(recipes, path, options, examined)
+    return trajectory.record(recipes[0], path, options)
+
+
+def _needs_paths(
+    wanted: Until | None,
+    scene: Scene,
+    engine: Engine,
+    follow: int | None,
+    correlations: Correlations | None,
+    initial: State | str | Path | None,
+) -> bool:
+    """Whether what is to be accurate needs displacements, of a run from a given state if there is one. Raises
+    SceneError for what cannot be measured, or never becomes known."""
+    if wanted is None:
+        return False
+    for asked in wanted.accuracies:
+        require_measurable(asked, scene, engine, follow, correlations)
+        require_end(asked, scene, wanted.at_most, initial is not None)
+    return any(OBSERVABLES[asked.observable].needs == "paths" for asked in wanted.accuracies)
+
+
+def _start(
+    initial: State | str | Path | None, scene: Scene, path: str | Path | None, replicas: int
+) -> State | None:
+    """The initial state of a run: of a file its last state. Raises SceneError if that is one of the files at
+    `path`, by whatever name: it would be lost."""
+    paths = replica_paths(_required(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
     if not isinstance(initial, str | Path):
         return initial
     from gaspart.inspection.start import STARTS, read_state  # which few runs need
