@@ -171,13 +171,12 @@ def _kept(number, gas, observable, accuracy, made, folder):
         asked = {"until": recipe.until.accuracies, "at_most": recipe.until.at_most}
     more = {"correlations": recipe.correlations, "pairs": recipe.pairs}
     same = {"initial": initial_state(gas, (7, number, 0))} if gas.gravity and keeps_energy(gas) else {}
-    paths = [folder / f"advised_{replica}.nc" for replica in range(costs["replicas"])]
-    for replica, path in enumerate(paths):
-        seed, kept = (7, number, replica), recipe.displacements
-        interval = recipe.sample_interval
-        gp.run(
-            gas, recipe.engine, seed, sample_interval=interval, path=path, displacements=kept, **asked, **more
-        )
+    interval = recipe.sample_interval
+    more |= {"displacements": recipe.displacements, "replicas": costs["replicas"]}
+    run = gp.run(
+        gas, recipe.engine, (7, number), sample_interval=interval, path=folder / "advised.nc", **asked, **more
+    )
+    paths = gp.replica_paths(run, more.pop("replicas"))
     with gp.open_trajectory(paths[0]) as data:
         duration, frames = len(paths) * float(data["time"][-1]), len(paths) * (data.sizes["frame"] - 1)
         found = measure(data, observable)

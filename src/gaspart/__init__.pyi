@@ -41,5 +41,6 @@ from gaspart.trajectory.correlator import Correlations as Correlations
 from gaspart.trajectory.export import export as export
 from gaspart.trajectory.last_state import last_state as last_state
 from gaspart.trajectory.reading import open_trajectory as open_trajectory
+from gaspart.trajectory.replicas import replica_paths as replica_paths
 
 __version__: str

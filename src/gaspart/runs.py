@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Self
 
@@ -23,6 +24,8 @@ from gaspart.analysis.observables import (
 from gaspart.engines import Engine, chosen
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import is_same_file, output_path
+from gaspart.keys.values import count_of
+from gaspart.replicas import record_together, resume_together
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.state.optional_tallies import OptionalTally, impulse_tallies
 from gaspart.state.state import State
@@ -31,8 +34,9 @@ from gaspart.trajectory.checkpoint import checkpoint_path
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.partial import partial_path
-from gaspart.trajectory.recipe import Recipe
+from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.recording import Progress
+from gaspart.trajectory.replicas import found, in_replicas, replica_paths
 from gaspart.trajectory.run import WriteOptions
 from gaspart.trajectory.until import Requirement, Until
 
@@ -85,6 +89,7 @@ def run(
     examined: Callable[[list[AccuracyStatus]], None] | None = None,
     overwrite: bool = False,
     keep_checkpoint: bool = False,
+    replicas: int = 1,
 ) -> Path:
     """Run a scene, by default by the event-driven engine, and write its trajectory to `path`; returns `path`.
 
@@ -102,10 +107,13 @@ def run(
 
     With `initial`, a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`), the run
     starts from it (`Simulation`). Particles and the size of the container must be the scene's; the rest may
-    differ. Defaults of engines follow from the scene's `speed` or `temperature` all the same. With `until`
-    the run ends when standard error / |value| of all these observables is as small as required, examined at
-    64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames without a
-    contact. sample_interval: by default the mean time between collisions; D keeps displacements.
+    differ. Defaults of engines follow from the scene's `speed` or `temperature` all the same.
+
+    With `until` the run ends when standard error / |value| of all these observables is as small as required,
+    examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
+    without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
+    With `replicas` so many runs are made at a time, a process each: `run-1.nc`, `run-2.nc` ... of `run.nc`
+    (`gaspart.replica_paths`), of the seed with 1, 2 ... behind it. With `until` their mean is as accurate.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
     examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
@@ -114,16 +122,14 @@ def run(
     """
     engine = _engine_of(scene, engine)
     wanted = _request(duration, sample_interval, until, at_most)
-    for asked in wanted.accuracies if wanted else ():
-        require_measurable(asked, scene, engine, follow, correlations)
-        require_end(asked, scene, at_most, initial is not None)
-        displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
+    displacements |= _needs_paths(wanted, scene, engine, follow, correlations, initial)
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
-    kept = pairs, _start(initial, scene, _required(path)), _tallies(impulses, wanted, scene, engine)
+    tallies = _tallies(impulses, wanted, scene, engine)
+    recipe = Recipe(*settings, pairs, _start(initial, scene, path, replicas), tallies)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    return trajectory.record(Recipe(*settings, *kept), _required(path), options)
+    return _record(in_replicas(recipe, replicas), _required(path), options, examined)
 
 
 def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
@@ -144,18 +150,51 @@ def _tallies(
     return next(filter(None, each), ())
 
 
-def _start(initial: State | str | Path | None, scene: Scene, path: str | Path) -> State | None:
-    """The initial state of a run at `path`: of a file its last state. Raises SceneError if that is the same
-    file, by whatever name: it would be lost."""
+def _record(
+    recipes: list[Recipe],
+    path: str | Path,
+    options: WriteOptions,
+    examined: Callable[[list[AccuracyStatus]], None] | None,
+) -> Path:
+    """Make the trajectory of a recipe, or those of all replicas."""
+    if len(recipes) > 1:
+        return record_together(recipes, path, options, examined)
+    return trajectory.record(recipes[0], path, options)
+
+
+def _needs_paths(
+    wanted: Until | None,
+    scene: Scene,
+    engine: Engine,
+    follow: int | None,
+    correlations: Correlations | None,
+    initial: State | str | Path | None,
+) -> bool:
+    """Whether what is to be accurate needs displacements, of a run from a given state if there is one. Raises
+    SceneError for what cannot be measured, or never becomes known."""
+    if wanted is None:
+        return False
+    for asked in wanted.accuracies:
+        require_measurable(asked, scene, engine, follow, correlations)
+        require_end(asked, scene, wanted.at_most, initial is not None)
+    return any(OBSERVABLES[asked.observable].needs == "paths" for asked in wanted.accuracies)
+
+
+def _start(
+    initial: State | str | Path | None, scene: Scene, path: str | Path | None, replicas: int
+) -> State | None:
+    """The initial state of a run: of a file its last state. Raises SceneError if that is one of the files at
+    `path`, by whatever name: it would be lost."""
+    paths = replica_paths(_required(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
     if not isinstance(initial, str | Path):
         return initial
     from gaspart.inspection.start import STARTS, read_state  # which few runs need
 
-    output = output_path(path)
-    for place in (output, partial_path(output), checkpoint_path(output)):
-        if is_same_file(initial, place):
-            rule = f"is the file that is to be written, {path}: choose another name for the new run"
-            raise SceneError("initial", str(initial), rule)
+    for output in map(output_path, paths):
+        for place in (output, partial_path(output), checkpoint_path(output)):
+            if is_same_file(initial, place):
+                rule = f"is the file that is to be written, {output}: choose another name for the new run"
+                raise SceneError("initial", str(initial), rule)
     return read_state(initial, scene) if Path(initial).suffix in STARTS else last_state(initial)
 
 
@@ -195,7 +234,8 @@ def resume(
     duration: float | None = None,
     keep_checkpoint: bool = False,
 ) -> Path:
-    """Finish the run that left `path.partial`, from its files only; returns `path`.
+    """Finish the run that left `path.partial`, from its files only; returns `path`. Replicas, of which it may
+    be one, are finished together.
 
     With a `duration`, the complete run at `path` goes on to that time, and its file is then the one of a run
     of this duration in one go, to the same bytes. It continues from the state at its end if the run had
@@ -208,9 +248,19 @@ def resume(
     """
     examiner = Examiner(examined)
     options = WriteOptions(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
+    if replica := _replica(path):
+        return resume_together(*replica, options, examined, duration)
     if duration is None:
         return trajectory.resume(path, options)
     return trajectory.extend(path, duration, options)
+
+
+def _replica(path: str | Path) -> tuple[Path, Recipe] | None:
+    """A file of the replicas at a path and its recipe; None if there are none."""
+    with suppress(SceneError):
+        file, recipe = found(path)
+        return (file, recipe) if recipe.replica else None
+    return None
 
 
 def require_measurable(

@@ -81,7 +81,7 @@ def test_a_run_until_accurate_has_the_errors_of_its_pilot(run):
     asked = gp.Accuracy("pressure", 0.01)
     with gp.open_trajectory(run) as data:
         known = components(data, "pressure")
-        (reached,) = Examiner().examine(data, (asked,), data.sizes["frame"])
+        (reached,) = Examiner().examine([data], (asked,), data.sizes["frame"])
     worst = known[reached.component]
     assert reached.value == worst.value and reached.error >= worst.estimate.error
     pilot = Pilot(gp.EventDriven(), 1.0, component=worst)

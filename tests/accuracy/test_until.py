@@ -1,6 +1,7 @@
 """Runs that end when they are accurate."""
 
 import math
+from dataclasses import astuple
 
 import numpy as np
 import pytest
@@ -9,11 +10,11 @@ from scipy.signal import lfilter
 
 import gaspart as gp
 from gaspart.accuracy import reached
-from gaspart.accuracy.reached import AccuracyStatus, Examiner, confirmed
+from gaspart.accuracy.reached import AccuracyStatus, Examiner, confirmed, merged
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.analysis.statistics.blocks import ORDER
-from gaspart.cli.run import accuracy_lines
+from gaspart.cli.stated_run import accuracy_lines
 from gaspart.trajectory import recording
 from gaspart.trajectory.partial import partial_path
 from gaspart.trajectory.recipe import read_recipe
@@ -77,13 +78,29 @@ def test_the_interval_at_the_end_covers_the_true_value_in_95_of_100_runs(correla
     for run in range(3):
         mine = correlated_mean(series[run, COUNTS[3] // 4 : COUNTS[3]]).estimate
         assert known[3, run] == pytest.approx([mine.value, mine.error, mine.freedom], rel=1e-9)
-    wanted = np.exp(np.random.default_rng(8).uniform(math.log(96), math.log(384), RUNS))
+    rows = known.swapaxes(0, 1)
+    check_coverage(rows, scale)
+    if correlation == 0.5:
+        check_coverage(means(rows, 3), scale / math.sqrt(3.0))
+
+
+def means(rows, replicas):
+    """Estimates, as `rows` of `check_coverage`, of the means of so many runs."""
+    groups = rows[: RUNS // replicas * replicas].reshape(-1, replicas, *rows.shape[1:]).swapaxes(1, 2)
+    return np.array(
+        [[astuple(merged([Estimate(*one) for one in each])) for each in group] for group in groups]
+    )
+
+
+def check_coverage(rows, scale):
+    """That of runs that end. rows: estimates of each at each examination; scale: as of `autoregressive`."""
+    wanted = np.exp(np.random.default_rng(8).uniform(math.log(96), math.log(384), len(rows)))
     ends = [
         (accuracy, end)
-        for row, accuracy in zip(known.swapaxes(0, 1), scale / np.sqrt(wanted), strict=True)
+        for row, accuracy in zip(rows, scale / np.sqrt(wanted), strict=True)
         if (end := ended(row, accuracy, correct=True))
     ]
-    assert len(ends) > 0.98 * RUNS and len({end[2] for _, end in ends}) > 4
+    assert len(ends) > 0.98 * len(rows) and len({end[2] for _, end in ends}) > 4
     covered = np.mean([low <= 1.0 <= high for _, (_, (low, high), _) in ends])
     kept = np.mean([scale / math.sqrt(samples) <= accuracy for accuracy, (_, _, samples) in ends])
     assert 0.93 < covered < 0.97
@@ -133,7 +150,7 @@ def test_a_gas_is_run_until_it_is_accurate(whole):
         assert abs(one.value - float(observable.theory)) < high - low
     before = gp.analysis.compressibility_factor  # one examination earlier it was not accurate
     with gp.open_trajectory(whole) as data:
-        earlier = Examiner().examine(data, ASKED, examined_before(frames))
+        earlier = Examiner().examine([data], ASKED, examined_before(frames))
         assert before(data.isel(frame=slice(examined_before(frames)))).estimate == earlier[0].value
     assert not all(one.met for one in earlier)
 

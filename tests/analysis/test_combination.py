@@ -91,6 +91,16 @@ def test_runs_of_one_state_are_one_run_whatever_their_seeds(paths, tmp_path):
         gp.analysis.replicas("Z", simulations)
 
 
+def test_runs_of_one_state_without_a_common_time_are_one_run_too(paths, tmp_path):
+    state = gp.last_state(paths[0])
+    same = [
+        gp.run(GAS, gp.EventDriven(), seed, 40.0 * interval, interval, tmp_path / f"{seed}.nc", initial=state)
+        for seed, interval in ((1, 0.3), (2, 0.25 * 2**0.5))
+    ]
+    with pytest.raises(gp.SceneError, match=r"2\.nc: seed = '2': .*same run, bit for bit, as .*1\.nc"):
+        gp.analysis.replicas("Z", same)
+
+
 def test_runs_of_different_states_may_have_one_seed(paths, tmp_path):
     starts = [gp.last_state(path) for path in paths[:2]]
     runs = [

@@ -8,6 +8,7 @@ pilot run, or of the table, which has those of pilots that were kept.
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import dataclass
 
 from gaspart.accuracy.estimates import Component
@@ -15,6 +16,8 @@ from gaspart.accuracy.noise import half_width, room
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
 from gaspart.engines.asked import Candidate
+
+_PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilibration
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,7 @@ class Option:
     @property
     def measured(self) -> float:
         """The measured time for the wanted accuracy, or the longest one; inf if it is never reached."""
-        return max(0.0, min(self._length(self.accuracy), self._part(self.most)))
+        return max(0.0, min(self._length(self.accuracy), self.part(self.most)))
 
     @property
     def duration(self) -> float:
@@ -70,15 +73,25 @@ class Option:
         and the time of settling never."""
         return max(measured + self.settling, measured / (1.0 - EQUILIBRATION))
 
-    def _part(self, duration: float) -> float:
-        """The inverse."""
+    def part(self, duration: float) -> float:
+        """The inverse: the measured part of a duration."""
         return min(duration - self.settling, (1.0 - EQUILIBRATION) * duration)
 
     def _length(self, accuracy: float) -> float:
         """The measured time for an accuracy, of a run that is not too short."""
-        return max(self.noise.length(room(accuracy, self.bias)), self._part(self.least))
+        return max(self.noise.length(room(accuracy, self.bias)), self.part(self.least))
 
 
 def ordered(options: list[Option]) -> list[Option]:
     """The best first: the cheapest of those that reach the accuracy, or else the most accurate one."""
     return sorted(options, key=lambda one: (max(one.half_width, one.accuracy * (1.0 + 1e-9)), one.seconds))
+
+
+def replicas_of(option: Option, longest: float) -> int:
+    """How many runs share the measured time: one for each processor, if each is much longer than its
+    equilibration and no shorter than a run may be, and so many that none is longer than `longest`."""
+    if not math.isfinite(option.measured):
+        return 1
+    shortest = max(_PER_EQUILIBRATION * option.settling, option.part(option.least))
+    shared = min(os.cpu_count() or 1, int(option.measured / shortest)) if shortest > 0.0 else 1
+    return max(1, shared, math.ceil(option.duration / longest))

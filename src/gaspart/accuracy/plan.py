@@ -7,14 +7,14 @@ time of a unit of time, `trials`. Both give an `Option` for each engine, and the
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gaspart import theory
 from gaspart.accuracy import PILOT_SECONDS, speed
 from gaspart.accuracy import tabulated as known
 from gaspart.accuracy.candidates import suited
 from gaspart.accuracy.noise import room
-from gaspart.accuracy.option import Option, ordered
+from gaspart.accuracy.option import Option, ordered, replicas_of
 from gaspart.accuracy.pilot import Pilot
 from gaspart.accuracy.scatter import Scatter, start_scatter
 from gaspart.accuracy.steady import require_steady
@@ -30,6 +30,7 @@ from gaspart.keys.values import number
 from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.recipe import Recipe
+from gaspart.trajectory.replicas import differ
 from gaspart.trajectory.until import Requirement, Until
 
 ACCURACIES = 1e-8, 1.0
@@ -96,6 +97,11 @@ class Plan:
     def duration(self) -> float:
         """Of each run, with what is not measured."""
         return self.best.whole(self.best.measured / self.replicas)
+
+    @property
+    def seconds(self) -> float:
+        """Processor time of all replicas, with what is not measured in each; inf if it is never reached."""
+        return self.replicas * self.duration * self.best.speed
 
     @property
     def collisions_per_particle(self) -> float:
@@ -188,7 +194,7 @@ def tabulated(
     able = {one.engine.timed_as for one in options}
     missing = (engine.timed_as for engine in engines if engine.timed_as not in able)
     refused |= dict.fromkeys(missing, "no setting is known to be as accurate at this density")
-    replicas = known.replicas_of(options[0], target.span[1])
+    replicas = replicas_of(options[0], target.span[1])
     return Plan(target, accuracy, tuple(options), refused, known.value_of(gas, observable), replicas)
 
 
@@ -217,7 +223,10 @@ def piloted(
     reference = trials.reference
     places = reference.component.places if reference.component else (1, 1)
     shown = tuple(trials.pilots), trials.differing, places
-    return Plan(target, accuracy, tuple(options), trials.refused, reference.value, 1, *shown)
+    made = Plan(target, accuracy, tuple(options), trials.refused, reference.value, 1, *shown)
+    # only of runs until they are accurate: otherwise the scatter of a few runs would be the error
+    able = made.affordable and target.declared.ends_runs and differ(made.recipe)
+    return replace(made, replicas=replicas_of(made.best, target.span[1])) if able else made
 
 
 def _checked(accuracy: float, budget: float | None) -> tuple[float, float | None]:

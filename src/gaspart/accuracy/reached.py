@@ -12,6 +12,9 @@ small: its 95 % intervals would cover the true value in 88 to 94 % of runs. Two 
   chi-square for f, which is 1.32 e for f = 15 and 1.10 e for 100. f must be 15 or more, as of 16 independent
   blocks. So the true standard error is as small as required in 98 % of runs.
 
+Of replicas, which are independent, the value is the mean, and the error follows from those of each, by which
+degrees of freedom add up. They are examined when all have so many frames.
+
 Both were measured with autoregressive series (`tests/accuracy/test_until.py`); for fixed widths and
 independent samples the first is the problem of Chow and Robbins, Ann. Math. Stat. 36, 457 (1965).
 """
@@ -19,7 +22,7 @@ independent samples the first is the problem of Chow and Robbins, Ann. Math. Sta
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -27,9 +30,8 @@ from typing import TYPE_CHECKING
 from gaspart.accuracy.estimates import LEAST_FREEDOM, bound, components, of_face
 from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT
 from gaspart.errors import SceneError
-from gaspart.trajectory.opening import run_path
-from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
+from gaspart.trajectory.replicas import files_of, opened_together
 from gaspart.trajectory.until import Requirement, Until, examined_before
 
 if TYPE_CHECKING:
@@ -109,32 +111,41 @@ def confirmed(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
     return Estimate(now.value, max(now.error, before.error * math.sqrt(ratio)), now.freedom)
 
 
-def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
-    """What a run `until` some accuracies has reached, in their order, by all of its frames, finished or not.
+def merged(estimates: Sequence[Estimate]) -> Estimate:
+    """The mean of independent estimates, as of `gaspart.analysis.replicas`, with the error that follows from
+    theirs: the scatter of a few replicas says less."""
+    first, *others = estimates
+    return sum(others, first) / len(estimates) if others else first
 
-    An empty list for a run of a fixed duration. Raises SceneError as `open_trajectory` does.
+
+def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
+    """What a run `until` some accuracies has reached, in their order, by all of its frames, finished or not;
+    with replicas, of which `path` may be one, by those that all of them have.
+
+    An empty list for a run of a fixed duration. Raises SceneError as `open_trajectory` does, and for replicas
+    that are missing.
     """
-    until = read_recipe(run_path(path)).until
+    paths = files_of(path)
+    until = read_recipe(paths[0]).until
     if until is None:
         return []
-    with open_trajectory(path) as data:
-        return Examiner().examine(data, until.accuracies, data.sizes["frame"])
+    with opened_together(paths) as runs:
+        return Examiner().examine(runs, until.accuracies, min(data.sizes["frame"] for data in runs))
 
 
 class Examiner:
-    """Examines a run, and calls `report` with the result. Remembers the last examination, whose frames do not
-    change any more."""
+    """Examines a run, or all replicas of one, and calls `report` with the result. Remembers the last
+    examination, whose frames do not change any more."""
 
     def __init__(self, report: Callable[[list[AccuracyStatus]], None] | None = None) -> None:
         self._report = report
         self._known: dict[tuple[Requirement, int], dict[str, Estimate] | str] = {}
 
-    def __call__(self, path: Path, until: Until, frames: int) -> float:
-        """The largest error over the required one, by the first frames of a file; 0 for a run without a
-        longest duration that is given up, since nothing happens that could be measured."""
-        with open_trajectory(path) as data:
-            reached = self.examine(data, until.accuracies, frames)
-            collisions = float(data["collisions"][frames - 1])
+    def __call__(self, runs: Sequence[xr.Dataset], until: Until, frames: int) -> float:
+        """The largest error over the required one, by the first frames of open trajectories; 0 for a run
+        without a longest duration that is given up, since nothing happens that could be measured."""
+        reached = self.examine(runs, until.accuracies, frames)
+        collisions = sum(float(data["collisions"][frames - 1]) for data in runs)
         if self._report:
             self._report(reached)
         if until.at_most is None and frames >= IDLE and _is_idle(reached, collisions):
@@ -142,16 +153,16 @@ class Examiner:
         return max(one.excess for one in reached)
 
     def examine(
-        self, data: xr.Dataset, accuracies: tuple[Requirement, ...], frames: int
+        self, runs: Sequence[xr.Dataset], accuracies: tuple[Requirement, ...], frames: int
     ) -> list[AccuracyStatus]:
-        """What the first frames of an open trajectory give."""
+        """What the first frames of open trajectories give."""
         from gaspart.analysis.run import EQUILIBRATION
 
         before, results = examined_before(frames), []
-        times = data["time"].values
+        times = runs[0]["time"].values
         for asked in accuracies:
-            now = self._estimates(data, asked, frames)
-            earlier = self._estimates(data, asked, before) if before is not None else {}
+            now = self._estimates(runs, asked, frames)
+            earlier = self._estimates(runs, asked, before) if before is not None else {}
             if isinstance(now, str):
                 results.append(AccuracyStatus(asked, rule=now))
                 continue
@@ -172,13 +183,15 @@ class Examiner:
             results.append(max(parts, key=lambda one: (one.excess, one.accuracy)))
         return results
 
-    def _estimates(self, data: xr.Dataset, asked: Requirement, frames: int) -> dict[str, Estimate] | str:
+    def _estimates(
+        self, runs: Sequence[xr.Dataset], asked: Requirement, frames: int
+    ) -> dict[str, Estimate] | str:
         """The components of an observable, or the rule that the frames break."""
         key = asked, frames
         if key not in self._known:
             self._known = {known: it for known, it in self._known.items() if 2 * known[1] >= frames}
             try:
-                self._known[key] = _measure(data.isel(frame=slice(frames)), asked)
+                self._known[key] = _measure([data.isel(frame=slice(frames)) for data in runs], asked)
             except SceneError as error:
                 if error.key not in TOO_SHORT:
                     raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
@@ -194,7 +207,9 @@ def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
     )
 
 
-def _measure(data: xr.Dataset, asked: Requirement) -> dict[str, Estimate]:
-    """An observable by component, "" for a scalar; of pressures those that are asked for."""
-    found = components(data, asked.observable, asked.start)
-    return {name: one.estimate for name, one in found.items() if of_face(name, asked.face)}
+def _measure(runs: Sequence[xr.Dataset], asked: Requirement) -> dict[str, Estimate]:
+    """An observable by component, "" for a scalar, as the mean over runs; of pressures those that are asked
+    for."""
+    found = [components(data, asked.observable, asked.start) for data in runs]
+    known = [name for name in found[0] if of_face(name, asked.face) and all(name in one for one in found)]
+    return {name: merged([one[name].estimate for one in found]) for name in known}

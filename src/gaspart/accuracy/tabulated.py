@@ -7,7 +7,6 @@ its processor time is carried over to this machine.
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
@@ -31,7 +30,6 @@ FEWEST = 64
 SpeedOf: TypeAlias = Callable[[int, str, str, int], float]
 """A function as `gaspart.accuracy.speed.factor`."""
 _WORTH = 3.0  # how many times as cheap the best engine may be by the table, so that another is timed
-_PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilibration
 
 
 def fluid_of(scene: Scene) -> Gas:
@@ -147,10 +145,3 @@ def _bounded(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate
 def value_of(gas: Gas, observable: str) -> float:
     """An observable by theory."""
     return float(getattr(bulk, OBSERVABLES[observable].bulk)(gas, bulk.EXACT))
-
-
-def replicas_of(option: Option, longest: float) -> int:
-    """How many runs share the measured time: one for each processor, if each is much longer than its
-    equilibration, and so many that none is longer than `longest`."""
-    shared = min(os.cpu_count() or 1, int(option.measured / (_PER_EQUILIBRATION * option.settling)))
-    return max(1, shared, math.ceil(option.duration / longest))

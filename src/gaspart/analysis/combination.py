@@ -18,8 +18,9 @@ from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.run import Source
 from gaspart.analysis.statistics import means_of
-from gaspart.engines import engine_to_dict
+from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError, shown
+from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.optional_tallies import ImpulseTally
 from gaspart.trajectory.reading import open_trajectory
@@ -62,12 +63,14 @@ def replicas(
 @dataclass(frozen=True)
 class _Recipe:
     """What a run was made from, and what it has become. name: of the run, for its user; settings: its scene
-    and engine; seed; times: of its states, all until the last one if `every`; state: the bits of that at a
-    time, as a file has them; impulses: what it has kept of them."""
+    and engine; seed; draws: whether this matters after the start; times: of its states, all until the last
+    one if `every`; state: the bits of that at a time, as a file has them; impulses: what it has kept of
+    them."""
 
     name: str
     settings: dict[str, Any]
     seed: str
+    draws: bool
     times: np.ndarray
     every: bool
     state: Callable[[float], bytes]
@@ -79,15 +82,17 @@ def _recipe(run: Any, name: str) -> _Recipe:
     if isinstance(run, Simulation):
         settings = {"scene": run.scene.to_dict(), "engine": engine_to_dict(run.engine)}
         times = np.array([0.0, run.time])
+        draws, state = run.engine.draws(run.scene), partial(_simulated, run)
         tally = next((one for one in run.tallies if isinstance(one, ImpulseTally)), None)
-        return _Recipe(name, settings, str(run.seed), times, True, partial(_simulated, run), _named(tally))
+        return _Recipe(name, settings, str(run.seed), draws, times, True, state, _named(tally))
     if not isinstance(run, xr.Dataset) or not {"scene", "engine", "seed"} <= set(run.attrs):
         raise SceneError("sources", type(run).__name__, "must be trajectories, their paths or simulations")
     settings = {"scene": parse_yaml(run.attrs["scene"]), "engine": json.loads(run.attrs["engine"])}
+    draws = engine_from_dict(settings["engine"]).draws(Scene.from_dict(settings["scene"]))
     frames = {one: run[one].values for one in ("time", "coordinates", "velocities")}
     stored = partial(_stored, frames)
     seed, impulses = str(run.attrs["seed"]), _named(kept(run))
-    return _Recipe(name, settings, seed, frames["time"], False, stored, impulses)
+    return _Recipe(name, settings, seed, draws, frames["time"], False, stored, impulses)
 
 
 def _named(tally: ImpulseTally | None) -> str:
@@ -124,7 +129,8 @@ def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
         time = _last_common(recipe, other)
         if time is None or recipe.state(0.0) != other.state(0.0):
             continue
-        if recipe.seed == other.seed if time == 0.0 else recipe.state(time) == other.state(time):
+        drawn = recipe.draws and recipe.seed != other.seed  # decides where no later time is common
+        if not drawn if time == 0.0 else recipe.state(time) == other.state(time):
             rule = f"and the first state give the same run, bit for bit, as {other.name}: no scatter"
             raise SceneError("seed", recipe.seed, rule, recipe.name)
 

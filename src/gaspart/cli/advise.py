@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 import shlex
 import sys
 import warnings
@@ -24,7 +25,7 @@ from gaspart.cli.arguments import (
 )
 from gaspart.cli.engine_options import one_of
 from gaspart.cli.progress import waiting
-from gaspart.cli.run import run_options
+from gaspart.cli.stated_run import run_options
 from gaspart.errors import visible
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.scene.scene import Scene
@@ -128,18 +129,23 @@ def _run(plan: Plan, file: str) -> list[str]:
         length = f"{plan.collisions_per_particle:.3g} measured collisions per particle"
         lines += [
             _line("particles", f"{gas.count}{_bulk(plan, gas.count)}"),
-            _line("replicas", f"{plan.replicas}"),
             _line(
                 "run length", f"{length}, duration {plan.duration:.4g} with equilibration, in each replica"
             ),
         ]
-    each = "" if plan.replicas == 1 else ", and the same with other seeds and files"
-    command = shlex.join(["gaspart", "run", file, *run_options(Path("run.nc"), recipe)])
-    total = "" if plan.gas else f", duration {best.duration:.4g}"
-    cost = f"{best.seconds:.3g} s of processor time{total}"
+    options = run_options(Path("run.nc"), recipe)
+    options += ["--replicas", str(plan.replicas)] if plan.replicas > 1 else []
+    command = shlex.join(["gaspart", "run", file, *options])
+    total = "" if plan.gas else f", duration {plan.duration:.4g}"
+    total += " of each" if total and plan.replicas > 1 else ""
+    cores = min(plan.replicas, os.cpu_count() or 1)
+    rounds = math.ceil(plan.replicas / cores)
+    time = f"{rounds * plan.seconds / plan.replicas:.3g} s on {cores} core{'s' if cores > 1 else ''}"
+    cost = f"{plan.seconds:.3g} s of processor time, {time}{total}"
     value = f"{plan.target.name} (about {plan.value:.4g}): {_components(best)}"
     lines += [
-        _line("command", f"{command}{each}"),
+        _line("replicas", f"{plan.replicas}"),
+        _line("command", command),
         _line("predicted cost", cost),
         _line("95 % half-width", f"{best.half_width:.2g} of {value}"),
     ]

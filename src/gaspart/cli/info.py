@@ -28,7 +28,7 @@ def add_info(parser: Parser) -> None:
 
 def _info(given: argparse.Namespace) -> None:
     from gaspart.accuracy.scales import scales
-    from gaspart.cli.run import run_options
+    from gaspart.cli.stated_run import run_options
     from gaspart.inspection.certificate import certificate
     from gaspart.trajectory.opening import check_frames, opened
     from gaspart.trajectory.partial import PARTIAL, partial_path
@@ -46,13 +46,14 @@ def _info(given: argparse.Namespace) -> None:
     scene = recipe.scene
     complete = frames == recipe.frames if recipe.until is None else stored_at.suffix != PARTIAL
     state = "complete" if complete else "unfinished: `gaspart resume` continues it"
+    replica = "" if recipe.replica is None else ", replica {} of {}".format(*recipe.replica)
     of_all = f"{frames} frames" if recipe.until else f"{frames} of {recipe.frames} frames"
     versions = [f"{key.removesuffix('_version')} {stored[key]}" for key in stored if key.endswith("_version")]
     remake = [
         f"gaspart info --scene {shlex.quote(str(stored_at))} > scene.yaml",
         "gaspart run scene.yaml " + shlex.join(run_options(path, recipe)),
     ]
-    print_line(f"{stored_at}: {stored['title']}, {of_all}, {state}")
+    print_line(f"{stored_at}: {stored['title']}{replica}, {of_all}, {state}")
     for line in _request(recipe, stored_at, frames):
         print_line(line)
     print_line(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
@@ -102,12 +103,16 @@ def _measurable(recipe: Recipe) -> list[str]:
 
 def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:
     """The accuracies that end a run of no fixed duration, and those that it has reached."""
-    from gaspart.cli.run import accuracy_lines
+    from gaspart.cli.stated_run import accuracy_lines
 
     if recipe.until is None:
         return []
     asked = ", ".join(f"{one.name}={one.accuracy:g}" for one in recipe.until.accuracies)
     longest = f", at most until time {recipe.until.at_most:g}" if recipe.until.at_most else ""
-    return [f"runs until {asked} (relative standard errors){longest}"] + (
-        accuracy_lines(path) if frames else []
-    )
+    request = f"runs until {asked} (relative standard errors){longest}"
+    try:
+        return [request, *(accuracy_lines(path) if frames else [])]
+    except SceneError as error:
+        if recipe.replica is None:
+            raise
+        return [request, f"what all replicas have reached is not known: {error}"]

@@ -10,21 +10,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart.analysis.observables import having
-from gaspart.cli.arguments import Parser, UsageError, alone, print_line, print_lines, set_command, several
-from gaspart.cli.engine_options import add_setting, as_option, engine_settings, joined, one_of, stated
+from gaspart.cli.arguments import (
+    Parser,
+    UsageError,
+    alone,
+    integer,
+    print_line,
+    print_lines,
+    set_command,
+    several,
+)
+from gaspart.cli.engine_options import add_setting, as_option, engine_settings, one_of
 from gaspart.cli.progress import clear_line, progress, waiting
-from gaspart.engines import ENGINES, engine_from_dict, engine_to_dict
+from gaspart.cli.stated_run import accuracy_lines
+from gaspart.engines import ENGINES, engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.interruption import set_note
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.runs import Accuracy
 from gaspart.scene.scene import Scene
-from gaspart.state.optional_tallies import ImpulseTally
 
 if TYPE_CHECKING:
     from gaspart.accuracy.reached import AccuracyStatus
     from gaspart.trajectory.correlator import Correlations
-    from gaspart.trajectory.recipe import Recipe
 
 _PREPARING = "placing particles, compiling kernels (once for each kind of scene)"
 
@@ -33,6 +41,7 @@ _EXAMPLES = """examples:
   gaspart run scene.yaml -o run.nc --until Z=1e-3 --at-most 1000
   gaspart run scene.yaml -o run.nc --duration 100 --sample-interval 1 \\
     --engine step --time-step 0.01
+  gaspart run scene.yaml -o run.nc --until Z=1e-3 --replicas 2      run-1.nc and run-2.nc, on two cores
   gaspart info run.nc"""
 
 _USAGE = """gaspart run SCENE -o FILE --duration T --sample-interval T [options]
@@ -88,6 +97,11 @@ def _add_ends(group: argparse._ArgumentGroup) -> None:
     add("--at-most", type=float, metavar="T", help="longest duration of a run with --until")
     text = "time from which frames count for --until; default: a quarter of the run"
     add("--start", type=float, metavar="T", help=text)
+    text = (
+        "make so many independent runs at a time, of seeds N,1 N,2 ... in FILE-1.nc FILE-2.nc ...; --until "
+        "is then of their mean; default: 1"
+    )
+    add("--replicas", type=integer(least=1.0), default=1, metavar="P", help=text)
 
 
 def _add_contents(group: argparse._ArgumentGroup) -> None:
@@ -174,6 +188,7 @@ def _run(given: argparse.Namespace) -> None:
             examined=status.update,
             overwrite=given.force,
             keep_checkpoint=given.keep_checkpoint,
+            replicas=given.replicas,
         )
     _report(path)
 
@@ -265,69 +280,11 @@ def _resume(given: argparse.Namespace) -> None:
 def _report(path: Path) -> None:
     if wiped := clear_line():  # even an empty line fails where stderr is full
         print(wiped, end="", file=sys.stderr)
+    from gaspart.trajectory.replicas import files_of
+
     for line in accuracy_lines(path):
         print_line(line)
-    print_line(f"{path} is complete; `gaspart info {shlex.quote(str(path))}` lists its contents")
-
-
-def accuracy_lines(path: Path) -> list[str]:
-    """What a run with --until was to reach, and what it has reached."""
-    from gaspart.accuracy.reached import reached_accuracy
-    from gaspart.trajectory.partial import PARTIAL
-
-    lines, reached = [], reached_accuracy(path)
-    for one in reached:
-        where = f" ({one.component})" if one.component and one.asked.face is None else ""
-        required = f"required {one.asked.accuracy:g}"
-        if one.rule:
-            lines.append(f"{one.asked.name}: {required}, not measured: {one.rule}")
-            continue
-        low, high = one.interval
-        value = f"{one.value:.6g} +- {one.error:.2g}, 95 % interval {low:.6g} to {high:.6g}"
-        error = f"relative error {one.accuracy:.2g}, by its uncertainty at most {one.bound:.2g}"
-        verdict = "reached" if one.met else "not reached"
-        lines.append(f"{one.asked.name}{where} = {value}; {error}; {required}: {verdict}")
-    if path.suffix != PARTIAL and not all(one.met for one in reached):
-        lines.append(_why_ended(path))
-    return lines
-
-
-def _why_ended(path: Path) -> str:
-    """Why a run with --until ended before it was accurate."""
-    from gaspart.trajectory.recipe import read_recipe
-
-    until = read_recipe(path).until
-    if until is not None and until.at_most is None:
-        return "the run was given up: nothing that could be measured has happened; --at-most makes it longer"
-    return "the longest duration (--at-most) ended the run before all were reached"
-
-
-def run_options(path: Path, recipe: Recipe) -> list[str]:
-    """The options with which `gaspart run` has a recipe."""
-    settings = engine_to_dict(recipe.engine)
-    options = ["-o", str(path), "--engine", settings["name"], "--seed", joined(recipe.seed)]
-    if recipe.until is None:
-        options += ["--duration", repr(recipe.duration)]
-    else:
-        asked = recipe.until.accuracies
-        options += ["--until", ",".join(f"{one.name}={one.accuracy!r}" for one in asked)]
-        options += [] if asked[0].start is None else ["--start", repr(asked[0].start)]
-        options += [] if recipe.until.at_most is None else ["--at-most", repr(recipe.until.at_most)]
-    options += ["--sample-interval", repr(recipe.sample_interval)]
-    options += stated(settings)
-    if recipe.initial is not None:
-        options += ["--from", "OTHER.nc"]  # whose last state the file holds
-    if recipe.displacements:
-        options.append("--displacements")
-    if recipe.pairs:
-        options.append("--pairs")
-    for tally in recipe.tallies:
-        if isinstance(tally, ImpulseTally):
-            options += ["--impulses", tally.to_text()]
-    if recipe.follow is not None:
-        options += ["--follow", str(recipe.follow)]
-    if recipe.correlations is not None:
-        asked = recipe.correlations
-        options += ["--correlations", f"{asked.interval!r},{asked.lags},{asked.start!r}"]
-        options += ["--stress"] if asked.stress else []
-    return options
+    files = files_of(path)
+    are = "is complete" if len(files) == 1 else "are complete, replicas of one run"
+    command = f"`gaspart info {shlex.quote(str(files[0]))}` lists its contents"
+    print_line(f"{', '.join(map(str, files))} {are}; {command}")

@@ -16,6 +16,7 @@ from gaspart.engines.asked import Asked, Candidate
 from gaspart.errors import SceneError
 from gaspart.keys import from_mapping, validate
 from gaspart.keys.values import one_of
+from gaspart.scene.faces import thermal_numbers
 from gaspart.scene.features import FEATURES, features
 
 if TYPE_CHECKING:
@@ -149,6 +150,11 @@ class Engine:
                 if not any(set(pair) <= present for pair in engine.excludes) and engine.name != self.name
             ]
             raise FEATURES[name].refuse(scene, f"needs the {' or '.join(able)} engine; this one has {what}")
+
+    def draws(self, scene: Scene) -> bool:
+        """Whether random numbers are drawn after the start: by its equation, faces or the thermostat. Where
+        none are, runs from one state are one run, whatever their seeds."""
+        return self.equation != "exact" or bool(thermal_numbers(scene)) or scene.thermostat is not None
 
     def variant(self, scene: Scene) -> str:
         """The name of its compiled kernels for a scene, beside the scene's features."""

@@ -31,6 +31,7 @@ from gaspart.yaml_text import dump_yaml, parse_yaml
 if TYPE_CHECKING:
     import netCDF4
 
+MOST_REPLICAS = 10_000
 ROUNDING = 1e-9
 """Relative deviation from an integer multiple that is attributed to rounding."""
 
@@ -52,7 +53,8 @@ class Recipe:
     the file; None: all. correlations: sample_interval is an integer multiple of their interval. until: what
     ends the run in place of a duration, which is then None. pairs: count the collisions of each pair of
     species. initial: the state at time 0, if it is not that of the scene and the seed; the file holds it.
-    tallies: the optional tallies that frames have, beside those that the correlations need.
+    tallies: the optional tallies that frames have, beside those that the correlations need. replica: its
+    number, from 1, and that of all replicas of the run, if there are several.
     """
 
     scene: Scene
@@ -67,12 +69,15 @@ class Recipe:
     pairs: bool = False
     initial: State | None = field(default=None, compare=False, repr=False)
     tallies: tuple[OptionalTally, ...] = ()
+    replica: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
         stream(self.seed)  # raises SceneError for an invalid seed
         for key in ("sample_interval",) if self.until else ("duration", "sample_interval"):
             value = number(key, getattr(self, key), "must be positive", above=0.0)
             object.__setattr__(self, key, value)
+        if self.replica is not None and not _is_numbered(self.seed, *self.replica):
+            raise SceneError("replica", self.replica, "must be one of several, with its number in its seed")
         if self.scene.count == 0:
             raise SceneError("scene", "no particles", "a run needs at least one particle")
         if self.follow is not None:
@@ -189,6 +194,7 @@ class Recipe:
             **({} if self.correlations is None else {"correlations": self.correlations.to_json()}),
             **({"pairs": np.int32(1)} if self.pairs else {}),
             **({"tallies": json.dumps([*map(tally_to_dict, self.tallies)])} if self.tallies else {}),
+            **dict(zip(("replica", "replicas"), map(np.int32, self.replica or ()), strict=False)),
         }
 
     def _length(self) -> dict:
@@ -230,6 +236,11 @@ class Recipe:
         return self.layout.header(attributes, radii, types, self._initial())
 
 
+def _is_numbered(seed: int | tuple[int, ...], replica: int, replicas: int) -> bool:
+    numbered = isinstance(seed, tuple) and len(seed) > 1 and seed[-1] == replica
+    return numbered and 1 <= replica <= replicas <= MOST_REPLICAS
+
+
 def read_recipe(path: str | Path) -> Recipe:
     """The recipe of a trajectory, finished or not. Raises SceneError if the file has none."""
     path = Path(path)
@@ -256,6 +267,7 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
             pairs=bool(stored.get("pairs", False)),
             initial=_stored_initial(file, scene),
             tallies=tuple(tally_from_dict(tally) for tally in json.loads(stored.get("tallies", "[]"))),
+            replica=(int(stored["replica"]), int(stored["replicas"])) if "replica" in stored else None,
         )
     except SceneError:
         raise

@@ -26,11 +26,13 @@ from gaspart.trajectory.until import examined_before, examined_from, is_examined
 Progress = Callable[[float, float, int], None]
 """Called with the time reached, the duration, and the collisions so far. Of a run until it is accurate the
 duration is the present estimate."""
-Examine = Callable[[int], float]
-"""Called with a number of frames; returns the error after these frames over the required one, or inf."""
+Examine = Callable[[int], float | None]
+"""Called with a number of frames; returns the error after these frames over the required one, or inf; None
+while another replica does not have so many."""
 
 _SEGMENT = 0.1  # seconds of work between two looks at the clock and at signals, to within a factor of 2
 _PROGRESS = 0.5  # seconds between two reports of progress
+_LOOK = 0.05  # seconds between two looks at other replicas
 
 
 class Recording:
@@ -81,7 +83,7 @@ class Recording:
         try:
             with deferred() as signals:
                 self._estimate_again()
-                while not self._is_complete():
+                while not self._is_complete(signals):
                     self._finish_frame(signals)
                 if keep:
                     self._save()
@@ -99,15 +101,17 @@ class Recording:
             return f"its state is not kept: {failed} {error.rule}"
         return f"its state is kept in {failed}"
 
-    def _is_complete(self) -> bool:
+    def _is_complete(self, signals: Deferral) -> bool:
         """Whether the file has all frames. That depends on the frames alone, so that a run that was cut short
-        ends at the same one."""
+        ends at the same one. Waits for other replicas."""
         count = self._frames.count
         if count >= self._recipe.frames:
             return True
         if self._examine is None or not is_examined(count):
             return False
-        excess = self._examine(count)
+        while (excess := self._examine(count)) is None:
+            self._between_segments(signals)
+            time.sleep(_LOOK)
         self._duration = self._estimate(count, excess)
         return excess <= 1.0
 
@@ -122,7 +126,8 @@ class Recording:
         """Estimate the duration of a continued run, to report it; the result of the run does not change."""
         before = examined_before(self._frames.count)
         if self._progress and self._examine and before is not None:
-            self._duration = self._estimate(before, self._examine(before))
+            if (excess := self._examine(before)) is not None:
+                self._duration = self._estimate(before, excess)
 
     def _finish_frame(self, signals: Deferral) -> None:
         """Take the samples until the next frame that are missing, and write the frame."""

@@ -73,10 +73,7 @@ def resume(path: str | Path, options: WriteOptions) -> Path:
     partial = partial_path(path)
     try:
         with writing(path):
-            wanted = read_recipe(partial)
-            if not begun_as(partial, wanted):
-                rule = "was begun by another version of gaspart, Python or a package: it could end otherwise"
-                raise SceneError("path", str(partial), rule)
+            wanted = begun(partial)
     except SceneError:
         if partial.exists():
             raise
@@ -91,6 +88,15 @@ def resume(path: str | Path, options: WriteOptions) -> Path:
             rule = "is already complete" if is_complete(wanted, path, frames, options.examiner) else missing
         raise SceneError("path", str(path), rule) from None
     return _carry_out(wanted, path, options)
+
+
+def begun(partial: Path) -> Recipe:
+    """The recipe of an unfinished trajectory. Raises SceneError if another version began it."""
+    wanted = read_recipe(partial)
+    if not begun_as(partial, wanted):
+        rule = "was begun by another version of gaspart, Python or a package: it could end otherwise"
+        raise SceneError("path", str(partial), rule)
+    return wanted
 
 
 def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:

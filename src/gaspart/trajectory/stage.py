@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from enum import Enum
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from gaspart.errors import SceneError
 from gaspart.files import OVERWRITE, may_replace, open_regular
@@ -16,11 +17,16 @@ from gaspart.trajectory.opening import check_frames
 from gaspart.trajectory.partial import TRAJECTORY, UNFINISHED, is_blank, partial_path
 from gaspart.trajectory.recipe import Recipe, begun_as
 from gaspart.trajectory.recording import Examine
+from gaspart.trajectory.replicas import beside, opened_together, reached
 from gaspart.trajectory.until import Until, is_examined
 
-Examiner: TypeAlias = Callable[[Path, Until, int], float]
-"""Examines the first frames of a file: the largest error over the required one, inf if unknown, 0 to
-give up."""
+if TYPE_CHECKING:
+    import xarray as xr
+
+Examiner: TypeAlias = "Callable[[Sequence[xr.Dataset], Until, int], float]"
+"""Examines the first frames of a run, or of all its replicas: the largest error over the required one, inf if
+unknown, 0 to give up."""
+_LOOK = 0.05  # seconds between two looks at other replicas
 
 
 class Content(Enum):
@@ -93,16 +99,35 @@ def _partial_content(partial: Path, wanted: Recipe) -> Content:
 
 
 def is_complete(wanted: Recipe, path: Path, frames: int, examiner: Examiner | None) -> bool:
-    """Whether the complete trajectory of a run has so many frames."""
+    """Whether the complete trajectory of a run has so many frames. Waits for other replicas."""
     examine = examination(wanted, path, examiner)
-    return frames == wanted.frames or (examine is not None and is_examined(frames) and examine(frames) <= 1.0)
+    if frames == wanted.frames or examine is None or not is_examined(frames):
+        return frames == wanted.frames
+    while (excess := examine(frames)) is None:
+        time.sleep(_LOOK)
+    return excess <= 1.0
 
 
 def examination(wanted: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
-    """The examination of the first frames of a run that ends when it is accurate; None for other runs."""
+    """The examination of the first frames of a run that ends when it is accurate; None for other runs. One
+    of several replicas is examined with the others."""
     until = wanted.until
     if until is None:
         return None
     if examiner is None:
         raise ValueError("examiner: None (a run that ends when it is accurate needs one)")
-    return lambda frames: examiner(path, until, frames)
+    files = beside(path, wanted)
+
+    def examine(frames: int) -> float | None:
+        places = reached(files, frames)
+        if places is None:
+            return None
+        try:
+            with opened_together(places) as runs:
+                return examiner(runs, until, frames)
+        except SceneError:
+            if reached(files, frames) == places:
+                raise
+            return None  # the process of another one has just renamed it, or cut it to its checkpoint
+
+    return examine

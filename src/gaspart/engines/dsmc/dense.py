@@ -19,6 +19,9 @@ _SAMPLES = 4000.0
 MOST_KINDS = 16
 """Of particles in a dense gas: a trial draws the partner's kind, of which each but one is in vain."""
 
+_FEWEST_CELLS = 64
+"""Cells that threads share, at least: of fewer the slabs are one, and cell follows cell."""
+
 
 def is_uniform(scene: Scene) -> bool:
     """Whether the density is the same everywhere and stays so: it is known then."""
@@ -41,6 +44,15 @@ def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:
     return fields[:, np.ravel_multi_index(tuple(places), tuple(before.per_side))]
 
 
+def slabs_of(per_side: np.ndarray, reach: np.ndarray) -> tuple[int, np.ndarray]:
+    """The axis along which cells are in slabs, and where each slab begins and the last one ends: an even
+    number of slabs, each two reaches wide at least, or one."""
+    numbers = 2 * (per_side // (4 * reach))
+    axis = int(numbers.argmax())
+    number = int(numbers[axis]) if per_side.prod() >= _FEWEST_CELLS and numbers[axis] > 2 else 1
+    return axis, np.arange(number + 1) * per_side[axis] // number
+
+
 def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
     """The arrays of a state, for so many kinds of particles. Raises SceneError for a scene that the model
     is not made for."""
@@ -57,6 +69,8 @@ def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
     fields = np.repeat(np.array(sums)[:, None] * ball_volume(d) / volume, cells, axis=1)
     steps = max(1.0, _SAMPLES * cells / max(1, state.count))
     around = all(scene.container.periodic)
+    reach = np.array([math.ceil(sigma * inverse) for inverse in grid.inverse], dtype=np.int64)
+    axis, slabs = slabs_of(grid.per_side, reach)
     drift = state.momentum / state.masses.sum() if around and state.count else np.zeros(d)
     return Dense(
         fields=fields,
@@ -64,8 +78,10 @@ def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
         near_speed=np.zeros(cells),
         near_count=np.zeros(cells),
         room=np.zeros(cells),
-        reach=np.array([math.ceil(sigma * inverse) for inverse in grid.inverse], dtype=np.int64),
+        reach=reach,
         wraps=np.array(scene.container.periodic),
+        axis=axis,
+        slabs=slabs,
         drift=drift,
         ball=ball_volume(d),
         weight=0.0 if is_uniform(scene) else 1.0 / steps,

@@ -5,7 +5,14 @@ equation: a particle draws a unit vector e, and its partner in the cell that hol
 along e; they collide with the impulse along e at a rate proportional to their approach along it. Momentum
 and energy are conserved in each collision, and what passes has passed over a diameter. Trials follow one
 another as in `boltzmann`, cell by cell: the bound of a cell comes from the most particles and the highest
-speeds in any cell within reach, and is raised by a collision that exceeds it. Only one thread does this.
+speeds in any cell within reach, and is raised by a collision that exceeds it.
+
+A trial in a cell changes particles up to a reach away, so that threads cannot take any cells they like. The
+cells are in slabs along one axis, an even number of them, each at least two reaches wide: what trials in one
+slab change is out of reach of the next slab but one. All even slabs come first, at the same time, and then
+all odd ones; within a slab cell follows cell. This order is the same for any number of threads. A trial lets
+the bounds of its own slab know of higher speeds at once; those of the other slabs are found again before
+these have their turn.
 """
 
 from math import sqrt
@@ -31,7 +38,7 @@ from gaspart.kernels.dsmc.model import (
     position_row,
     velocity_row,
 )
-from gaspart.kernels.dsmc.stress import add_contact, add_flights, finish_cell, note_pair
+from gaspart.kernels.dsmc.stress import add_contact, finish_cell, note_pair
 from gaspart.kernels.physics.exact_sum import add_exact
 
 FILLED, SURFACE = range(2)
@@ -45,7 +52,8 @@ class Dense(NamedTuple):
     times the volume of a unit ball, smoothed in time; speed, the highest of its particles beside `drift`
     (d,); near_speed, the highest in any cell within reach, `reach` (d,) cells along each axis; near_count,
     the most particles in any of these; room, for the search of these. wraps (d,): whether the first and the
-    last cell along an axis are neighbours. ball: the volume of a unit ball; weight: of a step in the smoothed
+    last cell along an axis are neighbours. slabs (slabs + 1,): the first cell of each along `axis`, and the
+    number of cells there. ball: the volume of a unit ball; weight: of a step in the smoothed
     fields, 0 if these are known. slope, bend: of the contact value, see `contact_value`. highest (1,): the
     highest contact value of any two particles.
     """
@@ -57,6 +65,8 @@ class Dense(NamedTuple):
     room: np.ndarray
     reach: np.ndarray
     wraps: np.ndarray
+    axis: int
+    slabs: np.ndarray
     drift: np.ndarray
     ball: float
     weight: float
@@ -97,13 +107,13 @@ def sliding_maximum(values, room, reach, stride, per_side, wraps):
 
 
 @inner_kernel
-def update_bounds(particles, grid, workspace, dense):
-    """Find for each cell what bounds its trials, and smooth the fields."""
-    d, cells = len(particles.images), len(grid.starts) - 1
+def look_at_cells(particles, cells, grid, workspace, dense):
+    """Find the highest speed and the number of particles of each of some cells, from cells[0] to cells[1],
+    and smooth their fields."""
+    d = len(particles.images)
     if dense.weight > 0.0:
-        smooth(particles, grid, workspace, dense)
-    filled = surface = 0.0
-    for cell in range(cells):
+        smooth(particles, cells, grid, workspace, dense)
+    for cell in range(cells[0], cells[1]):
         first, end = np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])
         most = 0.0
         for slot in range(first, end):
@@ -112,23 +122,40 @@ def update_bounds(particles, grid, workspace, dense):
                 v = particles.data[velocity_row(particles, k), slot] - dense.drift[k]
                 square += v * v
             most = max(most, square)
-        dense.speed[cell] = dense.near_speed[cell] = sqrt(most)
+        dense.speed[cell] = sqrt(most)
         dense.near_count[cell] = end - first
-        filled = max(filled, dense.fields[FILLED, cell])
-        surface = max(surface, dense.fields[SURFACE, cell])
-    dense.highest[0] = contact_value(filled, surface, 0.5 * workspace.largest, dense)
-    for k in range(d):
-        along = dense.reach[k], grid.strides[k], grid.per_side[k], dense.wraps[k]
-        sliding_maximum(dense.near_speed, dense.room, *along)
-        sliding_maximum(dense.near_count, dense.room, *along)
 
 
 @inner_kernel
-def smooth(particles, grid, workspace, dense):
-    """Let the fields follow what is in each cell now."""
+def find_bounds(grid, workspace, dense):
+    """Find what bounds the trials of each cell, after `look_at_cells`."""
+    filled = surface = 0.0
+    for cell in range(len(grid.starts) - 1):
+        filled = max(filled, dense.fields[FILLED, cell])
+        surface = max(surface, dense.fields[SURFACE, cell])
+    dense.highest[0] = contact_value(filled, surface, 0.5 * workspace.largest, dense)
+    for k in range(len(grid.per_side)):
+        along = dense.reach[k], grid.strides[k], grid.per_side[k], dense.wraps[k]
+        sliding_maximum(dense.near_count, dense.room, *along)
+    find_near_speeds(grid, dense)
+
+
+@inner_kernel
+def find_near_speeds(grid, dense):
+    """Find the highest speed in any cell within reach of each."""
+    for cell in range(len(grid.starts) - 1):
+        dense.near_speed[cell] = dense.speed[cell]
+    for k in range(len(grid.per_side)):
+        along = dense.reach[k], grid.strides[k], grid.per_side[k], dense.wraps[k]
+        sliding_maximum(dense.near_speed, dense.room, *along)
+
+
+@inner_kernel
+def smooth(particles, cells, grid, workspace, dense):
+    """Let the fields of some cells follow what is in them now."""
     d = len(particles.images)
     factor = dense.ball / grid.volume
-    for cell in range(len(grid.starts) - 1):
+    for cell in range(cells[0], cells[1]):
         filled = surface = 0.0
         for slot in range(np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])):
             radius = workspace.radius[kind_in(particles, slot, workspace)]
@@ -140,19 +167,19 @@ def smooth(particles, grid, workspace, dense):
 
 
 @inner_helper
-def cell_at(particles, slot, sigma, direction, grid, context):
+def cell_at(particles, slot, sigma, direction, grid, context, dense):
     """The cell at a distance from the particle in a slot; -1 outside the container."""
-    found, space = 0, context.space
-    for k in range(len(space.lengths)):
+    found, lengths = 0, context.space.lengths
+    for k in range(len(lengths)):
         x = particles.data[position_row(particles, k), slot] + sigma * direction[k]
-        if space.periodic[k]:
+        if dense.wraps[k]:
             if x < 0.0:
-                x += space.lengths[k]
-            elif x >= space.lengths[k]:
-                x -= space.lengths[k]
+                x += lengths[k]
+            elif x >= lengths[k]:
+                x -= lengths[k]
         along = (x - grid.origin[k]) * grid.inverse[k]
         if not 0.0 <= along < grid.per_side[k]:
-            if not space.periodic[k]:
+            if not dense.wraps[k]:
                 return -1
             along = min(max(along, 0.0), grid.per_side[k] - 1.0)
         found += np.int64(along) * grid.strides[k]
@@ -160,8 +187,8 @@ def cell_at(particles, slot, sigma, direction, grid, context):
 
 
 @inner_kernel
-def raise_speed(cell, speed, grid, dense):
-    """Note a speed in a cell that is above those before, and let the cells within reach know."""
+def raise_speed(cell, slab, speed, grid, dense):
+    """Note a speed in a cell that is above those before, and let the cells of a slab within reach know."""
     dense.speed[cell] = speed
     d = len(dense.reach)
     first, count = (0, 0, 0), (1, 1, 1)
@@ -183,20 +210,22 @@ def raise_speed(cell, speed, grid, dense):
             if dense.wraps[k]:
                 at = (at + grid.per_side[k]) % grid.per_side[k]
             inside &= (at >= 0) & (at < grid.per_side[k])
+            if k == dense.axis:
+                inside &= (at >= dense.slabs[slab]) & (at < dense.slabs[slab + 1])
             found += at * grid.strides[k]
         if inside:
             dense.near_speed[found] = max(dense.near_speed[found], speed)
 
 
 @inner_helper
-def note_speed(particles, slot, cell, grid, dense):
-    """Let the bounds hold for a particle whose velocity has changed."""
+def note_speed(particles, slot, cell, slab, grid, dense):
+    """Let the bounds of a slab hold for a particle whose velocity has changed."""
     square = 0.0
     for k in range(len(particles.images)):
         v = particles.data[velocity_row(particles, k), slot] - dense.drift[k]
         square += v * v
     if square > dense.speed[cell] * dense.speed[cell]:
-        raise_speed(cell, sqrt(square), grid, dense)
+        raise_speed(cell, slab, sqrt(square), grid, dense)
 
 
 @inner_helper
@@ -232,9 +261,9 @@ def approach_along(particles, pair, direction):
 
 
 @inner_helper
-def partner_of(particles, slot, sigma, direction, pick, grid, context):
+def partner_of(particles, slot, sigma, direction, pick, grid, context, dense):
     """The partner of the particle in a slot: (its slot, its cell); -1 if the draw finds none."""
-    cell = cell_at(particles, slot, sigma, direction, grid, context)
+    cell = cell_at(particles, slot, sigma, direction, grid, context, dense)
     if cell < 0:
         return np.int64(-1), np.int64(-1)
     found = np.int64(grid.starts[cell]) + pick
@@ -257,10 +286,10 @@ def relative_chance(pair, cells, kinds, largest, dense, workspace, dimension):
 
 @inner_helper
 def try_once(particles, counter, words, bound, grid, context, dense, options):
-    """One trial. counter: key, step, cell and trial. Returns whether it is a collision, and whether its
-    chance exceeded 1."""
+    """One trial. counter: key, step, cell and trial; options: the law, the sums of the stress, and the slab.
+    Returns whether it is a collision, and whether its chance exceeded 1."""
     key, step, cell, trial = counter
-    law, stress = options
+    law, stress, slab = options
     workspace, d = context.workspace, len(context.space.lengths)
     first = np.int64(grid.starts[cell])
     i = first + below(words[1], np.int64(grid.starts[cell + 1]) - first)
@@ -271,7 +300,7 @@ def try_once(particles, counter, words, bound, grid, context, dense, options):
     direction = in_plane(key, step, cell, trial) if d == 2 else unit_vector(key, step, cell, trial)
     sigma = workspace.radius[one] + workspace.radius[other]
     pick = below(words[2], np.int64(dense.near_count[cell]))
-    j, there = partner_of(particles, i, sigma, direction, pick, grid, context)
+    j, there = partner_of(particles, i, sigma, direction, pick, grid, context, dense)
     if j < 0:
         return False, False
     if kind_in(particles, j, workspace) != other:
@@ -282,42 +311,47 @@ def try_once(particles, counter, words, bound, grid, context, dense, options):
     exceeded = approach * chance > bound * _ROUNDED
     if fraction(words[3]) * bound < approach * chance:
         collide_at(particles, pair, kinds, direction, sigma, context, law, stress)
-        note_speed(particles, i, cell, grid, dense)
-        note_speed(particles, j, there, grid, dense)
+        note_speed(particles, i, cell, slab, grid, dense)
+        note_speed(particles, j, there, slab, grid, dense)
         return True, exceeded
     return False, exceeded
 
 
+@inner_helper
+def collide_dense_cell(particles, cell, rate, grid, context, dense, options):
+    """Make the collisions of one step in a cell. rate: of trials, per particle in the cell, most of them in
+    one within reach and bound of speed; options: as of `try_once`."""
+    workspace = context.workspace
+    counts, key, step = workspace.counts[context.part], workspace.key, workspace.clock[0]
+    number = np.int64(grid.starts[cell + 1]) - np.int64(grid.starts[cell])
+    pairs = rate * number * dense.near_count[cell]
+    left, trial = 1.0 if number > 0 else 0.0, 0
+    while left > 0.0:
+        words = words_of(key, step, cell, trial, 0)
+        bound = dense.speed[cell] + dense.near_speed[cell]
+        left -= waiting_time(words[0]) / (pairs * bound)
+        if not left > 0.0:
+            break
+        counter = key, step, cell, trial
+        done, beyond = try_once(particles, counter, words, bound, grid, context, dense, options)
+        counts[COLLISIONS] += done
+        counts[EXCEEDED] += beyond
+        trial += 1
+    counts[TRIALS] += trial
+
+
 @inner_kernel
-def collide_dense(particles, grid, context, dense, law, stress):
-    """Make the collisions of one step, cell after cell."""
+def collide_slab(particles, slab, grid, context, dense, law, stress):
+    """Make the collisions of one step in a slab, cell after cell."""
     workspace, d = context.workspace, len(context.space.lengths)
-    update_bounds(particles, grid, workspace, dense)
-    if stress is not None:
-        add_flights(particles, (0, len(grid.starts) - 1), grid, context, stress, law)
-    sigma, key, step = 2.0 * workspace.largest, workspace.key, workspace.clock[0]
+    sigma = 2.0 * workspace.largest
     around = 6.283185307179586 * (sigma if d == 2 else 2.0 * sigma * sigma)
     rate = 0.5 * around * dense.highest[0] / grid.volume * workspace.dt * len(workspace.radius)
-    met = trials = exceeded = 0
-    for cell in range(len(grid.starts) - 1):
-        number = np.int64(grid.starts[cell + 1]) - np.int64(grid.starts[cell])
-        pairs = rate * number * dense.near_count[cell]
-        left, trial = 1.0 if number > 0 else 0.0, 0
-        while left > 0.0:
-            words = words_of(key, step, cell, trial, 0)
-            bound = dense.speed[cell] + dense.near_speed[cell]
-            left -= waiting_time(words[0]) / (pairs * bound)
-            if not left > 0.0:
-                break
-            done, beyond = try_once(
-                particles, (key, step, cell, trial), words, bound, grid, context, dense, (law, stress)
-            )
-            met += done
-            exceeded += beyond
-            trial += 1
-        trials += trial
-        if stress is not None:
-            finish_cell(context, stress)
-    workspace.counts[0, COLLISIONS] += met
-    workspace.counts[0, TRIALS] += trials
-    workspace.counts[0, EXCEEDED] += exceeded
+    stride = grid.strides[dense.axis]
+    row = stride * grid.per_side[dense.axis]
+    for start in range(0, len(grid.starts) - 1, row):
+        first, end = start + dense.slabs[slab] * stride, start + dense.slabs[slab + 1] * stride
+        for cell in range(first, end):
+            collide_dense_cell(particles, cell, rate, grid, context, dense, (law, stress, slab))
+            if stress is not None:
+                finish_cell(context, stress)

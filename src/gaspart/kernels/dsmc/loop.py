@@ -23,8 +23,8 @@ from gaspart.kernels.dsmc.cells import (
     share_cells,
     swap_row,
 )
-from gaspart.kernels.dsmc.enskog import collide_dense
-from gaspart.kernels.dsmc.model import ThreadContext
+from gaspart.kernels.dsmc.enskog import collide_slab, find_bounds, find_near_speeds, look_at_cells
+from gaspart.kernels.dsmc.model import ThreadContext, open_space
 from gaspart.kernels.dsmc.motion import move
 from gaspart.kernels.dsmc.pace import still_fits
 from gaspart.kernels.dsmc.stress import add_flights
@@ -86,6 +86,59 @@ def collide_shared(particles, shares, grid, workspace, lengths, periodic, law, s
 
 
 @inner_helper
+def look_at_part(particles, cells, grid, context, dense, law, stress):
+    """Find what one thread's cells, from cells[0] to cells[1], have before the collisions of a dense gas."""
+    if stress is not None:
+        add_flights(particles, cells, grid, context, stress, law)
+    look_at_cells(particles, cells, grid, context.workspace, dense)
+
+
+@inner_parallel_kernel
+def look_at_shared(particles, shares, grid, workspace, lengths, dense, law, stress):
+    """`look_at_part` for all parts."""
+    for part in prange(len(shares) - 1):
+        context = ThreadContext(open_space(lengths), workspace, part)
+        look_at_part(particles, (shares[part], shares[part + 1]), grid, context, dense, law, stress)
+
+
+@inner_helper
+def collide_slabs(particles, turn, parts, grid, context, dense, law, stress):
+    """Make the collisions of one step in one thread's slabs, of every second one from `turn` on."""
+    slabs = part_of(context.part, parts, (len(dense.slabs) - turn) // 2)
+    for n in range(slabs[0], slabs[1]):
+        collide_slab(particles, turn + 2 * n, grid, context, dense, law, stress)
+
+
+@inner_parallel_kernel
+def collide_slabs_shared(particles, turn, grid, workspace, lengths, dense, law, stress):
+    """`collide_slabs` for all parts."""
+    parts = len(grid.counts)
+    for part in prange(parts):
+        context = ThreadContext(open_space(lengths), workspace, part)
+        collide_slabs(particles, turn, parts, grid, context, dense, law, stress)
+
+
+@inner_allocating_kernel
+def collide_dense(particles, grid, context, threads, law, dense, stress):
+    """Make the collisions of one step of a dense gas."""
+    lengths, workspace = context.space.lengths, context.workspace
+    if threads is None:
+        look_at_part(particles, (0, len(grid.starts) - 1), grid, context, dense, law, stress)
+    else:
+        shares = np.empty(len(grid.counts) + 1, np.int64)
+        share_cells(grid, shares)
+        look_at_shared(particles, shares, grid, workspace, lengths, dense, law, stress)
+    find_bounds(grid, workspace, dense)
+    for turn in range(min(2, len(dense.slabs) - 1)):
+        if turn > 0:
+            find_near_speeds(grid, dense)
+        if threads is None:
+            collide_slabs(particles, turn, 1, grid, context, dense, law, stress)
+        else:
+            collide_slabs_shared(particles, turn, grid, workspace, lengths, dense, law, stress)
+
+
+@inner_helper
 def move_all(particles, grid, context, threads, gravity, faces, law):
     """Make the motion of one step."""
     space, workspace = context.space, context.workspace
@@ -122,7 +175,7 @@ def collide_all(particles, grid, context, threads, law, dense, stress):
     """Make the collisions of one step."""
     space, workspace = context.space, context.workspace
     if dense is not None:
-        collide_dense(particles, grid, context, dense, law, stress)
+        collide_dense(particles, grid, context, threads, law, dense, stress)
     elif threads is None:
         collide_part(particles, (0, len(grid.starts) - 1), grid, context, law, stress)
     else:

@@ -1,0 +1,142 @@
+"""The replicas of one run: their seeds, their files, and those of the others beside one of them.
+
+Replica k of `run.nc` has the seed of the run with k behind it, and the file `run-k.nc`. Replicas that end
+when they are accurate do so together, at an examination of all. Each reads the files of the others, of which
+the frames that it examines do not change any more: so what it decides depends neither on the order in which
+they come so far nor on kills.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gaspart.errors import SceneError
+from gaspart.files import open_regular
+from gaspart.keys.values import count_of
+from gaspart.trajectory.frames import frame_count
+from gaspart.trajectory.partial import PARTIAL, partial_path
+from gaspart.trajectory.reading import open_trajectory
+from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe, begun_as, read_recipe
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
+    """The recipes of so many replicas of a run; of 1, the recipe itself. Raises SceneError for another number
+    and for replicas that would be one run, bit for bit: from one state, if nothing is drawn after that."""
+    if count_of("replicas", replicas, least=1, most=MOST_REPLICAS) == 1:
+        return [recipe]
+    if not differ(recipe):
+        rule = "would be one run, bit for bit: they start from one state, and nothing is drawn after that"
+        raise SceneError("replicas", replicas, rule)
+    return [replace(recipe, seed=_seed(recipe, k), replica=(k, replicas)) for k in range(1, replicas + 1)]
+
+
+def differ(recipe: Recipe) -> bool:
+    """Whether runs of other seeds are other runs: random numbers are drawn, for the first state or later."""
+    scene, drawn = recipe.scene, recipe.initial is None
+    drawn = drawn and (scene.vibrates or any(kind.count for kind in scene.species))
+    return drawn or recipe.engine.draws(scene)
+
+
+def _seed(recipe: Recipe, number: int) -> tuple[int, ...]:
+    """The seed of one of the replicas of a run."""
+    given = recipe.seed if isinstance(recipe.seed, tuple | list) else (recipe.seed,)
+    return (*given, number)
+
+
+def of_all(recipe: Recipe) -> tuple[Recipe, int]:
+    """The recipe of the run of which one of a replica is, and how many replicas it has."""
+    if recipe.replica is None:
+        return recipe, 1
+    assert isinstance(recipe.seed, tuple)  # by `Recipe`
+    seed = recipe.seed[:-1]
+    return replace(recipe, seed=seed[0] if len(seed) == 1 else seed, replica=None), recipe.replica[1]
+
+
+def replica_paths(path: str | Path, replicas: int) -> list[Path]:
+    """The files of a run at `path`: that itself, or of several replicas `run-1.nc`, `run-2.nc` ... of
+    `run.nc`."""
+    path = Path(path)
+    if replicas == 1:
+        return [path]
+    return [path.with_name(f"{path.stem}-{k}{path.suffix}") for k in range(1, replicas + 1)]
+
+
+def path_of_all(path: Path, recipe: Recipe) -> Path:
+    """The path of the run of which a file, finished or not, is or has a replica."""
+    path = path.with_name(path.name.removesuffix(PARTIAL))
+    if recipe.replica is None:
+        return path
+    return path.with_name(f"{path.stem.removesuffix(f'-{recipe.replica[0]}')}{path.suffix}")
+
+
+def beside(path: Path, recipe: Recipe) -> list[tuple[Path, Recipe]]:
+    """The paths, finished, and the recipes of all replicas of the run of which one is at `path`."""
+    whole, replicas = of_all(recipe)
+    if replicas == 1:
+        return [(path, recipe)]
+    paths = replica_paths(path_of_all(path, recipe), replicas)
+    return list(zip(paths, in_replicas(whole, replicas), strict=True))
+
+
+def found(path: str | Path) -> tuple[Path, Recipe]:
+    """A file of the run at a path, finished or not, and its recipe: that at the path itself, or of several
+    replicas the first. Raises SceneError as `read_recipe`."""
+    path = Path(path)
+    first = replica_paths(path, 2)[0] if path.name else path
+    place = next((one for one in (path, partial_path(path), *_places(first)) if one.exists()), path)
+    return place, read_recipe(place)
+
+
+def files_of(path: str | Path) -> list[Path]:
+    """The files of the run at a path, each finished or not: one, or those of all replicas, of which `path` is
+    one or the path of all. Raises SceneError if one is missing or of another run, and as `read_recipe`."""
+    first, recipe = found(path)
+    if recipe.replica is None:
+        return [first]
+    files = []
+    for place, wanted in beside(first, recipe):
+        there = [one for one in _places(place) if one.exists() and read_recipe(one) == wanted]
+        if not there:
+            rule = f"is not there: it is one of {recipe.replica[1]} replicas, which are one run"
+            raise SceneError("file", str(place), rule)
+        files.append(there[0])
+    return files
+
+
+def _places(path: Path) -> tuple[Path, Path]:
+    """Where a trajectory may be: finished, or not."""
+    return path, partial_path(path)
+
+
+def reached(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Path] | None:
+    """Where all replicas of a run, as of `beside`, are that have so many frames, finished or not; None if one
+    has fewer, or is not begun as its recipe states. A single run is at its path."""
+    if len(files) == 1:
+        return [files[0][0]]
+    places = [_with_frames(path, recipe, frames) for path, recipe in files]
+    return [place for place in places if place] if all(places) else None
+
+
+def _with_frames(path: Path, recipe: Recipe, frames: int) -> Path | None:
+    for place in _places(path):
+        with suppress(SceneError, OSError, struct.error):  # not there yet, or empty
+            with open_regular(place) as file:
+                enough = frame_count(file) >= frames
+            if enough and begun_as(place, recipe):
+                return place
+    return None
+
+
+@contextmanager
+def opened_together(places: Sequence[Path]) -> Iterator[list[xr.Dataset]]:
+    """Several trajectories, open. Raises SceneError as `open_trajectory`."""
+    with ExitStack() as stack:
+        yield [stack.enter_context(open_trajectory(place)) for place in places]

@@ -1,0 +1,173 @@
+"""Work that several processes share: calls of a function that writes files which can be continued.
+
+Unlike the processes of a pool, these do not run the caller's script again, and signals of the terminal do not
+reach them: each ends when it is told to, or when the process that began it has ended, after a checkpoint.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from multiprocessing import Pipe, connection
+from signal import SIGTERM
+from typing import Any
+
+from gaspart.errors import SceneError, SimulationError
+from gaspart.interruption import deferred, exit_on_signals
+from gaspart.system import POSIX
+
+_LOOK = 0.1  # seconds between two looks at signals while processes run
+_PATIENCE = 60.0  # seconds for a process to write a checkpoint before it is killed
+_SIGNALLED = (130, 143)  # exit codes of a process that a signal has ended after a checkpoint
+
+
+@dataclass(frozen=True)
+class Lost:
+    """What a process leaves that has ended without a result, by its exit code."""
+
+    code: int
+
+    def __str__(self) -> str:
+        return f"its process ended with code {self.code}"
+
+
+def require_processes(key: str, count: int) -> None:
+    """Raise SceneError for more than one process where they cannot be given a connection."""
+    if count > 1 and not POSIX:
+        raise SceneError(key, count, f"more than one process needs Linux or macOS; {key}=1")
+
+
+def in_processes(
+    function: Callable[..., Any],
+    calls: Sequence[tuple],
+    workers: int,
+    finished: Callable[[int, Any], None],
+    told: Callable[[int, Any], None] | None = None,
+) -> None:
+    """Call a function of a module, function(tell, *arguments), in processes of which so many run at a time.
+
+    calls: the arguments of each call. finished(n, result): is called when a call, number n, has returned, or
+    its process is `Lost`; told(n, message): when it has told something, tell(message). A signal takes effect
+    when all have ended after a checkpoint; where the caller's handler returns, they are begun again. A
+    SceneError or SimulationError of a call is raised, after all others have ended.
+    """
+    waiting = list(reversed(range(len(calls))))
+    running: list[_Worker] = []
+    with deferred() as signals:
+        signals.unsaved = True
+        try:
+            while waiting or running:
+                while waiting and len(running) < workers:
+                    number = waiting.pop()
+                    running.append(_Worker(number, function, calls[number]))
+                ready = connection.wait([worker.connection for worker in running], _LOOK)
+                for worker in [one for one in running if one.connection in ready]:
+                    if worker.receive(told):
+                        continue
+                    running.remove(worker)
+                    result = worker.result()
+                    if isinstance(result, Lost) and result.code in _SIGNALLED and signals.pending is not None:
+                        waiting.append(worker.number)
+                    else:
+                        finished(worker.number, result)
+                if signals.pending is not None:
+                    waiting += [worker.number for worker in running]
+                    _end(running)
+                    signals.deliver()
+        finally:
+            _end(running)
+
+
+class _Worker:
+    """A process that carries out one call. connection: to it, readable when it has told something or ended"""
+
+    def __init__(self, number: int, function: Callable[..., Any], arguments: tuple) -> None:
+        self.number = number
+        self.connection, there = Pipe()
+        command = [sys.executable, "-m", "gaspart.workers", str(there.fileno())]
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, pass_fds=[there.fileno()], start_new_session=True
+        )
+        there.close()
+        self._results: list[Any] = []
+        with suppress(BrokenPipeError):  # it has ended, for a reason that its exit code states
+            self.connection.send_bytes(pickle.dumps((function, arguments)))
+
+    def receive(self, told: Callable[[int, Any], None] | None) -> bool:
+        """Take what it has sent; returns whether it goes on."""
+        try:
+            is_result, content = self.connection.recv()
+        except (EOFError, OSError):
+            return False
+        if is_result:
+            self._results.append(content)
+        elif told:
+            told(self.number, content)
+        return True
+
+    def result(self) -> Any:
+        """What the call of a process that has ended has returned. Raises what that raised."""
+        code = self._process.wait()
+        self.connection.close()
+        if code or not self._results:
+            return Lost(code)
+        if isinstance(self._results[0], SceneError | SimulationError):
+            raise self._results[0]
+        return self._results[0]
+
+    def end(self) -> None:
+        """Let it write a checkpoint and end."""
+        self._process.terminate()
+
+    def wait(self) -> None:
+        """Wait for its end."""
+        try:
+            self._process.wait(_PATIENCE)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self.connection.close()
+
+
+def _end(running: list[_Worker]) -> None:
+    """End all processes."""
+    for worker in running:
+        worker.end()
+    for worker in running:
+        worker.wait()
+    running.clear()
+
+
+def _serve(descriptor: int) -> None:
+    """Make the call that arrives, and send its result or its error."""
+    exit_on_signals(announce=lambda line: None)  # the process that began this one says so
+    other, sending = connection.Connection(descriptor), threading.Lock()
+    function, arguments = pickle.loads(other.recv_bytes())
+    threading.Thread(target=_end_with, args=(other,), daemon=True).start()
+
+    def send(is_result: bool, content: Any) -> None:
+        with sending:
+            other.send((is_result, content))
+
+    try:
+        result = function(lambda message: send(False, message), *arguments)
+    except (SceneError, SimulationError) as error:
+        result = error
+    send(True, result)
+
+
+def _end_with(other: connection.Connection) -> None:
+    """End after a checkpoint when the process that began this one has ended, however it did."""
+    with suppress(EOFError, OSError):
+        other.recv_bytes()  # it sends nothing more
+    os.kill(os.getpid(), SIGTERM)
+
+
+if __name__ == "__main__":
+    _serve(int(sys.argv[1]))
