@@ -77,6 +77,7 @@ def run(
     correlations: Correlations | None = None,
     pairs: bool = False,
     impulses: str | None = None,
+    pair_impulses: str | None = None,
     initial: State | str | Path | None = None,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
@@ -93,10 +94,11 @@ def run(
     the mean-squared displacement, over all pairs of samples, which may lie much closer than frames; with
     `Correlations(stress=True)` those of the stress tensor and the heat flux instead. With `pairs` each frame
     counts the collisions of each pair of species so far; with `impulses`, such as "z:200", it has what a more
-    accurate density along z needs (both event-driven). A run of the same recipe and program that was cut
-    short is continued, a complete one is not changed. Another trajectory at `path`, or unfinished next to it,
-    is replaced only with `overwrite`; a file of another kind never. With `keep_checkpoint` the state at the
-    end stays in `path.checkpoint.npz`, and `resume` goes on from it.
+    accurate density along z needs, and with `pair_impulses`, such as "3:300:0.5", what a more accurate g(r)
+    needs up to a distance, in so many shells, from this share of contacts (all event-driven). A run of the
+    same recipe and program that was cut short is continued, a complete one is not changed. Another trajectory
+    at `path`, or unfinished next to it, is replaced only with `overwrite`; a file of another kind never. With
+    `keep_checkpoint` the state at the end stays in `path.checkpoint.npz`, and `resume` goes on from it.
 
     With `initial`, a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`), the run
     starts from it (`Simulation`). Particles and the size of the container must be the scene's; the rest may
@@ -119,7 +121,7 @@ def run(
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
-    kept = pairs, _start(initial, scene, _required(path)), impulse_tallies(impulses)
+    kept = pairs, _start(initial, scene, _required(path)), impulse_tallies(impulses, pair_impulses)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return trajectory.record(Recipe(*settings, *kept), _required(path), options)
 

@@ -19,7 +19,7 @@ from gaspart.interruption import set_note
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.runs import Accuracy
 from gaspart.scene.scene import Scene
-from gaspart.state.optional_tallies import ImpulseTally
+from gaspart.state.optional_tallies import ImpulseTally, PairImpulseTally
 
 if TYPE_CHECKING:
     from gaspart.accuracy.reached import AccuracyStatus
@@ -104,6 +104,9 @@ def _add_contents(parser: argparse.ArgumentParser) -> None:
     text = "keep impulses along x, y or z in so many bins: `gaspart measure FILE density` along this axis is "
     text += "then several times as accurate, in equilibrium"
     add("--impulses", metavar="AXIS:BINS", help=text)
+    text = "keep impulses of pairs up to a distance in so many shells, at a share of contacts (default: "
+    text += "all): `gaspart measure FILE rdf` is then more accurate, in equilibrium"
+    add("--pair-impulses", metavar="DISTANCE:SHELLS[:SHARE]", help=text)
 
 
 def add_resume(parser: Parser) -> None:
@@ -157,6 +160,7 @@ def _run(given: argparse.Namespace) -> None:
             correlations=correlations,
             pairs=given.pairs,
             impulses=given.impulses,
+            pair_impulses=given.pair_impulses,
             initial=given.initial,
             checkpoint_seconds=given.checkpoint_seconds,
             progress=progress(given.quiet, started, status.remark),
@@ -306,8 +310,8 @@ def run_options(path: Path, recipe: Recipe) -> list[str]:
     if recipe.pairs:
         options.append("--pairs")
     for tally in recipe.tallies:
-        if isinstance(tally, ImpulseTally):
-            options += ["--impulses", tally.to_text()]
+        if isinstance(tally, ImpulseTally | PairImpulseTally):
+            options += [f"--{tally.name.replace('_', '-')}", tally.to_text()]
     if recipe.follow is not None:
         options += ["--follow", str(recipe.follow)]
     if recipe.correlations is not None:
