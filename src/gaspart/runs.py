@@ -93,21 +93,19 @@ def run(
     `correlations` each frame has the sums so far of the velocities' correlations, and with `displacements` of
     the mean-squared displacement, over all pairs of samples, which may lie much closer than frames; with
     `Correlations(stress=True)` those of the stress tensor and the heat flux instead. With `pairs` each frame
-    counts the collisions of each pair of species so far; with `impulses`, such as "z:200", it has what a more
-    accurate density along z needs, and with `pair_impulses`, such as "3:300:0.5", what a more accurate g(r)
-    needs up to a distance, in so many shells, from this share of contacts (all event-driven). A run of the
-    same recipe and program that was cut short is continued, a complete one is not changed. Another trajectory
-    at `path`, or unfinished next to it, is replaced only with `overwrite`; a file of another kind never. With
-    `keep_checkpoint` the state at the end stays in `path.checkpoint.npz`, and `resume` goes on from it.
+    counts the collisions of each pair of species so far; `impulses`, such as "z:200", and `pair_impulses`,
+    such as "3:300:0.5" (distance, shells, share of contacts), keep what a more accurate density along z and
+    g(r) need (all event-driven). A run of the same recipe and program that was cut short is continued, a
+    complete one is not changed; another trajectory at `path` is replaced only with `overwrite`, another file
+    never. With `keep_checkpoint` the last state stays in `path.checkpoint.npz`, from which `resume` goes on.
 
     With `initial`, a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`), the run
-    starts from it (`Simulation`). Particles and the size of the container must be the scene's; the rest may
-    differ. Defaults of engines follow from the scene's `speed` or `temperature` all the same.
+    starts from it (`Simulation`). Particles and container size must be the scene's; the rest may differ, and
+    defaults of engines follow from the scene's `speed` or `temperature` all the same.
 
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
     examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
     without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
-
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
     examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
     Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
