@@ -110,7 +110,7 @@ def compared(run: Run, axis: int, bins: int) -> tuple[np.ndarray, float, float]:
     counted, impulses = counted[:, filled], impulses[:, filled]
     apart = counted - impulses
     z = apart.mean(axis=0) / apart.std(axis=0, ddof=1) * math.sqrt(BLOCKS)
-    mixed = counted + mixture(counted, impulses) * (impulses - counted)
+    mixed = counted + mixture(counted, impulses, run.periodic[axis]) * (impulses - counted)
     own, other, both = (one.var(axis=0, ddof=1) for one in (counted, impulses, mixed))
     return z, float(np.median(own / other)), float(np.median(own / both))
 

@@ -18,6 +18,7 @@ import symmetries
 import gaspart
 from gaspart import analysis, theory
 from gaspart.cli import commands
+from gaspart.cli.arguments import WIDTH
 from gaspart.cli.new import templates
 from gaspart.public import stated
 from gaspart.reproduction.claims.captions import filled
@@ -100,14 +101,14 @@ def command_line():
 
 
 def helped(parser):
-    """The help of a command, in lines of 90 characters."""
-    parser.formatter_class = lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=90)
+    """The help of a command, as a terminal of 80 columns shows it."""
+    parser.formatter_class = lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=WIDTH)
     return parser.format_help()
 
 
 def gallery(folder):
     """The page of the templates, whose pictures are copied."""
-    text = heading("Gallery of scenes")
+    text = heading("Scenes of the gallery")
     text += "``gaspart new NAME.yaml --template NAME`` writes a scene file; the command below it runs it.\n\n"
     for name, template in templates().items():
         shutil.copyfile(ROOT / f"docs/scenes/{name}.png", folder / f"{name}.png")

@@ -180,7 +180,7 @@ def _kept(number, gas, observable, accuracy, made, folder):
         )
     with gp.open_trajectory(paths[0]) as data:
         duration, frames = len(paths) * float(data["time"][-1]), len(paths) * (data.sizes["frame"] - 1)
-        found = measure(observable, data)
+        found = measure(data, observable)
     if len(paths) > 1:
         found = gp.analysis.replicas(observable, paths)
     if "lag" not in found.coords and not _of_structure(observable) and not recipe.correlations:
@@ -210,10 +210,10 @@ def _of_structure(observable):
 def _of_longer(observable, data):
     """An observable of the longer run; what is of a limited number of frames, from ten parts of them."""
     if not _of_structure(observable):
-        return measure(observable, data)
+        return measure(data, observable)
     parts = np.array_split(np.arange(data.sizes["frame"] // 4, data.sizes["frame"]), LONGER)
     found = [
-        measure(observable, data.isel(frame=slice(part[0], part[-1] + 1)), start=float(data["time"][part[0]]))
+        measure(data.isel(frame=slice(part[0], part[-1] + 1)), observable, start=float(data["time"][part[0]]))
         for part in parts
     ]
     whole = found[0].copy()
@@ -233,7 +233,7 @@ def _advice(gas, observable, accuracy):
     costs = {"ratio": ratio, "predicted": made.best.duration, "replicas": made.replicas, "longer": longer}
     if observable == "temperature" and made.places[0] < made.places[1]:
         pilot = max((one for one in made.pilots if one.measured), key=lambda one: one.component.places)
-        costs["places"] = np.isfinite(measure(observable, pilot.path).estimate.values)
+        costs["places"] = np.isfinite(measure(pilot.path, observable).estimate.values)
     return made.recipe, costs | stated
 
 

@@ -150,14 +150,14 @@ def test_a_file_that_appears_meanwhile_is_kept(tmp_path, monkeypatch, supported)
 
 
 def test_a_file_that_appears_between_the_last_check_and_the_renaming_is_kept(tmp_path, monkeypatch):
-    path, rename = tmp_path / "result", files._rename_to_new
+    path, rename = tmp_path / "result", files.rename_to_new
 
     def late(old, new):
         if not path.exists():
             path.write_text("theirs")
         rename(old, new)
 
-    monkeypatch.setattr(files, "_rename_to_new", late)
+    monkeypatch.setattr(files, "rename_to_new", late)
     with pytest.raises(gp.SceneError, match="exists"), writing(path) as scratch:
         scratch.write_text("ours")
     assert contents(tmp_path) == {"result": b"theirs"}

@@ -1,21 +1,27 @@
-"""The picture of the README is that of a complete reproduction, and names it."""
+"""The pictures of the README: figures of a complete reproduction, which name it, and scenes."""
 
 import importlib.util
 from pathlib import Path
 
 import netCDF4
+import numpy as np
 import pytest
 from PIL import Image
 
 ROOT = Path(__file__).parents[1]
 
 
-@pytest.fixture(scope="module")
-def module():
-    spec = importlib.util.spec_from_file_location("gallery", ROOT / "docs/gallery.py")
+def script(name):
+    """A script of docs/ as a module."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / f"docs/{name}.py")
     loaded = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(loaded)
     return loaded
+
+
+@pytest.fixture(scope="module")
+def module():
+    return script("gallery")
 
 
 @pytest.fixture
@@ -55,3 +61,12 @@ def test_results_of_another_config_do_not_replace_it(module, results):
 def test_the_picture_that_is_kept_names_its_results():
     with Image.open(ROOT / "docs/gallery.png") as picture:
         assert picture.text["config"] == "full reproduction" and picture.text["revision"]
+
+
+def test_the_gallery_and_its_picture_follow_from_the_scenes():
+    """If not: python docs/contact_sheet.py."""
+    contact_sheet = script("contact_sheet")
+    assert (ROOT / "docs/gallery.md").read_text(encoding="utf-8") == contact_sheet.page()
+    with Image.open(ROOT / "docs/scenes.png") as kept:
+        difference = np.abs(np.asarray(kept.convert("RGB"), float) - np.asarray(contact_sheet.sheet(), float))
+    assert difference.mean() < 2.0  # of 255: a palette of 256 colours

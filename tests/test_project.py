@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 import yaml
 from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
 
 import gaspart as gp
 
@@ -79,14 +80,35 @@ def test_every_referee_has_found_the_runs_right_and_the_planted_error():
 
 
 def test_the_conda_environment_has_every_dependency_at_its_locked_version():
-    names = {"matplotlib": "matplotlib-base", "freud-analysis": "freud"}
     listed = yaml.safe_load((ROOT / "workflow/envs/gaspart.yaml").read_text(encoding="utf-8"))["dependencies"]
     versions = dict(line.split("=") for line in listed)
     lock = (ROOT / "environment.txt").read_text(encoding="utf-8")
     packages = {requirement.name.lower() for requirement in requirements("workflow")}
     for name in packages - {"snakemake", "snakemake-executor-plugin-slurm"}:
         locked = re.search(rf"^{re.escape(name)}==([^ ;]+)", lock, re.MULTILINE)[1]
-        assert locked.startswith(versions[names.get(name, name)]), name
+        assert locked.startswith(versions[CONDA.get(name, name)]), name
+
+
+CONDA = {"matplotlib": "matplotlib-base", "freud-analysis": "freud"}
+"""Names of packages that are others in conda-forge."""
+
+
+def test_the_conda_recipe_has_the_dependencies_and_the_version():
+    recipe = yaml.safe_load((ROOT / "release/recipe.yaml").read_text(encoding="utf-8"))
+    stated = dict(line.split() for line in recipe["requirements"]["run"])
+    assert stated.pop("python") == project()["requires-python"]
+    needed = {CONDA.get(one.name, one.name.lower()): one.specifier for one in requirements()}
+    assert {name: SpecifierSet(bounds) for name, bounds in stated.items()} == needed
+    assert recipe["context"]["version"] == gp.__version__
+    assert recipe["about"]["license"] == project()["license"]
+
+
+def test_binder_installs_extras_that_exist():
+    (line,) = (ROOT / "binder/requirements.txt").read_text(encoding="utf-8").splitlines()
+    extras = re.fullmatch(r"\.\[([\w,]+)\]", line)[1].split(",")
+    assert set(extras) <= set(project()["optional-dependencies"])
+    python = (ROOT / "binder/runtime.txt").read_text(encoding="utf-8").strip().removeprefix("python-")
+    assert project()["requires-python"] == f">={python}"
 
 
 CASES = [

@@ -45,6 +45,10 @@ def test_the_first_film(tmp_path, monkeypatch):
     assert (tmp_path / "gas.mp4").stat().st_size > 100_000
 
 
+def test_it_is_short():
+    assert len(README.read_text(encoding="utf-8").split()) <= 900
+
+
 def test_the_targets_of_make_and_the_commands_exist():
     text = README.read_text(encoding="utf-8")
     rules = re.findall(r"^([\w-]+):", (README.parent / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)

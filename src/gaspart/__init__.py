@@ -7,4 +7,4 @@ compiler.
 from gaspart.public import attach as _attach
 
 __version__ = "0.2.0"
-__getattr__, __dir__, __all__ = _attach(__name__)
+__getattr__, __dir__, __all__ = _attach(__name__, for_users=True)

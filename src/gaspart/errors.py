@@ -16,7 +16,7 @@ _FIRST_BYTE, _LAST_BYTE = "\udca0", "\udcff"  # as Python reads 0xa0 to 0xff in 
 _ITEMS, _DEPTH, _BITS = 12, 4, 256  # shown of a collection; of nested ones; of an integer
 
 
-class _OneLine(Exception):
+class OneLine(Exception):
     """An error whose message says all that its user needs."""
 
     def _render_traceback_(self) -> list[str]:
@@ -24,7 +24,7 @@ class _OneLine(Exception):
         return [f"{type(self).__name__}: {self}"]
 
 
-class SceneError(_OneLine, ValueError):
+class SceneError(OneLine, ValueError):
     """An input that cannot be used: one line that names the key, the value and the rule it breaks.
 
     The line is printable and of bounded length, whatever the value is.
@@ -46,13 +46,18 @@ class SceneError(_OneLine, ValueError):
 
 
 def unknown_word(word: object, known: Iterable[str], what: str = "key") -> str:
-    """The rule for a word that is none of `known`: its new name, the most similar one, or all of them."""
+    """The rule for a word that is none of `known`: its new name, what other programs mean by it, the most
+    similar one, or all of them."""
     from difflib import get_close_matches
+
+    from gaspart.synonyms import meant
 
     words = list(known)
     renamed = str(word).replace("bodies", "particles").replace("body", "particle")  # names of version 0.2
     if renamed != word and renamed in words:
         return f"is called {renamed} now"
+    if meaning := meant(str(word), words):
+        return f"unknown {what}; here it is {meaning}"
     near = get_close_matches(str(word), words, n=1)
     return f"unknown {what}; " + (f"did you mean {near[0]}?" if near else f"known are {', '.join(words)}")
 
@@ -85,7 +90,7 @@ def entry_points_of(group: str) -> list[EntryPoint]:
     return found
 
 
-class SimulationError(_OneLine, RuntimeError):
+class SimulationError(OneLine, RuntimeError):
     """A run broke one of its invariants, or cannot continue; the last good state is kept by the caller."""
 
 

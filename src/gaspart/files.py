@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import errno
 import hashlib
 import os
@@ -14,13 +13,11 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, BinaryIO
+from typing import BinaryIO
 
 from gaspart.errors import SceneError
 from gaspart.interruption import scratch_file
-
-_HERE, _NO_REPLACE = -100, 1
-"""AT_FDCWD and RENAME_NOREPLACE of Linux's renameat2."""
+from gaspart.system import NO_LINK, OPEN_AS_IT_IS, is_own, is_running, rename_to_new
 
 _SPECIAL_FILES = {stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket", stat.S_IFLNK: "a link"}
 _SCRATCH = re.compile(r"\.gaspart-[0-9a-f]{12}-(\d+)-[0-9a-f]{8}\.partial")
@@ -64,7 +61,7 @@ def open_regular(path: str | Path, follow: bool = True) -> BinaryIO:
     `follow`, for a link; ValueError for a name that holds a NUL.
     """
     _require_regular(os.stat(path, follow_symlinks=follow), path)  # before: some devices act when opened
-    flags = os.O_NONBLOCK | (0 if follow else os.O_NOFOLLOW)
+    flags = OPEN_AS_IT_IS | (0 if follow else NO_LINK)
     file = open(path, "rb", opener=lambda name, mode: os.open(name, mode | flags))  # noqa: SIM115
     try:
         _require_regular(os.fstat(file.fileno()), path)
@@ -99,11 +96,6 @@ def is_same_file(one: str | Path, other: str | Path) -> bool:
         return False
 
 
-def descriptor_path(file: IO[bytes]) -> str:
-    """A path of an open file in ASCII, for libraries that accept UTF-8 names only."""
-    return f"/proc/self/fd/{file.fileno()}"
-
-
 def may_replace(path: Path, kind: FileKind | None, overwrite: bool) -> bool:
     """Whether there is a file at `path` that a result may replace; False if there is none.
 
@@ -130,7 +122,7 @@ def place(scratch: Path, path: Path, kind: FileKind | None, overwrite: bool) -> 
         if may_replace(path, kind, overwrite):
             return os.replace(scratch, path)
         with suppress(FileExistsError):  # another process wrote it meanwhile: apply `may_replace` to it
-            return _rename_to_new(scratch, path)
+            return rename_to_new(scratch, path)
 
 
 def remove_own(path: Path, kind: FileKind) -> None:
@@ -144,23 +136,7 @@ def remove_own(path: Path, kind: FileKind) -> None:
 
 def place_folder(scratch: Path, path: Path) -> None:
     """Rename a folder to `path`, where there is nothing. Raises FileExistsError, and other OSErrors."""
-    _rename_to_new(scratch, path)
-
-
-def _rename_to_new(old: Path, new: Path) -> None:
-    """Rename a file or folder without replacing one. Raises FileExistsError where there is one."""
-    rename = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
-    if rename and rename(_HERE, os.fsencode(old), _HERE, os.fsencode(new), _NO_REPLACE) == 0:
-        return
-    code = ctypes.get_errno() if rename else errno.ENOSYS
-    if code not in (errno.ENOSYS, errno.EINVAL, errno.EOPNOTSUPP):
-        raise OSError(code, os.strerror(code), str(new))
-    # Not supported by this file system or C library: a new, empty one is replaced instead.
-    if old.is_dir():
-        new.mkdir()
-    else:
-        os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
-    os.replace(old, new)
+    rename_to_new(scratch, path)
 
 
 @contextmanager
@@ -178,7 +154,7 @@ def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = Fa
         may_replace(path, kind, overwrite)
         with scratch_beside(path) as scratch:
             yield scratch
-            with scratch.open("rb") as file:
+            with scratch.open("r+b") as file:  # Windows syncs no file that is open to read only
                 os.fsync(file.fileno())
             place(scratch, path, kind, overwrite)
     except OSError as error:
@@ -224,18 +200,42 @@ def _remove_remainders(path: Path) -> None:
 def is_remainder(path: Path) -> bool:
     """Whether this is a scratch file that a process of this user has left which does not run any more."""
     name = _SCRATCH.fullmatch(path.name)
-    if name is None or _is_running(name[1]):
+    if name is None or is_running(int(name[1])):
         return False
     found = path.lstat()
-    return stat.S_ISREG(found.st_mode) and found.st_nlink == 1 and found.st_uid == os.geteuid()
+    return stat.S_ISREG(found.st_mode) and found.st_nlink == 1 and is_own(found)
 
 
-def _is_running(process: str) -> bool:
-    """Whether there is a process of this number; True if that cannot be known."""
+def _is_lock(path: Path) -> bool:
+    """Whether a file is a lock of filelock's where a file system has none: it begins with a process."""
+    with open_regular(path) as file:
+        return file.read(1).isdigit()
+
+
+_LOCK = FileKind("a lock", _is_lock)
+
+
+@contextmanager
+def only_process(path: Path, wait: bool = False) -> Iterator[None]:
+    """Be the only process within such a block for a path: it holds the file `path`.lock, which the system
+    releases when it ends, however it does.
+
+    Raises BlockingIOError while another process does, unless it is to `wait`; SceneError for a file of that
+    name that is no lock. May raise OSError.
+    """
+    from filelock import FileLock, Timeout  # 0.3 s
+
+    file = path.with_name(f"{path.name}.lock")
+    may_replace(file, _LOCK, overwrite=True)
+    lock = FileLock(file)
     try:
-        os.kill(int(process), 0)
-    except ProcessLookupError:
-        return False
-    except (PermissionError, ValueError, OverflowError):
-        return True
-    return True
+        lock.acquire(blocking=wait)
+    except Timeout:
+        raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN), str(file)) from None
+    with scratch_file(file):
+        try:
+            yield
+        finally:
+            with suppress(OSError):  # Windows removes no open file, but when it is released
+                file.unlink()  # before the release: no other process may hold it then
+            lock.release()

@@ -95,13 +95,15 @@ def exit_on_signals(announce: Callable[[str], None] | None = None) -> None:
         return
     _process.watched = True
     reader, writer = os.pipe()
-    os.set_blocking(writer, False)
+    if hasattr(os, "set_blocking"):  # which Windows did not have before Python 3.12
+        os.set_blocking(writer, False)
     signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
     threading.Thread(target=_watch, args=(reader,), name="signals", daemon=True).start()
     for number in SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _defer_to_thread)
-            signal.siginterrupt(number, False)  # C libraries do not all repeat what a signal interrupts
+            if hasattr(signal, "siginterrupt"):  # C libraries do not all repeat what a signal interrupts
+                signal.siginterrupt(number, False)
 
 
 def _defer_to_thread(signum: int, frame: object) -> None:

@@ -23,17 +23,29 @@ def stated(path: str) -> dict[str, str]:
     return {words[3]: words[1] for words in lines if len(words) == 6 and words[4] == "as"}
 
 
-def attach(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
-    """`__getattr__`, `__dir__` and `__all__` of a package that has a stub."""
+def attach(
+    package: str, for_users: bool = False
+) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """`__getattr__`, `__dir__` and `__all__` of a package that has a stub. for_users: whether its
+    functions and classes answer mistakes in their use (`gaspart.guidance`)."""
     namespace = vars(sys.modules[package])
     homes = stated(f"{namespace['__file__']}i")
 
     def load(name: str) -> Any:
         if name not in homes:
-            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+            from gaspart.guidance import MissingName  # 2 ms
+
+            raise MissingName(sys.modules[package], name)
         home = homes[name]
         if home == package:  # a package within
             return import_module(f"{package}.{name}")
-        return namespace.setdefault(name, getattr(import_module(home), name))
+        module = import_module(home)
+        found = getattr(module, name)
+        if for_users and name not in namespace:
+            from gaspart.guidance import guided
+
+            found = guided(found)
+            setattr(module, name, found)  # the same thing under both names, as pickle requires
+        return namespace.setdefault(name, found)
 
     return load, lambda: sorted(homes), list(homes)

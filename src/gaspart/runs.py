@@ -5,9 +5,10 @@ The rule that ends a run is in `gaspart.accuracy.reached`; this module refuses w
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 from gaspart.accuracy.reached import AccuracyStatus, Examiner
 from gaspart.accuracy.steady import require_steady
@@ -19,11 +20,11 @@ from gaspart.analysis.observables import (
     require_steady_value,
     walls_of,
 )
-from gaspart.engines import Engine
+from gaspart.engines import Engine, chosen
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import is_same_file, output_path
-from gaspart.scene.scene import Scene
-from gaspart.state.optional_tallies import impulse_tallies
+from gaspart.scene.scene import Scene, require_scene
+from gaspart.state.optional_tallies import OptionalTally, impulse_tallies, pair_impulse_tallies
 from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
@@ -39,11 +40,12 @@ from gaspart.trajectory.until import Requirement, Until
 class Accuracy(Requirement):
     """The accuracy that a run is to reach: standard error / |value| of an observable.
 
-    observable: Z, D, collision_rate, pressure, heat_flux, wall_shear, velocity or shear_viscosity, as
-    `gaspart measure` names them; accuracy: relative, of one standard error that includes correlations; of
+    observable: Z, D, collision_rate, pressure, heat_flux, wall_shear, density, velocity or shear_viscosity,
+    as `gaspart measure` names them; accuracy: relative, of one standard error that includes correlations; of
     those with components that vanish, and of a profile, relative to their root mean square; start: the time
     from which frames count, by default a quarter of the run; face: of one of the walls (`x low`), by default
-    each of them. Raises SceneError for other values.
+    each of them. A run until the density is accurate keeps impulses, where its engine can and they serve.
+    Raises SceneError for other values.
     """
 
     def __post_init__(self) -> None:
@@ -59,13 +61,13 @@ class Accuracy(Requirement):
     def named(cls, name: str, accuracy: float, start: float | None = None) -> Self:
         """From its `name`, as on the command line and in a config: `Z`, or `pressure:x low`."""
         observable, colon, face = name.partition(":")
-        return cls(observable.strip(), accuracy, start, face.strip() if colon else None)
+        return cls(observable.strip(), accuracy, start, face if colon else None)
 
 
 def run(
     scene: Scene,
-    engine: Engine,
-    seed: int | tuple[int, ...],
+    engine: Engine | str | None = None,
+    seed: int | tuple[int, ...] = 0,
     duration: float | None = None,
     sample_interval: float | None = None,
     path: str | Path | None = None,
@@ -87,12 +89,13 @@ def run(
 ) -> Path:
     """Run a scene and write its trajectory to `path`; returns `path`.
 
-    A frame at time 0 and at every sample_interval to the duration, which is an integer multiple of it; with
-    `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also the
-    spins; with `follow` only so many particles, from the first on (counters are still those of all). With
-    `correlations` each frame has the sums so far of the velocities' correlations, and with `displacements` of
-    the mean-squared displacement, over all pairs of samples, which may lie much closer than frames; with
-    `Correlations(stress=True)` those of the stress tensor and the heat flux instead. With `pairs` each frame
+    engine: by default event-driven, or by a name as on the command line; of a seed see `Simulation`.
+    A frame at time 0 and at every sample_interval to the duration, an integer multiple of it; with
+    `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also spins;
+    with `follow` only so many particles, from the first on (counters are those of all). With `correlations`
+    each frame has the sums so far of the velocities' correlations, and with `displacements` of the
+    mean-squared displacement, over all pairs of samples, much closer than frames if need be, or with
+    `Correlations(stress=True)` those of the stress tensor and the heat flux. With `pairs` each frame
     counts the collisions of each pair of species so far; `impulses`, such as "z:200", and `pair_impulses`,
     such as "3:300:0.5" (distance, shells, share of contacts), keep what a more accurate density along z and
     g(r) need (all event-driven). A run of the same recipe and program that was cut short is continued, a
@@ -102,26 +105,47 @@ def run(
     With `initial`, a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`), the run
     starts from it (`Simulation`). Particles and container size must be the scene's; the rest may differ, and
     defaults of engines follow from the scene's `speed` or `temperature` all the same.
-
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
     examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
     without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
-    `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
-    examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
-    Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
-    SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
+    `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` then. SIGINT
+    and SIGTERM take effect after a checkpoint, before the caller's handlers. Raises SceneError for invalid
+    settings, a file that cannot be written, and what this run cannot measure; SimulationError if it breaks an
+    invariant, with its state kept in `path.failed.npz`.
     """
+    require_scene(scene)
+    engine = chosen(engine)
     wanted = _request(duration, sample_interval, until, at_most)
-    for asked in wanted.accuracies if wanted else ():
-        require_measurable(asked, scene, engine, follow, correlations)
-        require_end(asked, scene, at_most, initial is not None)
-        displacements = displacements or OBSERVABLES[asked.observable].needs == "paths"
+    paths = _check(wanted, (scene, engine, follow, correlations), (scene, at_most, initial is not None))
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
-    kept = pairs, _start(initial, scene, _required(path)), impulse_tallies(impulses, pair_impulses)
+    stated = scene, engine, seed, duration, sample_interval, displacements or paths, follow, correlations
+    tallies = *_tallies(impulses, wanted, scene, engine), *pair_impulse_tallies(pair_impulses)
+    recipe = Recipe(*stated, wanted, pairs, _start(initial, scene, _required(path)), tallies)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    return trajectory.record(Recipe(*settings, *kept), _required(path), options)
+    return trajectory.record(recipe, _required(path), options)
+
+
+def _check(wanted: Until | None, measured: tuple[Any, ...], ended: tuple[Any, ...]) -> bool:
+    """Raise SceneError for what a run cannot measure, or that would not end it: see `require_measurable` and
+    `require_end`, of whose arguments these are the rest. Returns whether it needs the paths of particles."""
+    asked = wanted.accuracies if wanted else ()
+    for one in asked:
+        require_measurable(one, *measured)
+        require_end(one, *ended)
+    return any(OBSERVABLES[one.observable].needs == "paths" for one in asked)
+
+
+def _tallies(
+    impulses: str | None, wanted: Until | None, scene: Scene, engine: Engine
+) -> tuple[OptionalTally, ...]:
+    """The optional tallies that are asked for, or else those that make what is wanted more accurate."""
+    if impulses is not None or wanted is None:
+        return impulse_tallies(impulses)
+    from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
+
+    each = (Target(scene, asked.observable).tallies(engine) for asked in wanted.accuracies)
+    return next(filter(None, each), ())
 
 
 def _start(initial: State | str | Path | None, scene: Scene, path: str | Path) -> State | None:
@@ -235,20 +259,14 @@ def require_end(asked: Requirement, scene: Scene, at_most: float | None, given: 
 
 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
-    """The mean time between two collisions of a particle, to two digits, as a multiple of the engine's steps
-    and the samples of correlations. Raises SceneError where theory does not give it."""
-    from gaspart import theory
+    """The mean time between two collisions of a particle, or else to cross the container, to two digits, as a
+    multiple of the engine's steps and the samples of correlations. Raises SceneError if nothing moves."""
+    from gaspart.accuracy.scales import scales, two_digits
 
-    gas, rate = scene.gas, 0.0
-    if gas is not None and gas.temperature > 0.0:
-        try:
-            rate = float(theory.collision_rate(**gas.parameters))
-        except ValueError:  # denser than theory goes
-            rate = 0.0
-    if not rate > 0.0:
-        rule = "must be given: the time between collisions is known only of plain gases"
-        raise SceneError("sample_interval", None, rule)
-    interval = float(f"{1.0 / rate:.2g}")
+    shortest = scales(scene).event_time
+    if not math.isfinite(shortest):
+        raise SceneError("sample_interval", None, "must be given: nothing moves at the start")
+    interval = two_digits(shortest)
     unit = correlations.interval if correlations else engine.quantum
     if unit is None:
         return interval

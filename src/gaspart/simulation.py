@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import gaspart
-from gaspart.engines import Engine
+from gaspart.engines import Engine, chosen
 from gaspart.engines.checkpoint_identity import check_identity, checkpoint_identity
-from gaspart.engines.engine import constructors
 from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys.values import count_of, number
-from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene
-from gaspart.scene.species import Particle, Species
+from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene, require_scene
 from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.given import check_apart, state_at_time_zero
 from gaspart.state.initial import initial_state
@@ -51,6 +49,7 @@ PROPERTIES = (
 class Simulation:
     """One run of a scene by an engine, which is advanced in time.
 
+    `engine`: by default event-driven; "event", "step" or "dsmc" is one with default settings.
     `seed`: a whole number, or a tuple of them, that fixes the initial state and the random
     numbers of thermal walls. stress: whether `tally` has the stress tensor and the heat flux, of a periodic
     scene without gravity; tallies: what it has that not every run counts (`state.optional_tallies`), of which
@@ -64,21 +63,21 @@ class Simulation:
     overlap or are not inside the container.
     """
 
+    scene: Scene
+    engine: Engine
+
     def __init__(
         self,
         scene: Scene,
-        engine: Engine,
+        engine: Engine | str | None = None,
         seed: int | tuple[int, ...] = 0,
         stress: bool = False,
         initial: State | None = None,
         tallies: Iterable[OptionalTally] = (),
     ) -> None:
-        if not isinstance(scene, Scene):
-            raise SceneError("scene", scene, "must be a Scene, such as Scene.from_file(path)")
-        if not isinstance(engine, Engine):
-            raise SceneError("engine", engine, f"must be an engine: {constructors()}")
-        self.scene, self.engine, self.seed = scene, engine, seed
-        self._asked, self._given = engine, initial
+        require_scene(scene)
+        self.scene, self.engine, self.seed = scene, chosen(engine), seed
+        self._asked, self._given = self.engine, initial
         self.tallies: tuple[OptionalTally, ...] = (*tallies, *([StressTally()] if stress else []))
         self._log: EventLog | None = None
         self._advanced = False
@@ -120,12 +119,14 @@ class Simulation:
         """Add one particle (properties as in `Particle`): `scene` becomes a new, validated scene. Refused
         once the simulation has advanced."""
         self._change(
-            self.scene.with_particles(Particle(tuple(position), tuple(velocity), radius, mass, **properties))
+            self.scene.with_particles(
+                gaspart.Particle(tuple(position), tuple(velocity), radius, mass, **properties)
+            )
         )
 
     def add_random(self, count: int, radius: float, **properties: Any) -> None:
         """Add `count` particles at random places (properties as in `Species`), before the first advance."""
-        self._change(self.scene.with_species(Species(count, radius, **properties)))
+        self._change(self.scene.with_species(gaspart.Species(count, radius, **properties)))
 
     def add_wall(self, start: Iterable[float], end: Iterable[float]) -> None:
         """Add an interior wall from `start` to `end`. Refused after the first advance."""
@@ -199,13 +200,13 @@ class Simulation:
 
     @property
     def state(self) -> State:
-        """All particles now; a copy."""
-        return self._dynamics.state
+        """All particles now; read-only, of which `copy` can be changed."""
+        return self._dynamics.state.read_only()
 
     @property
     def initial_state(self) -> State:
-        """All particles at the start; a copy."""
-        return self._initial.copy()
+        """All particles at the start; read-only, of which `copy` can be changed."""
+        return self._initial.copy().read_only()
 
     @property
     def tally(self) -> Tally:

@@ -112,7 +112,7 @@ def test_an_advised_run_of_dsmc_is_as_accurate_as_promised(tmp_path, observable,
     recipe = found.recipe
     assert recipe.engine.name == "dsmc"
     path = gp.run(scene, recipe.engine, 1, recipe.duration, recipe.sample_interval, tmp_path / "run.nc")
-    measured = measure(observable, path)
+    measured = measure(path, observable)
     assert float(measured.estimate) == pytest.approx(float(measured.theory), rel=0.02)
 
 

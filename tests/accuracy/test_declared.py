@@ -59,7 +59,7 @@ def test_all_refuse_alike(kind):
             continue
         refused += 1
         with pytest.raises(gp.SceneError) as caught:
-            measure(name, frames(scene))
+            measure(frames(scene), name)
         assert caught.value.rule == reason, name
         with pytest.raises(gp.SceneError) as caught:
             Target.named(scene, name)
@@ -83,7 +83,7 @@ def test_a_selection_is_refused_before_a_run_as_by_the_function():
         with pytest.raises(gp.SceneError) as before:
             require_defined(name, discs, **selection)
         with pytest.raises(gp.SceneError) as after:
-            measure(name, frames(discs), **selection)
+            measure(frames(discs), name, **selection)
         assert before.value.rule == after.value.rule
 
 

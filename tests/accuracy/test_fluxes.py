@@ -32,7 +32,7 @@ def test_the_heat_flux_is_not_the_pressure(tmp_path):
     """Both are of faces: each component is that of the measured observable, with its freedom."""
     path = gp.run(HEATED, gp.EventDriven(), 1, 400.0, 1.0, tmp_path / "run.nc")
     with gp.open_trajectory(path) as data:
-        found, measured = components(data, "heat_flux"), measure("heat_flux", data)
+        found, measured = components(data, "heat_flux"), measure(data, "heat_flux")
     assert list(found) == ["y low", "y high"]
     for face, one in found.items():
         exact = measured.sel(face=face)

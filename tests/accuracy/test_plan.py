@@ -66,7 +66,7 @@ def test_lags_are_those_of_correlations(tmp_path, observable):
         BOX, coarse.engine, 3, coarse.duration, coarse.sample_interval, tmp_path / "run.nc",
         correlations=coarse.correlations, displacements=coarse.displacements,
     )  # fmt: skip
-    found = measure(observable, path)
+    found = measure(path, observable)
     assert found["lag"][-1] == pytest.approx(coarse.correlations.lags * coarse.correlations.interval)
     error = float((found.error**2).mean() / (found.estimate**2).mean()) ** 0.5
     assert 1.96 * error <= 0.05
@@ -82,9 +82,9 @@ def test_paths_are_followed_however_far_frames_are_apart(tmp_path, observable):
     for path, kept in zip(paths, (recipe.displacements, False), strict=True):
         interval = recipe.sample_interval
         gp.run(scene, gp.EventDriven(), 3, 400 * interval, interval, path, displacements=kept)
-    assert float(measure(observable, paths[0]).estimate) > 0.0
+    assert float(measure(paths[0], observable).estimate) > 0.0
     with pytest.raises(gp.SceneError, match="is too long to follow particles"):
-        measure(observable, paths[1])
+        measure(paths[1], observable)
 
 
 def test_particles_that_start_at_rest_set_the_lags_by_their_collisions_later():
@@ -391,3 +391,33 @@ def test_what_cannot_be_measured_is_not_advised():
     assert is_tabulated(many, "D") and not is_tabulated(few, "D")
     with pytest.raises(gp.SceneError, match="an error needs 16 moving particles or more"):
         plan.piloted(few, "D", 0.1, pilot_seconds=0.2)
+
+
+def test_a_density_is_advised_with_the_impulses_that_an_engine_keeps(tmp_path):
+    """Of which the run is shorter than by counts, which are what other engines have."""
+    container = gp.Container((6.0, 6.0, 8.0), ("periodic", "periodic", "wall"))
+    scene = gp.Scene(container, [gp.Species(20, 0.4, temperature=1.0)], gravity=(0.0, 0.0, -0.5))
+    uneven = replace(scene, species=[replace(scene.species[0], polydispersity=0.2)])
+    (kept,) = Target(scene, "density").tallies(EventDriven())
+    assert kept.to_text() == "z:40"
+    for target, engine in (
+        (Target(scene, "density"), gp.DSMC(0.1)),
+        (Target(scene, "temperature"), EventDriven()),
+        (Target(uneven, "density"), EventDriven()),
+    ):
+        assert target.tallies(engine) == ()
+    made = plan.piloted(scene, "density", 0.02, pilot_seconds=0.4)
+    exact = made.pilots[0]
+    assert exact.component.length(0.01) < 0.5 * exact.counted.length(0.01)
+    for option in made.options:
+        assert (option.noise == exact.component) == (option.engine == EventDriven())
+    own = next(option for option in made.options if option.engine == EventDriven())
+    advised = replace(made, options=(own,))
+    lines = " ".join(_lines(advised, "scene.yaml"))
+    assert "--until density=" in lines and "--impulses z:40" in lines
+    until = gp.Accuracy("density", 0.05)
+    path = gp.run(scene, EventDriven(), 3, None, 1.0, tmp_path / "run.nc", until=until, at_most=400.0)
+    (reached,) = gp.reached_accuracy(path)
+    found = measure("density", path)
+    assert reached.met and found.attrs["estimator"] == "counts and impulses"
+    assert float((found.error**2).mean() / (found.estimate**2).mean()) ** 0.5 < 0.05

@@ -33,7 +33,7 @@ def test_a_row_for_each_species_that_moves(table):
     assert table["count"].values.tolist() == [100, 40, 1]
     rows = table[["count", "temperature", "temperature_error", "mean_speed", "D", "D_error"]].to_dataframe()
     assert rows.index.tolist() == [0, 1, 3] and rows["D"].notna().tolist() == [True, True, False]
-    assert "D of species 3: an error needs 16 moving particles or more" in table.attrs["not_measured"]
+    assert "D of species 3: must cover 768 collisions of a particle or more" in table.attrs["not_measured"]
     assert all("units" in table[name].attrs for name in table.data_vars)
 
 
@@ -41,7 +41,7 @@ def test_what_accepts_a_species_has_its_value_there(path, table):
     motion = [name for name in selecting("species") if name in having(scatter="particles")]
     assert {"D", "msd", "vacf"} <= set(motion)
     for name in motion:
-        found = gp.analysis.measuring.measure(name, path, species=1)
+        found = gp.analysis.measuring.measure(path, name, species=1)
         assert np.array_equal(table[name].sel(species=1), found.estimate)
         assert np.array_equal(table[f"{name}_error"].sel(species=1), found.error)
         assert table[name].attrs["units"] == found.estimate.attrs["units"]

@@ -36,12 +36,12 @@ def test_a_run_of_a_kinetic_equation_is_compared_with_that_equation(made):
     """Of spheres that touch Z is 2.41, the rate 4.77 and D 0.40, not 1, 2.70 and 0.64."""
     model, path = made
     for name in NUMBERS:
-        found = measure(name, path)
+        found = measure(path, name)
         scale = math.hypot(float(found.error), float(found[f"{found.attrs['quantity']}_theory_error"]))
         assert abs(float(found.estimate - found.theory)) <= 3.0 * scale, name
         assert model in found.attrs["source"].lower()
     of_spheres = float(gp.theory.compressibility_factor(DENSE.packing_fraction, 3))
-    assert abs(float(measure("Z", path).theory) - of_spheres) > (1.4 if model == "boltzmann" else 0.005)
+    assert abs(float(measure(path, "Z").theory) - of_spheres) > (1.4 if model == "boltzmann" else 0.005)
 
 
 def test_places_of_points_are_independent(made):
@@ -49,9 +49,9 @@ def test_places_of_points_are_independent(made):
     by 2 % from run to run, that of the 700 waves by 0.6 %: three seeds."""
     model, path = made
     if model == "enskog":
-        assert all(measure(name, path).theory is None for name in OF_PLACES)
+        assert all(measure(path, name).theory is None for name in OF_PLACES)
         return
-    pairs, waves, inserted = (measure(name, path) for name in OF_PLACES)
+    pairs, waves, inserted = (measure(path, name) for name in OF_PLACES)
     assert (pairs.theory == 1.0).all() and (waves.theory == 1.0).all()
     near = pairs.estimate.sel(distance=slice(0.0, 1.0))
     assert float(near.weighted(near["distance"] ** 2).mean()) == pytest.approx(1.0, abs=0.06)
@@ -73,7 +73,7 @@ def test_the_simulation_is_compared_as_its_file(made):
     model, _ = made
     simulation = gp.Simulation(DENSE, gp.DSMC(model=model), seed=3)
     simulation.advance(duration=5.0)
-    assert model in measure("collision_rate", simulation).attrs["source"].lower()
+    assert model in measure(simulation, "collision_rate").attrs["source"].lower()
 
 
 def test_the_flow_that_cells_resolve_adds_to_diffusion():
@@ -113,19 +113,19 @@ def test_fluxes_by_the_boltzmann_equation(tmp_path):
         tmp_path / "run.nc",
         correlations=Correlations(2.0, 10, stress=True),
     )
-    tensor = measure("pressure_tensor", path)
+    tensor = measure(path, "pressure_tensor")
     kinetic = 63.0 / scene.container.volume
     known = tensor.theory.sel(component=["xx", "yy", "zz"])
     assert np.allclose(known, kinetic, rtol=0.02)
     assert (abs(tensor.estimate - tensor.theory) < 3.5 * tensor.error).all()
-    viscosity = measure("shear_viscosity", path)
+    viscosity = measure(path, "shear_viscosity")
     unsure = float(viscosity["shear_viscosity_theory_error"])
     assert abs(float(viscosity.estimate - viscosity.theory)) < 3.0 * math.hypot(
         float(viscosity.error), unsure
     )
-    conductivity = measure("thermal_conductivity", path)
+    conductivity = measure(path, "thermal_conductivity")
     assert float(conductivity.theory) < float(gp.theory.enskog_conductivity(1e-9, 3))
-    assert float(measure("bulk_viscosity", path).theory) == 0.0
+    assert float(measure(path, "bulk_viscosity").theory) == 0.0
 
 
 def test_like_pairs_of_few_particles_have_fewer_partners(tmp_path):
@@ -135,9 +135,9 @@ def test_like_pairs_of_few_particles_have_fewer_partners(tmp_path):
     scene = gp.Scene(gp.Container((side,) * 3, "periodic"), kinds)
     path = gp.run(scene, gp.EventDriven(), 2, 20000.0, 100.0, tmp_path / "run.nc", pairs=True)
     for name in ("pair_rates", "contact_values"):
-        found = measure(name, path)
+        found = measure(path, name)
         assert (abs(found.estimate - found.theory) < 3.0 * found.error).all(), name
-    rates = measure("pair_rates", path).theory
+    rates = measure(path, "pair_rates").theory
     infinite = gp.theory.mixture_collision_rates(
         scene.packing_fraction, 3, [1.0, 1.0], [10, 10], temperature=1.0, masses=[1.0, 1.5]
     )

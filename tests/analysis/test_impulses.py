@@ -16,6 +16,11 @@ from gaspart.trajectory.recipe import read_recipe
 
 A = gp.analysis
 RISE = np.random.default_rng(3)
+COLUMN = gp.Scene(
+    gp.Container((6.0, 6.0, 8.0), ("periodic", "periodic", "wall")),
+    [gp.Species(20, 0.4, temperature=1.0)],
+    gravity=(0.0, 0.0, -0.5),
+)
 
 
 @pytest.mark.parametrize(("pull", "walled"), [(0.0, True), (-1.3, True), (1.3, True), (0.0, False)])
@@ -40,20 +45,22 @@ def test_weights_are_of_the_other_half_and_prefer_what_has_less_noise():
     noise = np.random.default_rng(1).standard_normal((4, 64, 40))
     counted, impulses = 1.0 + noise[0], 1.0 + 0.1 * noise[1]
     impulses[:, 20:] = 1.0 + 10.0 * noise[2, :, 20:]
-    weights = mixture(counted, impulses)
+    weights = mixture(counted, impulses, periodic=False)
     assert (weights[:, :18] > 0.95).all() and (weights[:, 22:] < 0.05).all()
     both = [np.concatenate([noise[3, :32], one[32:]]) for one in (counted, impulses)]
-    changed = mixture(*both)
+    changed = mixture(*both, periodic=False)
+    turned = mixture(*(np.roll(one, 7, axis=1) for one in (counted, impulses)), periodic=True)
+    round_ = mixture(counted, impulses, periodic=True)
+    assert turned == pytest.approx(np.roll(round_, 7, axis=1), rel=1e-9)
+    assert round_[:, 1:-1] == pytest.approx(weights[:, 1:-1], rel=1e-9)
     assert np.array_equal(changed[:32], weights[:32]) and not np.array_equal(changed[32:], weights[32:])
 
 
 @pytest.fixture(scope="module")
 def column(tmp_path_factory):
     """A thin column of spheres that fall, with its impulses."""
-    container = gp.Container((6.0, 6.0, 8.0), ("periodic", "periodic", "wall"))
-    scene = gp.Scene(container, [gp.Species(20, 0.4, temperature=1.0)], gravity=(0.0, 0.0, -0.5))
     path = tmp_path_factory.mktemp("column") / "run.nc"
-    return gp.run(scene, gp.EventDriven(), 5, 600.0, 0.5, path, impulses="z:80")
+    return gp.run(COLUMN, gp.EventDriven(), 5, 600.0, 0.5, path, impulses="z:80")
 
 
 def counted(run):
@@ -64,9 +71,16 @@ def counted(run):
 def test_the_density_of_a_run_has_less_error_with_impulses(column):
     with open_trajectory(column) as run:
         found, other = A.profile(run), A.profile(counted(run), bins=80)
-        row = A.profile(run, bins=20)
+        row, other_bins = A.profile(run, bins=20), A.profile(run, bins=30)
+        layers, plain_layers = (A.field(one, axes="z", cells=20) for one in (run, counted(run)))
+        sideways = A.field(run, axes="x", cells=20)
     assert (found.attrs["estimator"], other.attrs["estimator"]) == ("counts and impulses", "counts")
     assert "--impulses z:200" in other.attrs["note"] and "note" not in found.attrs
+    assert "kept in 80 bins, which 30 do not divide" in other_bins.attrs["note"]
+    assert (
+        layers.attrs["estimator"] == "counts and impulses" and (layers.estimate == row.estimate.values).all()
+    )
+    assert "--impulses z:200" in plain_layers.attrs["note"] and "--impulses x:200" in sideways.attrs["note"]
     inside = other.error > 0.0
     assert float(((other.error / found.error)[inside] ** 2).median()) > 15.0
     assert float(found.estimate.sum()) * 36.0 * 0.1 == pytest.approx(20.0)
@@ -104,12 +118,10 @@ def test_the_density_at_the_floor_is_the_pressure_on_it(column):
 
 
 def test_along_a_periodic_axis_a_gas_is_uniform_in_a_moving_frame_too():
-    container = gp.Container((6.0, 6.0, 8.0), ("periodic", "periodic", "wall"))
-    scene = gp.Scene(container, [gp.Species(20, 0.4, temperature=1.0)], gravity=(0.0, 0.0, -0.5))
-    start = gp.Simulation(scene, gp.EventDriven(), 2).initial_state
+    start = gp.Simulation(COLUMN, gp.EventDriven(), 2).initial_state
     initial = replace(start, velocities=start.velocities + np.array([1.5, 0.0, 0.0]))
     asked = [ImpulseTally("x", 12)]
-    simulation = gp.Simulation(scene, gp.EventDriven(), 2, initial=initial, tallies=asked)
+    simulation = gp.Simulation(COLUMN, gp.EventDriven(), 2, initial=initial, tallies=asked)
     simulation.advance(until=200.0)
     found = A.profile(simulation, axis="x")
     assert found.attrs["estimator"] == "counts and impulses" and found.sizes["position"] == 12
@@ -118,11 +130,21 @@ def test_along_a_periodic_axis_a_gas_is_uniform_in_a_moving_frame_too():
 
 
 def test_a_run_that_is_extended_keeps_its_impulses(tmp_path):
-    container = gp.Container((6.0, 6.0, 8.0), ("periodic", "periodic", "wall"))
-    scene = gp.Scene(container, [gp.Species(20, 0.4, temperature=1.0)], gravity=(0.0, 0.0, -0.5))
-    whole = gp.run(scene, gp.EventDriven(), 1, 20.0, 1.0, tmp_path / "whole.nc", impulses="z:10")
+    whole = gp.run(COLUMN, gp.EventDriven(), 1, 20.0, 1.0, tmp_path / "whole.nc", impulses="z:10")
     short = gp.run(
-        scene, gp.EventDriven(), 1, 10.0, 1.0, tmp_path / "short.nc", impulses="z:10", keep_checkpoint=True
+        COLUMN, gp.EventDriven(), 1, 10.0, 1.0, tmp_path / "short.nc", impulses="z:10", keep_checkpoint=True
     )
     assert gp.resume(short, duration=20.0).read_bytes() == whole.read_bytes()
     assert "--impulses z:10" in " ".join(run_options(whole, read_recipe(whole)))
+
+
+def test_runs_with_different_impulses_are_neither_one_run_nor_replicas(tmp_path):
+    path = gp.run(COLUMN, gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "one.nc", impulses="z:10")
+    bits = path.read_bytes()
+    for n, other in enumerate(("z:20", "x:10", None)):
+        with pytest.raises(gp.SceneError, match="of another run"):
+            gp.run(COLUMN, gp.EventDriven(), 1, 20.0, 0.5, path, impulses=other)
+        apart = gp.run(COLUMN, gp.EventDriven(), 2, 20.0, 0.5, tmp_path / f"{n}.nc", impulses=other)
+        with pytest.raises(gp.SceneError, match=f"impulses = '{other or 'none'}': are z:10 in .*one.nc"):
+            A.replicas("density", [path, apart])
+    assert path.read_bytes() == bits

@@ -51,7 +51,7 @@ def test_it_is_what_a_run_is_refused(tmp_path, name, kept):
     for observable in OBSERVABLES:
         found, before = None, None
         try:
-            measure(observable, path, start=0.0)
+            measure(path, observable, start=0.0)
         except gp.SceneError as error:
             found = error
         try:

@@ -57,7 +57,7 @@ def test_nothing_passes_a_closed_box_on_average():
     scene = gp.Scene(gp.Container((6.0, 6.0, 6.0)), [gp.Species(60, 0.5, temperature=1.0)])
     simulation = gp.Simulation(scene, gp.EventDriven(), seed=1)
     simulation.advance(duration=50.0)
-    found = measure("flux", simulation, species=0)
+    found = measure(simulation, "flux", species=0)
     assert (found.theory == 0.0).all() and abs(float(found.deviation[0])) < 3.0
     assert found["component"].values.tolist() == ["z"]
 
@@ -85,10 +85,10 @@ def test_refusals(streamed):
         ({"species": 1}, "species"),
     ):
         with pytest.raises(SceneError, match=rule):
-            measure("flux", streamed, **{"axis": "x", **selection})
+            measure(streamed, "flux", **{"axis": "x", **selection})
     gas = gp.Scene(gp.Container((8.0, 8.0), ("wall", "periodic")), [gp.Species(20, 0.5, temperature=1.0)])
     simulation = gp.Simulation(gas, gp.EventDriven(), seed=1)
     simulation.advance(duration=5.0)
-    assert np.isfinite(float(measure("flux", simulation).error[0]))
+    assert np.isfinite(float(measure(simulation, "flux").error[0]))
     with pytest.raises(SceneError, match="images pass"):
-        measure("flux", simulation, axis="y")
+        measure(simulation, "flux", axis="y")

@@ -36,13 +36,13 @@ def path(tmp_path_factory):
 
 
 def test_a_gas_at_rest_is_at_rest_and_in_a_wind_it_moves(path):
-    found = measure("velocity", path, axis="x", species=0)
+    found = measure(path, "velocity", axis="x", species=0)
     assert found.estimate.dims == ("component", "position") and (abs(found.theory) < 1e-6).all()
     assert found.estimate.attrs["units"] == "length / time"
     with xr.open_dataset(path) as data:
         wind = np.array([1.5, -0.5, 0.0])
         blown = data.assign(velocities=data["velocities"] + xr.DataArray(wind, dims="spatial"))
-        moved = measure("velocity", blown, axis="x", species=0)
+        moved = measure(blown, "velocity", axis="x", species=0)
     expected = found.estimate + xr.DataArray(wind, dims="component")
     np.testing.assert_allclose(moved.estimate, expected, atol=1e-6)
     np.testing.assert_allclose(moved.theory.isel(position=0), wind, atol=1e-6)
@@ -111,8 +111,8 @@ def test_profiles_of_a_species():
         gp.Scene(container, species, gravity=(0.0, 0.0, -0.2)), gp.EventDriven(), seed=1
     )
     simulation.advance(duration=60.0)
-    parts = [measure("density", simulation, species=kind) for kind in (0, 1)]
-    whole = measure("density", simulation)
+    parts = [measure(simulation, "density", species=kind) for kind in (0, 1)]
+    whole = measure(simulation, "density")
     assert sum(float(one.estimate.sum()) for one in parts) * 36.0 * 0.2 == pytest.approx(90.0)
     np.testing.assert_allclose(parts[0].estimate + parts[1].estimate, whole.estimate)
     assert all(one.theory is None for one in parts)
@@ -127,13 +127,13 @@ def test_the_end_is_that_of_the_frames_that_count(path):
     with xr.open_dataset(path) as data:
         cut = data.isel(frame=slice(81))  # until 20
         for name in ("Z", "msd", "velocity"):
-            expected, found = measure(name, cut), measure(name, path, end=20.0)
+            expected, found = measure(cut, name), measure(path, name, end=20.0)
             assert expected.identical(found)
     with pytest.raises(SceneError, match="end = 0.1: leaves 1 frames"):
-        measure("Z", path, end=0.1)
+        measure(path, "Z", end=0.1)
     simulation = gp.Simulation(GAS, gp.EventDriven(), seed=1)
     simulation.advance(duration=20.0)
-    whole, half = measure("Z", simulation, start=0.0), measure("Z", simulation, start=0.0, end=10.0)
+    whole, half = measure(simulation, "Z", start=0.0), measure(simulation, "Z", start=0.0, end=10.0)
     assert 2 * half["stretches"].size >= whole["stretches"].size and float(half.error) > float(whole.error)
 
 

@@ -125,7 +125,7 @@ def test_refusals():
     still = made(plates(200, 1.0), 5.0)
     for name, scene in (("heat_flux", made(walled, 5.0, "event")), ("wall_shear", still)):
         with pytest.raises(SceneError, match="faces"):
-            measure(name, scene)
+            measure(scene, name)
     slow = plates(2, 1.0)
     slow = replace(slow, species=[replace(slow.species[0], temperature=1e-9)])
     with pytest.raises(SceneError, match="nothing hit"):

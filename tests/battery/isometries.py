@@ -1,6 +1,7 @@
 """The same run seen otherwise: shifted, mirrored, with its axes exchanged, its particles renumbered, from a
 moving frame. Each is applied to a scene, to a state, to the variables of a file, and to a result."""
 
+import json
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -141,6 +142,8 @@ def data_seen(data, view):
             values = view.vectors(view.vectors(values).swapaxes(1, 2)).swapaxes(1, 2)
         elif along == ("pair",):
             values = values[:, pairs_seen(scene, view)]
+        elif along == ("species", "bin"):
+            values = _flux_seen(scene, view, values, tallied_axis(data), data["time"].values)
         elif along == ("cell_spatial",):
             values = values[:, list(view.order)]
         elif name.startswith("piston"):
@@ -150,6 +153,9 @@ def data_seen(data, view):
         changed[name] = (variable.dims, values, variable.attrs)
     new = seen(scene, view)
     result = data.assign(changed).assign_attrs(scene=dump_yaml(new.to_dict()))
+    if "momentum_flux_sum" in data:
+        tally = json.loads(data.attrs["tallies"])[0] | {"axis": AXES[view.axis(tallied_axis(data))]}
+        result = result.assign_attrs(tallies=json.dumps([tally]))
     numbers = data["type"].values
     result = result.assign_coords(
         radius=("atom", data["radius"].values[order], data["radius"].attrs),
@@ -175,6 +181,25 @@ def _energies_seen(result, data, scene, view):
             result["wall_energy"].values + result["wall_shear"].values @ velocity,
         )
     return result.assign({name: (dims, values, data[name].attrs) for name, (dims, values) in added.items()})
+
+
+def tallied_axis(data):
+    """The number of the axis along which a trajectory has impulses."""
+    return AXES.index(json.loads(data.attrs["tallies"])[0]["axis"])
+
+
+def _flux_seen(scene, view, values, axis, time):
+    """Momentum (T, species, bins) that has flown through planes; along a periodic axis up to a constant.
+    What is counted from below has no part of gravity on the particles above, and has it from above."""
+    new = view.axis(axis)
+    if view.velocity[new]:
+        raise NotImplementedError("momentum along the axis of a moving frame")
+    if view.signs[new] < 0.0:
+        pull = 0.0 if scene.gravity is None else scene.gravity[axis]
+        weights = np.array([kind.count * kind.mass * pull for kind in scene.species])
+        values = (values + np.multiply.outer(time, weights)[:, :, None])[:, :, ::-1]
+    values = np.roll(values, round(view.shift[new] * values.shape[2]), axis=2)
+    return values[:, ::-1] if view.renumbered else values
 
 
 def _piston(scene, view, name, values):

@@ -11,7 +11,7 @@ import gaspart as gp
 from gaspart.analysis.run import repeated
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.state.optional_tallies import StressTally
+from gaspart.state.optional_tallies import ImpulseTally, StressTally
 from gaspart.state.state import State
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.reading import open_trajectory
@@ -25,6 +25,8 @@ LAGS = 4
 PERIODIC = "periodic"
 STEPS = 4
 """Of a time step, in an interval between frames."""
+BINS = 8
+"""Of impulses."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,8 @@ class Kind:
     drift: of the initial state, added to what is drawn. moving: the axis along which a moving frame is the
     same scene; mirror: the axis that is mirrored; exchange: the order of the axes in which they are
     exchanged; each is the reason instead where the scene has no such symmetry. steady: why parts of the run
-    may differ, "" if they may not."""
+    may differ, "" if they may not. impulses: whether a run is made that keeps them along the axis `mirror`.
+    """
 
     scene: gp.Scene
     interval: float = 0.125
@@ -42,6 +45,7 @@ class Kind:
     mirror: int | str = 2
     exchange: tuple[int, ...] | str = (2, 0, 1)
     steady: str = ""
+    impulses: bool = False
 
 
 def _scene(lengths, boundary, *species, **rest):
@@ -61,8 +65,10 @@ _AT_REST = "the walls are at rest"
 KINDS = {
     "periodic": Kind(_scene(_CUBE, PERIODIC, _gas())),
     "walls": Kind(_scene((5.0, 5.0, 5.0), "wall", _gas(24)), moving=_AT_REST),
-    "slit": Kind(_scene((4.0, 5.0, 6.0), _SLIT, _gas(24)), interval=0.25),
-    "gravity": Kind(_scene((4.0, 4.0, 8.0), _SLIT, _gas(24), gravity=(0.0, 0.0, -0.25)), interval=0.25),
+    "slit": Kind(_scene((4.0, 5.0, 6.0), _SLIT, _gas(24)), interval=0.25, impulses=True),
+    "gravity": Kind(
+        _scene((4.0, 4.0, 8.0), _SLIT, _gas(24), gravity=(0.0, 0.0, -0.25)), interval=0.25, impulses=True
+    ),
     "lees_edwards": Kind(
         _scene(
             _CUBE,
@@ -81,7 +87,7 @@ KINDS = {
         moving=1,
         mirror=0,
     ),
-    "wind": Kind(_scene((4.0, 5.0, 4.0), PERIODIC, _gas()), drift=(1.5, -0.75, 0.5)),
+    "wind": Kind(_scene((4.0, 5.0, 4.0), PERIODIC, _gas()), drift=(1.5, -0.75, 0.5), impulses=True),
     "piston": Kind(
         _scene((4.0, 4.0, 8.0), _SLIT, _gas(24), faces={"z_high": gp.Piston(16.0, 0.5)}),
         interval=0.25,
@@ -104,9 +110,9 @@ KINDS = {
         )
     ),
     "mixture": Kind(
-        _scene((4.0, 5.0, 4.0), PERIODIC, _gas(20), _gas(12, radius=0.375, mass=4.0)),
+        _scene((4.0, 5.0, 4.0), PERIODIC, _gas(20), _gas(12, radius=0.375, mass=4.0)), impulses=True
     ),
-    "halves": Kind(_scene(_CUBE, PERIODIC, _gas(16), _gas(16))),
+    "halves": Kind(_scene(_CUBE, PERIODIC, _gas(16), _gas(16)), impulses=True),
     "polydisperse": Kind(_scene(_CUBE, PERIODIC, _gas(radius=0.45, polydispersity=0.2))),
     "two": Kind(_scene((2.5, 2.5, 2.5), PERIODIC, _gas(2)), steady="two particles pass a cell too rarely"),
     "ten": Kind(_scene((3.0, 3.0, 3.0), PERIODIC, _gas(10))),
@@ -140,24 +146,35 @@ def runs():
 
 @dataclass(frozen=True)
 class Start:
-    """What a run is made from. initial: its state at time 0, None: that of the scene and the seed."""
+    """What a run is made from. initial: its state at time 0, None: that of the scene and the seed; along: the
+    axis of the impulses that one of its files has, None without such a file."""
 
     scene: gp.Scene
     engine: Engine
     interval: float
     initial: State | None = None
     seed: int = SEED
+    along: int | None = None
+
+    @property
+    def tallies(self):
+        """The impulses that one of its files has, where the engine makes them."""
+        if self.along is None or ImpulseTally.name not in self.engine.tallies:
+            return []
+        return [ImpulseTally("xyz"[self.along], BINS)]
 
     @property
     def forms(self):
         """Form of the file -> arguments of `gaspart.run`: with paths and pairs, with correlations of the
-        motion, and with those of the fluxes, where the engine has them."""
+        motion, with those of the fluxes, and with impulses, where the engine has them."""
         half = self.interval / 2.0
         found = {
             "frames": {"displacements": True, "pairs": self.engine.records_events},
             "correlations": {"displacements": True, "correlations": Correlations(half, LAGS)},
             "fluxes": {"correlations": Correlations(half, LAGS, stress=True)},
         }
+        for tally in self.tallies:
+            found["impulses"] = {"impulses": tally.to_text()}
         if self.scene.shear_rate is not None:  # correlations of the motion have no meaning
             del found["correlations"]
         try:
@@ -187,7 +204,8 @@ def start_of(engine, name, seed=SEED):
     if kind.drift:
         drawn = gp.Simulation(kind.scene, settings, seed).initial_state
         initial = replace(drawn, velocities=drawn.velocities + np.array(kind.drift))
-    return Start(kind.scene, settings, kind.interval, initial, seed)
+    along = kind.mirror if kind.impulses else None
+    return Start(kind.scene, settings, kind.interval, initial, seed, along)
 
 
 @cache
@@ -198,10 +216,11 @@ def recorded(engine, name):
 
 
 @cache
-def repeated_simulation(engine, name):
+def repeated_simulation(engine, name, impulses=False):
     """The frames of the same run as a simulation, which gives them by being run again."""
     start = start_of(engine, name)
-    simulation = gp.Simulation(start.scene, start.engine, start.seed, initial=start.initial)
+    tallies = start.tallies if impulses else []
+    simulation = gp.Simulation(start.scene, start.engine, start.seed, initial=start.initial, tallies=tallies)
     quantum = start.engine.quantum or 0.0
     simulation.advance(until=FRAMES * start.interval + 0.5 * quantum)
     return repeated(simulation, pairs=start.engine.records_events)

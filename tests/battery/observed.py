@@ -26,6 +26,7 @@ ACCUMULATED = ("msd", "vacf")
 AT_LAGS = ("D",)
 """Observables of which the lag is a form of their own, here that of `LAG` frames."""
 LAG = 4
+BY_IMPULSES = " by impulses"
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,12 @@ def traits_of(name):
 
 def plain_name(name):
     """The name of an observable without that of a form of it."""
-    return name.removeprefix("accumulated ").removesuffix(" per axis").removesuffix(" at a lag")
+    return (
+        name.removeprefix("accumulated ")
+        .removesuffix(" per axis")
+        .removesuffix(" at a lag")
+        .removesuffix(BY_IMPULSES)
+    )
 
 
 def names():
@@ -82,6 +88,7 @@ def names():
     found += [f"{name} per axis" for name in selecting("per_axis")]
     found += [f"{name} at a lag" for name in AT_LAGS]
     found += [f"accumulated {name}" for name in ACCUMULATED]
+    found.append(f"density{BY_IMPULSES}")
     return [*found, "by_species", *(f"field {of}" for of in QUANTITIES)]
 
 
@@ -89,6 +96,8 @@ def form_of(name):
     """The form of the file that an observable needs."""
     if name.startswith("accumulated"):
         return "correlations"
+    if name.endswith(BY_IMPULSES):
+        return "impulses"
     return "fluxes" if name in having(needs="fluxes") else "frames"
 
 
@@ -106,7 +115,7 @@ def measured(name, data, axes, start=None):
     if plain in selecting("axis"):
         selection = {"axis": AXES[along]}
     if plain not in COSTLY:
-        return measure(plain, data, start, **selection)
+        return measure(data, plain, start, **selection)
     few = data if start is None else data.isel(frame=data["time"].values >= start - 1e-9)
     few = few.isel(frame=slice(None, None, max(1, (few.sizes["frame"] - 1) // ENOUGH)))
     first = float(few["time"].values[0])

@@ -184,6 +184,9 @@ def divided(data):
         new = replace(scene, species=(half, half))
     else:
         new = replace(scene, species=(replace(first, count=scene.count),))
+        if "momentum_flux_sum" in data:
+            flown = data["momentum_flux_sum"].sum("species", keepdims=True, keep_attrs=True)
+            data = data.drop_vars("momentum_flux_sum").assign(momentum_flux_sum=flown)
     return data.drop_vars(["pair_collisions", "pair"], errors="ignore").assign_attrs(
         scene=dump_yaml(new.to_dict())
     )
@@ -203,6 +206,8 @@ def of_division(engine, name, observables):
             yield Cell(*place, "not defined", "its particles differ")
         elif traits_of(observable).merged:
             yield Cell(*place, "not defined", "it is of each species or pair of species")
+        elif form == "impulses" and len(species) == 1:
+            yield Cell(*place, "not defined", "its file has no sums of the halves")
         else:
             after = outcome(observable, other[form], axes_of(kind))
             yield judged(place, plain(engine, name, observable), after)
@@ -210,14 +215,17 @@ def of_division(engine, name, observables):
 
 def of_simulation(engine, name, observables):
     """The cells of a file against the simulation that it is of."""
-    kind = KINDS[name]
-    again = repeated_simulation(engine, name)
+    kind, run = KINDS[name], recorded(engine, name)
+    again = {"frames": repeated_simulation(engine, name)}
+    if "impulses" in run:
+        again["impulses"] = repeated_simulation(engine, name, impulses=True)
     for observable in observables:
-        place = observable, "simulation", engine, name
-        if form_of(observable) != "frames":
-            yield Cell(*place, "not defined", "a simulation keeps no correlations")
+        place, form = (observable, "simulation", engine, name), form_of(observable)
+        if form not in again:
+            rule = NO_SUMS if form == "impulses" else "a simulation keeps no correlations"
+            yield Cell(*place, "not defined", rule)
             continue
-        after = outcome(observable, again, axes_of(kind))
+        after = outcome(observable, again[form], axes_of(kind))
         yield judged(place, plain(engine, name, observable), after, limit=SINGLE)
 
 

@@ -8,11 +8,12 @@ from itertools import product
 
 import pytest
 from battery import table
-from battery.kinds_of_runs import KINDS, engines, runs
+from battery.kinds_of_runs import KINDS, engines, recorded, runs
 from battery.observed import MEANS, SAMPLED, SINGLE, WITHOUT_NAME, names
 
 from gaspart.analysis.observables import having
 from gaspart.engines import ENGINES
+from gaspart.inspection.energy import energy_line
 from gaspart.scene.features import FEATURES, features
 
 RUNS, NOT_MODELLED = runs()
@@ -43,6 +44,22 @@ def test_observables_change_as_they_state(engine, name):
 def test_runs_from_the_same_state_are_the_same(engine, name):
     broken = [pair for pair in table.pairs(engine, name) if pair.state == "broken"]
     assert not broken, "\n".join(f"{pair.symmetry}: {pair.text} {pair.deviation:.2g}" for pair in broken)
+
+
+EXCHANGE = ("walls", "gravity", "lees_edwards", "plates", "piston", "vibrating", "thermostat")
+CONSERVING = [(engine, name) for engine, name in RUNS if name in EXCHANGE]
+
+
+@pytest.mark.parametrize(("engine", "name"), CONSERVING, ids=[" ".join(run) for run in CONSERVING])
+def test_the_energy_less_what_was_exchanged_is_constant(engine, name):
+    """The referee is a face or a contact that is forgotten: then it is not."""
+    data, scene = recorded(engine, name)["frames"], KINDS[name].scene
+    drift = float(energy_line(scene, data).split()[4])
+    assert drift < 1e-10
+    for counter in ("dissipated_energy", "wall_energy", "thermostat_energy"):
+        if data[counter].values[-1].any():
+            forgotten = data.assign({counter: 0.999 * data[counter]})
+            assert float(energy_line(scene, forgotten).split()[4]) > 1e-6
 
 
 def test_nothing_is_left_out():

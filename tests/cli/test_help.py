@@ -1,18 +1,39 @@
 """The help of the commands, and completion in a shell."""
 
+import re
 import shutil
 import subprocess
 import sys
 
 import pytest
 
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.cli import _COMMANDS, commands, main
+from gaspart.cli.engine_options import engine_settings
 
 
 @pytest.mark.parametrize("name", commands())
 def test_every_command_has_an_example(name):
     text = commands()[name].format_help()
     assert f"  gaspart {name} " in text or f"(gaspart {name} " in text
+
+
+@pytest.mark.parametrize("name", commands())
+def test_the_help_fits_into_a_terminal_of_80_columns(name, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    assert not [line for line in commands()[name].format_help().splitlines() if len(line) > 78]
+
+
+def test_the_help_has_an_observable_a_line_and_settings_of_engines_apart(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    parsers = commands()
+    text = parsers["measure"].format_help()
+    for name in (*OBSERVABLES, "field"):
+        assert re.search(rf"^  {name}(\n {{23}}| ) *\S", text, re.MULTILINE), name
+    usual, _, expert = parsers["run"].format_help().partition("\nsettings of the engines:\n")
+    for name in engine_settings():
+        option = re.compile(rf"^  --(no-)?{name.replace('_', '-')}\b", re.MULTILINE)
+        assert option.search(expert) and not option.search(usual), name
 
 
 @pytest.mark.parametrize(

@@ -31,6 +31,10 @@ def test_a_template_is_a_scene_with_its_command_and_picture(name, tmp_path, monk
     assert (ROOT / f"docs/scenes/{name}.png").stat().st_size < 120_000
 
 
+def test_no_template_is_left_out():
+    assert {path.stem for path in (ROOT / "src/gaspart/cli/templates").iterdir()} == set(templates())
+
+
 def test_a_run_of_the_first_template(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["new", "gas.yaml"]) == 0

@@ -109,7 +109,7 @@ MISTAKES = {
     "misspelt top key": (added("gravitiy: [0.0, -1.0]"), "unknown key; did you mean gravity?"),
     "older name": (added("bodies: []"), "bodies = []: is called particles now"),
     "plural": (scene("radius", "radii"), "unknown key; did you mean radius?"),
-    "no container": (scene("container", "box"), "container = None: is required"),
+    "no container": (scene("container", "box"), "unknown key; here it is container"),
     "no radius": (scene("radius: 0.5, ", ""), "species[0].radius = None: is required"),
     "negative radius": (scene("0.5", "-0.5"), "species[0].radius = -0.5: must be positive"),
     "text for a number": (scene("0.5", "big"), "species[0].radius = 'big': must be a number"),

@@ -83,7 +83,7 @@ def test_event_driven_sums_are_those_of_their_definition(name):
 def moving(scene, engine, drift, duration, seed=2):
     """Two simulations from one state, the second of which has all velocities in a moving frame."""
     still = gp.Simulation(scene, engine, seed=seed, stress=True)
-    state = still.initial_state
+    state = still.initial_state.copy()
     state.velocities += drift
     other = gp.Simulation(scene, engine, seed=seed, stress=True, initial=state)
     for sim in (still, other):

@@ -7,7 +7,7 @@ import gaspart as gp
 from gaspart.rendering.camera import camera_for
 from gaspart.rendering.discs import Canvas
 from gaspart.rendering.frames import parameters_of, particles_of, render
-from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
+from gaspart.rendering.particles import FIXED, DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import picture, pixels_per_length
 
 BLACK = np.zeros((1, 3))
@@ -99,8 +99,24 @@ def test_a_disc_at_a_periodic_face_is_drawn_on_both_sides():
         image = render(simulation, size=(400, 100), colour=white)
         empty = render(gp.Simulation(gp.Scene(scene.container), gp.EventDriven()), size=(400, 100))
         areas.append(float((empty.astype(int) - image)[..., 0].sum()) / 255)
-    # the whole disc, drawn over one face or two; the dark lines of the faces hide a little of it
-    assert areas[1] == pytest.approx(2.0 * areas[0], rel=0.02)
+    # the whole disc, over the wall or in two parts; the dark lines of the faces hide a little of it
+    assert areas[1] == pytest.approx(areas[0], rel=0.03)
+
+
+def test_nothing_is_drawn_beyond_a_periodic_face():
+    scene = gp.Scene(gp.Container((12.0, 6.0), "periodic"), [gp.Species(20, 0.6, temperature=1.0)])
+    image = render(gp.Simulation(scene, gp.EventDriven(search="direct")), size=(200, 104))
+    inside = np.zeros(image.shape[:2], dtype=bool)
+    inside[2:102, 1:199] = True  # the container, with its frame
+    assert (image[~inside] == 255).all() and (image[inside] < 255).any()
+
+
+def test_fixed_particles_are_grey_among_those_coloured_by_speed():
+    fixed = gp.Particle((2.0, 4.0), (0.0, 0.0), 1.0, fixed=True)
+    scene = gp.Scene(gp.Container((16.0, 8.0)), particles=[fixed, gp.Particle((12.0, 4.0), (1.0, 0.0), 1.0)])
+    image = render(gp.Simulation(scene, gp.EventDriven(search="direct")), size=(320, 160))
+    at = image[80, 40], image[80, 240]
+    assert tuple(at[0]) == tuple(round(255 * part) for part in FIXED) and np.ptp(at[1].astype(int)) > 30
 
 
 def test_a_path_a_simulation_and_a_state_give_one_picture(tmp_path):

@@ -15,7 +15,7 @@ import yaml
 from malformed import one_line
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.config import check
+from gaspart.reproduction.config import check, explained
 from gaspart.reproduction.config_files import merged_with_default, read_numbers
 from gaspart.reproduction.cost import predict
 from gaspart.reproduction.validation import judge_config
@@ -103,6 +103,15 @@ def test_each_mistake_is_one_line_with_key_value_and_rule(keys, value, key, rule
     assert refused.value.key == key
     assert rule in refused.value.rule
     assert "\n" not in str(refused.value)
+
+
+def test_what_the_config_of_a_module_lacks_is_named_and_no_folder(tmp_path, monkeypatch):
+    """Where this workflow is a module of another one, there is no config/config.yaml."""
+    monkeypatch.chdir(tmp_path)
+    error = SceneError("points", None, "is required")
+    assert explained(error, {"title": "my gas"}, module=True) is error
+    assert "configfile" in str(explained(error, {}, module=True))
+    assert "config/config.yaml" in str(explained(error, {}, module=False))
 
 
 def test_a_key_that_is_missing_is_named():

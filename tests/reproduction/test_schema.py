@@ -1,4 +1,4 @@
-"""Schemas and the reference page: current, and the same rules as those of the program."""
+"""Schemas and the pages of the reference: current, and the same rules as those of the program."""
 
 import copy
 import re
@@ -12,12 +12,8 @@ from gaspart.reproduction.config import check
 from gaspart.reproduction.config_files import merged_with_default
 from gaspart.reproduction.families.registry import families, settings
 from gaspart.reproduction.points import config_keys, point_keys
-from gaspart.reproduction.schema import (
-    documents,
-    in_words,
-    scene_schema,
-    schema,
-)
+from gaspart.reproduction.reference import documents, in_words
+from gaspart.reproduction.schema import scene_schema, schema
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[2]
@@ -25,7 +21,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.mark.parametrize("path", documents())
 def test_the_generated_files_are_current(path):
-    """If not: python -m gaspart.reproduction.schema."""
+    """If not: python -m gaspart.reproduction.reference."""
     assert (ROOT / path).read_text(encoding="utf-8") == documents()[path]
 
 

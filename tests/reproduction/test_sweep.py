@@ -104,12 +104,12 @@ def test_values_of_a_scene_file_and_of_the_engine_vary(tmp_path):
     over = {"species.0.temperature": [1.0, 4.0], "boxes_per_side": [1, 4]}
     until = gp.Accuracy("pressure", 0.3, face="x low")
     data = swept(tmp_path, over, ["pressure"], scene, until=until, duration=None, at_most=200.0, samples=800)
-    assert data.pressure.dims == (*over, "pressure_face")
-    assert data.pressure_face.values.tolist()[:2] == ["x low", "x high"]
+    assert data.pressure.dims == (*over, "face")
+    assert data.face.values.tolist()[:2] == ["x low", "x high"]
     ratio = data.pressure.isel({"species.0.temperature": 1}) / data.pressure.isel(
         {"species.0.temperature": 0}
     )
-    assert np.all((ratio.mean("pressure_face") > 2.0) & (ratio.mean("pressure_face") < 8.0))
+    assert np.all((ratio.mean("face") > 2.0) & (ratio.mean("face") < 8.0))
     assert np.all(data.duration < 200.0)
 
 
@@ -229,7 +229,7 @@ def test_an_observable_that_some_points_lack_is_nan_there(tmp_path, capfd):
     boundaries = ["periodic", "wall"]
     data = swept(tmp_path, {"container.boundary": boundaries}, ["Z", "pressure"])
     assert np.isfinite(data.Z).values.tolist() == [True, False]
-    assert np.isfinite(data.pressure).all("pressure_face").values.tolist() == [False, True]
+    assert np.isfinite(data.pressure).all("face").values.tolist() == [False, True]
     assert "has no walls" in data.failure.values[0] and "needs a periodic" in data.failure.values[1]
     assert "points[scene.container.boundary=wall]: Z is NaN: Z of" in capfd.readouterr().err
     axes = swept(tmp_path / "D", {"container.boundary": ["periodic", ["periodic", "wall", "wall"]]}, ["D"],

@@ -229,10 +229,13 @@ def test_work_is_counted_by_the_event_driven_engine_only():
         sim.advance(duration=1.0, max_work=5)
 
 
-def test_states_and_tallies_are_copies():
+def test_states_cannot_be_changed_and_copies_of_them_and_tallies_are_copies():
     sim = gp.Simulation(gas(2, 5, 0.1), gp.EventDriven(), seed=1)
-    sim.initial_state.positions[:] = 0
-    sim.state.velocities[:] = 0
+    for state in (sim.initial_state, sim.state):
+        for change in (state.positions, state.velocities, state.masses, state.images):
+            with pytest.raises(ValueError, match="read-only"):
+                change[:] = 0
+        state.copy().velocities[:] = 0
     sim.tally.wall_hits[:] = 7
     assert sim.state.velocities.any()
     assert sim.initial_state.positions.any()

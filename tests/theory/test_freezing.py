@@ -15,9 +15,30 @@ def test_both_branches_of_spheres_meet_at_the_coexistence_pressure():
 
 def test_the_liquid_of_discs_has_the_coexistence_pressure_at_its_end():
     # Nearly: the literature's largest simulation just below freezing.
-    eta, pressure = theory.LIQUID_DISCS
-    assert eta < theory.coexistence_packing_fractions(2)[0]
-    assert pressure == pytest.approx(theory.COEXISTENCE_PRESSURE[2], rel=2e-3)
+    known = theory.literature("pressure", 2)
+    last = known[(known["count"] == 65536) & (known.packing_fraction == 0.698)]
+    assert set(last.source) == {"Bernard 2011", "Engel 2013"}
+    assert last.packing_fraction[0] < theory.coexistence_packing_fractions(2)[0]
+    assert last.value == pytest.approx(theory.COEXISTENCE_PRESSURE[2], rel=2e-3)
+
+
+def test_the_crystal_of_spheres_is_that_of_another_program():
+    """Whose errors are 3 to 6e-6 of Z; by the same runs Speedy's equation is 1.6 to 4.6e-4 low."""
+    known = theory.literature("Z_crystal", 3)
+    distance = theory.etomica_crystal(known.packing_fraction) / known.value - 1.0
+    assert np.abs(distance).max() == pytest.approx(theory.ETOMICA_CRYSTAL_UNCERTAINTY, rel=0.01)
+    low = 1.0 - theory.speedy_crystal(known.packing_fraction) / known.value
+    assert low.min() > 1.6e-4 and low.max() < 4.6e-4
+    dense = np.linspace(0.56, 0.74, 30)
+    assert theory.etomica_crystal(dense) == pytest.approx(theory.speedy_crystal(dense), rel=1.1e-4)
+
+
+def test_fluid_and_crystal_of_one_program_coexist_at_the_pressure_of_another():
+    """11.5681 of etomica's equations, of a crystal without vacancies, and 11.5727(10)."""
+    eta = 0.543284
+    pressure = float(theory.etomica_crystal(eta)) * eta * 6.0 / np.pi
+    assert pressure == pytest.approx(11.5681, abs=2e-4)
+    assert pressure == pytest.approx(theory.COEXISTENCE_PRESSURE[3], rel=5e-4)
 
 
 def test_the_two_crystals_of_spheres_agree():
@@ -36,7 +57,8 @@ def test_free_volume_rules_at_close_packing(dimension):
 
 def test_the_virial_series_is_too_high_for_a_dense_liquid_of_discs():
     eta = 0.68
-    pressure, _ = theory.LIQUID_OF_870_DISCS[eta]
+    known = theory.literature("pressure", 2)
+    (pressure, _) = known.value[known.packing_fraction == eta]
     assert theory.compressibility_factor(eta, 2) * eta * 4.0 / np.pi / pressure == pytest.approx(
         1.028, abs=1e-3
     )

@@ -74,7 +74,7 @@ def test_it_has_the_same_bytes_again_after_a_cut_and_extended(tmp_path):
 
 
 def test_replays_analyses_and_checkpoints_know_the_start():
-    state = gp.Simulation(PLAIN, gp.EventDriven(), 3).state
+    state = gp.Simulation(PLAIN, gp.EventDriven(), 3).state.copy()
     state.velocities *= 2.0
     sim = gp.Simulation(PLAIN, gp.EventDriven(), 5, initial=state)
     sim.advance(until=4.0)
@@ -164,7 +164,7 @@ def test_a_file_that_lacks_the_state_is_refused(tmp_path):
 
 def test_positions_at_the_edges_are_put_inside():
     scene = gp.Scene(gp.Container((8.0, 8.0), ("periodic", "wall")), [gp.Species(2, 0.5)])
-    state = gp.Simulation(scene, ENGINES[0]).state
+    state = gp.Simulation(scene, ENGINES[0]).state.copy()
     state.positions[:] = [[8.0, 0.5 - 2e-7], [-1e-20, 7.5 + 2e-7]]
     taken = state_at_time_zero(scene, state)
     assert np.array_equal(taken.positions, [[0.0, 0.5], [0.0, 7.5]])

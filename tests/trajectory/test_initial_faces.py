@@ -109,7 +109,7 @@ def test_images_that_are_displaced_have_no_place_in_a_plain_container():
 
 
 def test_particles_that_overlap_across_a_sheared_face_are_refused():
-    state = gp.Simulation(replace(sheared(0.2), species=[gp.Species(2, 0.5)]), EVENT).state
+    state = gp.Simulation(replace(sheared(0.2), species=[gp.Species(2, 0.5)]), EVENT).state.copy()
     state.positions[:] = [[1.0, 9.8], [9.0, 0.3]]  # 7.5 below the first is its image
     scene = replace(sheared(0.2), species=[gp.Species(2, 0.5)])
     gp.Simulation(scene, EVENT, initial=replace(state, displaced=1.0))

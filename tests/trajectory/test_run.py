@@ -1,6 +1,5 @@
 """Runs that write trajectories: what is refused, and what happens when something goes wrong."""
 
-import fcntl
 import os
 import subprocess
 import sys
@@ -11,6 +10,7 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
+from gaspart.files import only_process
 from gaspart.trajectory import recording, run, stage
 from gaspart.trajectory.amber import stored_header
 from gaspart.trajectory.checkpoint import checkpoint_path
@@ -85,10 +85,8 @@ def test_a_run_under_way_belongs_to_one_process_and_is_not_replaced_by_another_r
     gp.run(scene, gp.EventDriven(), 1, 1.0, 0.5, path).rename(partial)
     with pytest.raises(gp.SceneError, match=r"run\.nc\.partial.*of another run"):
         gp.run(scene, gp.EventDriven(), 2, 1.0, 0.5, path)
-    with partial.open("rb") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        with pytest.raises(gp.SceneError, match="another process"):
-            gp.resume(path)
+    with only_process(partial), pytest.raises(gp.SceneError, match="another process"):
+        gp.resume(path)
     assert gp.resume(path) == path
     with pytest.raises(gp.SceneError, match="already complete"):
         gp.resume(path)

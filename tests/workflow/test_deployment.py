@@ -58,6 +58,13 @@ def test_another_workflow_uses_it_as_a_module(tmp_path):
     assert report.returncode == 0, report.stdout[-2000:]
 
 
+def test_a_module_without_a_config_is_one_line(tmp_path):
+    (tmp_path / "Snakefile").write_text(SNAKEFILE.replace('configfile: "settings.yaml"', ""))
+    done = Workspace(tmp_path).snakemake("--dry-run", "--cores", "1", source=ROOT)
+    stated = 'is empty: the Snakefile that has the module states `configfile: "..."` above it'
+    assert done.returncode == 2 and done.stdout.splitlines()[-1] == f"gaspart: config = {{}}: {stated}"
+
+
 STAGES = {"warm": 1, "simulate": 3, "measure": 1, "judge": 1, "draw": 1}
 
 

@@ -19,7 +19,6 @@ HOME = "analysis/observables.py"
 WORDS = {
     "analysis/fields.py": "quantities of a field",
     "rendering/view.py": "by what particles are coloured",
-    "reproduction/report/explore.py": "columns of one figure",
     "theory/_arguments.py": "names of arguments",
     "accuracy/column.py": "what differs between two columns of gas",
 }

@@ -104,7 +104,21 @@ agrees.click();
 const dots = [...document.querySelectorAll(".overview .dot")];
 const fold = document.getElementById(dots[0].hash.slice(1)).closest("details"), folded = !fold.open;
 location.hash = dots[0].hash; open();
+const form = document.getElementById("engines"), choices = [...form.querySelectorAll("select")];
+const choose = (select, n) => { select.value = n; select.dispatchEvent(new Event("input")); };
+const answers = [...choices[0].options].map((_, n) => {
+  choose(choices[0], n);
+  return [...choices[2].options].map((_, a) => {
+    choose(choices[2], a);
+    return form.querySelector("output").textContent;
+  });
+});
+const field = form.querySelector('g[data-fraction="0"][data-accuracy="0"]');
+field.dispatchEvent(new MouseEvent("click", { bubbles: true }));
 return {
+  answers, chosen: choices.slice(1).map(select => select.value), fields: form.querySelectorAll("g").length,
+  costs: [...form.querySelectorAll("tbody tr")].map(row => row.cells[1].textContent),
+  options: choices.map(select => select.options.length), first: document.querySelector("h2").id,
   before, up, down, after: rows().length, width: document.documentElement.scrollWidth, folded,
   unfolded: fold.open, dots: dots.length,
   shown: rows().filter(row => !row.hidden).map(row => row.dataset.verdict),
@@ -139,6 +153,11 @@ def test_the_report_reads_and_clicks_on_a_phone_and_on_a_desk(smoke, tmp_path, w
     assert len(found["images"]) >= 2 * len(FIGURES) and min(found["images"]) > 0
     assert found["films"] == len(list((smoke.path / "results/smoke/animations").glob("*.mp4")))
     assert found["width"] <= width and found["font"] >= 12.0
+    assert found["first"] == "which-engine" and found["chosen"] == ["0", "0"]
+    assert found["fields"] == found["options"][1] * found["options"][2] and all(found["costs"])
+    answers = [answer for of in found["answers"] for answer in of]
+    assert len(answers) == found["options"][0] * found["options"][2] and "NaN" not in "".join(answers)
+    assert any("of processor time" in answer for answer in answers)
     assert found["broken"] == 0 and found["references"] >= 30 and found["posters"]
 
 

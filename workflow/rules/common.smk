@@ -46,7 +46,8 @@ if workflow.is_main_process:
                 raise SceneError("folder", os.path.abspath(folder), problem)
     except SceneError as error:
         # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
-        print(f"gaspart: {explained(error)}", file=sys.stderr)
+        used = Path(str(workflow.main_snakefile)).resolve() != ROOT / "Snakefile"
+        print(f"gaspart: {explained(error, config, used)}", file=sys.stderr)
         sys.exit(2)
 else:
     read_numbers(config, files)

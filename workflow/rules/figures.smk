@@ -43,7 +43,7 @@ rule report:
         posters=expand("<results>/animations/{animation}.jpg", animation=ANIMATIONS),
         template=str(FOLDER / "workflow/report/report.html.j2"),
         style=str(FOLDER / "workflow/report/page.css"),
-        behaviour=[str(FOLDER / "workflow/report" / name) for name in ("page.js", "explore.js")],
+        behaviour=[str(FOLDER / "workflow/report" / name) for name in ("page.js", "engines.js", "states.js")],
         findings=str(FOLDER / "workflow/report/findings.yaml"),
         references=str(FOLDER / "workflow/report/references.yaml"),
     output:

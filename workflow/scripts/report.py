@@ -71,6 +71,7 @@ with job(snakemake):
             )
         )
     of_chapter = page.by_chapter(sections)
+    measured = dict(zip(params.figures, given.datasets, strict=True))
     films = page.films([Path(path) for path in given.films], params.one_file)
     posters = {Path(path).stem: page.address(Path(path), params.one_file) for path in given.posters}
     environment = jinja2.Environment(
@@ -79,7 +80,8 @@ with job(snakemake):
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["number"] = "{:.5g}".format
-    sources = references.read_references(given.references)
+    texts = [*captions.values(), *(row[key] for row in claims for key in ("source", "allowance_source"))]
+    sources = references.used(texts, references.read_references(given.references))
     environment.filters["cite"] = lambda text: Markup(references.linked(str(escape(text)), sources))
     text = environment.get_template(Path(given.template).name).render(
         title=params.title,
@@ -96,7 +98,8 @@ with job(snakemake):
         findings=page.findings(read_yaml(given.findings), claims),
         headline=page.headline(claims),
         verdicts=page.verdicts(claims),
-        explore=explore.explanations(dict(zip(params.figures, given.datasets, strict=True))),
+        states=explore.states(measured),
+        engines=explore.choice_of_engine(measured),
         references=sources,
         words=table.COUNTED,
         kinds=table.PLURALS,

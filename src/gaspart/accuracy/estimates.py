@@ -99,7 +99,7 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
         if observable == "pressure":
             return _pressures(run)
         time = float(run.time[-1] - run.time[0])
-    declared, found = OBSERVABLES[observable], measure(observable, data, start)
+    declared, found = OBSERVABLES[observable], measure(data, observable, start)
     parts = [np.asarray(of, dtype=float) for of in (found.estimate, found.error, _freedom(found))]
     value, error, freedom = np.broadcast_arrays(*parts)
     known, names, places = np.isfinite(value) & np.isfinite(error), [""], (1, 1)

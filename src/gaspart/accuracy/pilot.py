@@ -24,6 +24,7 @@ from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
 from gaspart.simulation import Simulation
+from gaspart.state.optional_tallies import tally_to_dict
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.run import WriteOptions, extend, record
@@ -58,14 +59,16 @@ class Pilot:
 
     speed: processor seconds per unit of time; seconds: that the pilot took, 0 if it was kept from before;
     component: the one that is known worst, None where the observable could not be measured, for the reason in
-    `rule`; interval: between frames; settled: the time from which on the run is steady (`settling_time`);
-    path: its file, None of a run that failed.
+    `rule`; counted: the same without the impulses that the run has kept, None if it has none; interval:
+    between frames; settled: the time from which on the run is steady (`settling_time`); path: its file, None
+    of a run that failed.
     """
 
     engine: Engine
     speed: float
     seconds: float = 0.0
     component: Component | None = None
+    counted: Component | None = None
     interval: float = math.inf
     settled: float = 0.0
     rule: str = ""
@@ -97,7 +100,8 @@ def speed_of(target: Target, engine: Engine) -> float:
     were compiled. Raises SceneError for a scene that the engine does not model."""
     if target.correlated:  # samples take longer than what happens between them
         return _speed_of_sampling(target, engine)
-    simulation = Simulation(target.scene, engine, SEED, initial=target.start)
+    tallies = target.tallies(engine)
+    simulation = Simulation(target.scene, engine, SEED, initial=target.start, tallies=tallies)
     quantum = simulation.engine.quantum
     stretch = quantum or 1e-3 * target.crossing
     simulation.advance(duration=4.0 * stretch)  # compiles
@@ -136,7 +140,7 @@ def _make(
     recipe = Recipe(
         target.scene, engine, SEED, duration, interval,
         displacements=displacements, correlations=correlations,
-        pairs=target.declared.needs == "pairs", initial=target.start,
+        pairs=target.declared.needs == "pairs", initial=target.start, tallies=target.tallies(engine),
     )  # fmt: skip
     return record(recipe, path, WriteOptions(overwrite=True, keep_checkpoint=True))
 
@@ -186,13 +190,19 @@ def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, left
     with open_trajectory(path) as trajectory:
         frames = trajectory["time"].values
         found = _measured(trajectory, target)
-    blank = Pilot(engine, speed, took, None, float(frames[1] - frames[0]), settled, path=path)
+        counted = _measured(trajectory.assign_attrs(tallies="[]"), target) if target.tallies(engine) else ""
+    blank = Pilot(engine, speed, took, None, None, float(frames[1] - frames[0]), settled, path=path)
     if settled > EQUILIBRATION * frames[-1]:
         found = f"is not steady yet at the time {frames[-1]:.3g}"
     if isinstance(found, str):
         return replace(blank, rule=found)
-    worst = max(found.values(), key=lambda one: one.accuracy)
-    return replace(blank, component=worst)
+    plain = None if isinstance(counted, str) else _worst(counted)
+    return replace(blank, component=_worst(found), counted=plain)
+
+
+def _worst(found: dict[str, Component]) -> Component:
+    """The component that is known worst."""
+    return max(found.values(), key=lambda one: one.accuracy)
 
 
 def _steadied(path: Path) -> float:
@@ -235,5 +245,6 @@ def _digest(target: Target, engine: Engine, seconds: float) -> str:
     kind = "motion" if target.correlated else target.declared.samples
     if target.declared.needs in KEPT:
         kind = target.declared.needs
-    content = [target.scene.to_dict(), engine_to_dict(engine), kind, seconds, source_digest()]
+    kept = [tally_to_dict(tally) for tally in target.tallies(engine)]
+    content = [target.scene.to_dict(), engine_to_dict(engine), kind, kept, seconds, source_digest()]
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:24]

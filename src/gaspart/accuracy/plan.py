@@ -134,7 +134,7 @@ class Plan:
         return Recipe(
             scene, engine, 1, fixed, interval,
             displacements=target.needs_paths, correlations=correlations, until=until,
-            pairs=target.declared.needs == "pairs",
+            pairs=target.declared.needs == "pairs", tallies=target.tallies(engine),
         )  # fmt: skip
 
     def _until(self, duration: float) -> Until:
@@ -238,7 +238,8 @@ def _options(trials: Trials, budget: float | None) -> list[Option]:
         most = min(affordable, _longest(target, longest), target.span[1])
         limits = _least(target, one.engine, longest), most
         bias = trials.bias(one)
-        options.append(Option(one, bias, longest.component, cost, trials.accuracy, *limits))
+        noise = trials.noise(one.engine)
+        options.append(Option(one, bias, noise, cost, trials.accuracy, *limits))
     return ordered(options)
 
 

@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING
 from gaspart.accuracy.estimates import LEAST_FREEDOM, bound, components, of_face
 from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT
 from gaspart.errors import SceneError
+from gaspart.trajectory.opening import run_path
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
 from gaspart.trajectory.until import Requirement, Until, examined_before
@@ -113,7 +114,7 @@ def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
 
     An empty list for a run of a fixed duration. Raises SceneError as `open_trajectory` does.
     """
-    until = read_recipe(path).until
+    until = read_recipe(run_path(path)).until
     if until is None:
         return []
     with open_trajectory(path) as data:

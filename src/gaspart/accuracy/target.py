@@ -10,6 +10,7 @@ import numpy as np
 
 from gaspart.accuracy.conditions import Conditions, known_conditions
 from gaspart.analysis.diffusion import LINEAR_FROM
+from gaspart.analysis.impulses import USUAL_BINS
 from gaspart.analysis.motion import MOST_FRAMES
 from gaspart.analysis.observables import (
     OBSERVABLES,
@@ -23,9 +24,11 @@ from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, reference_engine
 from gaspart.engines.dsmc.rates import rates
 from gaspart.errors import SceneError
+from gaspart.scene.faces import wall_of
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
+from gaspart.state.optional_tallies import ImpulseTally, useful_impulses
 from gaspart.state.state import State
 from gaspart.trajectory.correlator import Correlations
 
@@ -60,6 +63,7 @@ class Target:
         """From a name as on the command line: `Z`, or `pressure:x low`. Raises SceneError for an unknown one,
         one that the scene does not have, and a wall that is not there."""
         observable, colon, face = str(name).partition(":")
+        face = wall_of(face)
         known(observable)
         walls = walls_of(observable, scene)
         if scene.count:  # an empty one has no advice at all
@@ -143,6 +147,12 @@ class Target:
     def correlated(self) -> bool:
         """Whether the run accumulates correlations."""
         return self.declared.lags > 0
+
+    def tallies(self, engine: Engine) -> tuple[ImpulseTally, ...]:
+        """The optional tallies that make the observable more accurate in a run by an engine."""
+        if not self.declared.by_impulses:
+            return ()
+        return useful_impulses(self.scene, engine.tallies, self.scene.dimension - 1, USUAL_BINS)
 
     @property
     def span(self) -> tuple[float, float]:

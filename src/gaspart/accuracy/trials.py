@@ -10,6 +10,7 @@ from typing import TypeAlias
 
 from gaspart.accuracy.candidates import candidates, suited
 from gaspart.accuracy.conditions import Conditions, measured_conditions
+from gaspart.accuracy.estimates import Component
 from gaspart.accuracy.noise import half_width
 from gaspart.accuracy.pilot import Pilot, require_defined, run_pilot, speed_of
 from gaspart.accuracy.target import Target
@@ -126,6 +127,17 @@ class Trials:
         if target.observable == "pressure" and not target.face:
             rule += f", or state a wall, as in pressure:{target.scene.container.walls[0]}"
         raise SceneError("observable", target.observable, rule)
+
+    def noise(self, engine: Engine) -> Component:
+        """Of the observable in a run by an engine: of one that keeps impulses that in a pilot with these, of
+        any other that of counts. Raises SceneError as `reference`."""
+        with_impulses = [one for one in self.known if one.counted]
+        if with_impulses and self.target.tallies(engine):
+            found = max(with_impulses, key=lambda one: one.measured).component
+        else:
+            found = self.reference.counted or self.reference.component
+        assert found is not None
+        return found
 
     def _is_accurate(self, pilot: Pilot) -> bool:
         one = self._candidate(pilot.engine)

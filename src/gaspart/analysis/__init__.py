@@ -7,4 +7,4 @@ used. `lyapunov_exponent` takes a simulation that has recorded its events.
 
 from gaspart.public import attach as _attach
 
-__getattr__, __dir__, __all__ = _attach(__name__)
+__getattr__, __dir__, __all__ = _attach(__name__, for_users=True)

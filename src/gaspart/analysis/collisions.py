@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from itertools import pairwise
 from pathlib import Path
 
@@ -20,11 +19,12 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
-from gaspart.files import FileKind, begins_with, descriptor_path, open_regular, writing
+from gaspart.files import FileKind, begins_with, open_regular, writing
 from gaspart.keys.values import count_of, number
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
+from gaspart.system import descriptor_path, memory
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.trajectory.provenance import git_revision, versions
 
@@ -129,8 +129,8 @@ COLLISIONS = FileKind("a data set of collisions written by gaspart", _is_collisi
 def _check_memory(collisions: int, scene: Scene) -> None:
     """Raise SceneError for more collisions than this machine can hold, twice."""
     needed = 16.0 * collisions * (9 + scene.dimension)
-    there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    if needed > there:
+    there = memory()
+    if there is not None and needed > there:
         rule = f"needs {needed / 1e9:.3g} GB of memory; this machine has {there / 1e9:.3g} GB"
         raise SceneError("collisions", collisions, rule)
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.impulses import kept
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.run import Source
@@ -20,6 +21,7 @@ from gaspart.analysis.statistics import means_of
 from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError, shown
 from gaspart.simulation import Simulation
+from gaspart.state.optional_tallies import ImpulseTally
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.yaml_text import parse_yaml
 
@@ -41,7 +43,8 @@ def replicas(
 
     Raises SceneError for fewer than two runs, runs of different scenes or engines, with the first difference,
     two that are the same bit for bit (of one initial state and one seed, or of one initial state in a scene
-    that draws nothing afterwards), curves at different places, and as the observable's function does.
+    that draws nothing afterwards), curves at different places, as densities in the bins of different
+    impulses that runs have kept, and as the observable's function does.
     """
     if isinstance(sources, str | Path | Simulation | xr.Dataset) or len(sources) < 2:
         raise SceneError("sources", sources, "must be a list of two runs or more")
@@ -52,15 +55,15 @@ def replicas(
             recipe = _recipe(run, str(source) if isinstance(source, str | Path) else f"run {number}")
             _check_replica(recipe, recipes)
             recipes.append(recipe)
-            found.append(measure(name, run, start, end, **selection))
-    return _mean(found)
+            found.append(measure(run, name, start, end, **selection))
+    return _mean(found, recipes)
 
 
 @dataclass(frozen=True)
 class _Recipe:
     """What a run was made from, and what it has become. name: of the run, for its user; settings: its scene
     and engine; seed; times: of its states, all until the last one if `every`; state: the bits of that at a
-    time, as a file has them."""
+    time, as a file has them; impulses: what it has kept of them."""
 
     name: str
     settings: dict[str, Any]
@@ -68,6 +71,7 @@ class _Recipe:
     times: np.ndarray
     every: bool
     state: Callable[[float], bytes]
+    impulses: str
 
 
 def _recipe(run: Any, name: str) -> _Recipe:
@@ -75,13 +79,20 @@ def _recipe(run: Any, name: str) -> _Recipe:
     if isinstance(run, Simulation):
         settings = {"scene": run.scene.to_dict(), "engine": engine_to_dict(run.engine)}
         times = np.array([0.0, run.time])
-        return _Recipe(name, settings, str(run.seed), times, True, partial(_simulated, run))
+        tally = next((one for one in run.tallies if isinstance(one, ImpulseTally)), None)
+        return _Recipe(name, settings, str(run.seed), times, True, partial(_simulated, run), _named(tally))
     if not isinstance(run, xr.Dataset) or not {"scene", "engine", "seed"} <= set(run.attrs):
         raise SceneError("sources", type(run).__name__, "must be trajectories, their paths or simulations")
     settings = {"scene": parse_yaml(run.attrs["scene"]), "engine": json.loads(run.attrs["engine"])}
     frames = {one: run[one].values for one in ("time", "coordinates", "velocities")}
     stored = partial(_stored, frames)
-    return _Recipe(name, settings, str(run.attrs["seed"]), frames["time"], False, stored)
+    seed, impulses = str(run.attrs["seed"]), _named(kept(run))
+    return _Recipe(name, settings, seed, frames["time"], False, stored, impulses)
+
+
+def _named(tally: ImpulseTally | None) -> str:
+    """What a run has kept of impulses, as its user asked for it."""
+    return "none" if tally is None else tally.to_text()
 
 
 def _stored(frames: dict[str, np.ndarray], time: float) -> bytes:
@@ -144,13 +155,16 @@ def _difference(one: Any, two: Any, key: str = "") -> tuple[str, Any, Any] | Non
     return next((difference for difference in found if difference), None)
 
 
-def _mean(found: list[Observable]) -> Observable:
-    """The mean of independent measurements of one observable."""
+def _mean(found: list[Observable], recipes: list[_Recipe]) -> Observable:
+    """The mean of independent measurements of one observable, of runs with these recipes."""
     first, quantity = found[0], str(found[0].attrs["quantity"])
     dims = first.estimate.dims
-    for one in found[1:]:
+    for one, recipe in zip(found[1:], recipes[1:], strict=True):
         same = one.estimate.shape == first.estimate.shape
         if not same or any(not np.array_equal(one[dim], first[dim]) for dim in dims if dim in first.coords):
+            if recipe.impulses != recipes[0].impulses:
+                rule = f"are {recipes[0].impulses} in {recipes[0].name}: {quantity} is in the bins of these"
+                raise SceneError("impulses", recipe.impulses, rule, recipe.name)
             rule = "have their values at different places: let all have one sample_interval and duration"
             raise SceneError("sources", quantity, rule)
     each = np.array([one.estimate.values for one in found])

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.analysis.impulses import mixed_density
+from gaspart.analysis.impulses import estimator, mixed_density
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.profiles import Cells, with_freedom
 from gaspart.analysis.run import Run, Source, open_run, selected
@@ -45,9 +45,10 @@ def field(
         numbers = _numbers(cells, len(along))
         members = np.flatnonzero(run.moving)[selected(run, species, None)]
         cells = Cells(run, members, tuple(along), tuple(numbers))
-        found = None
+        found, attributes = None, dict[str, str]()
         if of == "density" and len(along) == 1:
             found = mixed_density(run, along[0], numbers[0], species)
+            attributes = estimator(run, along[0], numbers[0], found is not None)
         if found is None:
             found = cells.temperature(local=True) if of == "temperature" else getattr(cells, of)()
         coordinates: dict[str, Any] = {}
@@ -61,6 +62,7 @@ def field(
             "temperature": ("energy", "temperature"),
         }[of]
         result = observable(of, coordinates, found.values, found.errors, units=units, long_name=name)
+        result.attrs |= attributes
         return with_freedom(result, found)
 
 

@@ -13,15 +13,16 @@ import json
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 
 from gaspart.analysis.profiles import BLOCKS, LEAST_FRAMES, Cells, Means, ratio
 from gaspart.analysis.run import Run
 from gaspart.engines import ENGINES
-from gaspart.errors import SceneError
 from gaspart.scene.impulses import face_temperatures
-from gaspart.state.optional_tallies import ImpulseTally, tally_from_dict
+from gaspart.state.optional_tallies import ImpulseTally, tally_from_dict, useful_impulses
 
-_BINS = 40
+USUAL_BINS = 40
+"""Of a profile, unless others are asked for or the run has kept impulses."""
 _ROUNDING = 1e-10
 """Part of the highest density that is attributed to rounding."""
 _GROUPS = 16
@@ -88,16 +89,16 @@ class Carried:
         return found
 
 
-def kept(run: Run) -> ImpulseTally | None:
+def kept(data: xr.Dataset) -> ImpulseTally | None:
     """What the file of a run has of impulses."""
-    tallies = map(tally_from_dict, json.loads(run.data.attrs.get("tallies", "[]")))
+    tallies = map(tally_from_dict, json.loads(data.attrs.get("tallies", "[]")))
     return next((tally for tally in tallies if isinstance(tally, ImpulseTally)), None)
 
 
 def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> np.ndarray | None:
     """(T - 1, bins) moving particles in each bin times the time, in each interval between frames. None if
     the run has not kept what it needs."""
-    has = kept(run)
+    has = kept(run.data)
     if has is None or has.axis != "xyz"[axis] or has.bins % bins:
         return None
     rows = [n for n in np.unique(run.species) if species is None or n == species]
@@ -179,16 +180,16 @@ def _mean_in(cells: np.ndarray, values: np.ndarray, default: np.ndarray) -> np.n
     return np.divide(total, number, out=default, where=number > 0)
 
 
-def mixture(counted: np.ndarray, impulses: np.ndarray) -> np.ndarray:
+def mixture(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.ndarray:
     """(K, bins) weights of impulses in the mixture with counts, of the blocks (K, bins) of both: those of
-    each half from the other one, from 0 to 1."""
+    each half from the other one, from 0 to 1. periodic: whether the first bin is next to the last one."""
     half = len(counted) // 2
-    first = _weights(counted[:half], impulses[:half])
-    second = _weights(counted[half:], impulses[half:])
+    first = _weights(counted[:half], impulses[:half], periodic)
+    second = _weights(counted[half:], impulses[half:], periodic)
     return np.where(np.arange(len(counted))[:, None] < half, second, first)
 
 
-def _weights(counted: np.ndarray, impulses: np.ndarray) -> np.ndarray:
+def _weights(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.ndarray:
     """(bins,) those with which the means of these blocks have the least variance, shared with the bins near
     by."""
     groups = np.arange(len(counted)) * min(_GROUPS, len(counted)) // len(counted)
@@ -197,15 +198,16 @@ def _weights(counted: np.ndarray, impulses: np.ndarray) -> np.ndarray:
     means = [np.add.reduceat(one, starts) / sizes for one in (counted, counted - impulses)]
     own, apart = (one - one.mean(axis=0) for one in means)
     reach = max(1, round(_NEIGHBOURS * counted.shape[1]))
-    common, square = (_near(one.sum(axis=0), reach) for one in (own * apart, apart**2))
+    common, square = (_near(one.sum(axis=0), reach, periodic) for one in (own * apart, apart**2))
     return np.clip(np.divide(common, square, out=np.zeros(len(common)), where=square > 0.0), 0.0, 1.0)
 
 
-def _near(values: np.ndarray, reach: int) -> np.ndarray:
+def _near(values: np.ndarray, reach: int, periodic: bool) -> np.ndarray:
     """The sum of each value and those up to `reach` places away."""
-    whole = np.concatenate([[0.0], np.cumsum(values)])
-    places = np.arange(len(values))
-    return whole[np.minimum(places + reach + 1, len(values))] - whole[np.maximum(places - reach, 0)]
+    extended = np.pad(values, reach, "wrap" if periodic else "constant")
+    whole = np.concatenate([[0.0], np.cumsum(extended)])
+    width = 2 * reach + 1
+    return np.asarray(whole[width:] - whole[:-width])
 
 
 def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means | None:
@@ -228,7 +230,8 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
     impulses[np.abs(impulses) < _ROUNDING * impulses.max()] = 0.0
     counts = cells.grid.sums(cells.cells[1:], None, blocks) * (len(members) / len(stored))
     counted = counts / (np.bincount(blocks)[:, None] * volume)
-    mixed = counted + mixture(counted, impulses) * (impulses - counted)
+    weights = mixture(counted, impulses, run.periodic[axis])
+    mixed = counted + weights * (impulses - counted)
     shares = mixed.mean(axis=0) / mixed.mean(axis=0).sum()
     mixed += (len(members) / volume - mixed.sum(axis=1))[:, None] * shares  # weights differ from bin to bin
     return ratio(mixed * time, np.broadcast_to(time, mixed.shape))
@@ -236,24 +239,21 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
 
 def default_bins(run: Run, axis: int, of: str) -> int:
     """The number of bins along an axis: of a density those of the impulses that the run has kept."""
-    has = kept(run)
-    return has.bins if of == "density" and has is not None and has.axis == "xyz"[axis] else _BINS
+    has = kept(run.data)
+    return has.bins if of == "density" and has is not None and has.axis == "xyz"[axis] else USUAL_BINS
 
 
-def estimator(run: Run, axis: int, by_impulses: bool) -> dict[str, str]:
+def estimator(run: Run, axis: int, bins: int, by_impulses: bool) -> dict[str, str]:
     """Attributes of a density: of what it was estimated; and if that was counts alone, where impulses would
-    have served, how a run keeps them."""
+    have served, which bins do or how a run keeps them."""
     if by_impulses:
         return {"estimator": "counts and impulses"}
-    found = {"estimator": "counts"}
+    found, has = {"estimator": "counts"}, kept(run.data)
     engine = json.loads(run.data.attrs.get("engine", "{}")).get("name")
-    if engine in ENGINES and ImpulseTally.name in ENGINES[engine].tallies:
-        asked = ImpulseTally("xyz"[axis], 200)
-        try:
-            asked.check(run.scene)
-        except SceneError:
-            return found
-        found["note"] = (
-            f"by counts; a run with --impulses {asked.to_text()} makes it several times as accurate"
-        )
+    tallies = ENGINES[engine].tallies if engine in ENGINES else ()
+    for asked in useful_impulses(run.scene, tallies, axis, 200):
+        if has is None or has.axis != asked.axis:
+            found["note"] = f"by counts; a run with --impulses {asked.to_text()} makes it more accurate"
+        elif has.bins % bins:
+            found["note"] = f"by counts; impulses are kept in {has.bins} bins, which {bins} do not divide"
     return found

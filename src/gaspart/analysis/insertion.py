@@ -147,8 +147,7 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
     places = count_of("places", places, least=1)
     with open_run(source, start) as run:
         require_defined("chemical_potential", run.scene)
-        if run.is_subset:
-            raise SceneError("follow", run.data.sizes["atom"], f"needs all {run.count} particles in the file")
+        run.require_all()
         if len(run.time) <= STRETCHES:
             raise SceneError("frames", len(run.time), f"an error needs {STRETCHES + 1} or more")
         frames = slice(None, None, -(-len(run.time) // MOST_FRAMES))

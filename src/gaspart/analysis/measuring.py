@@ -17,17 +17,20 @@ if TYPE_CHECKING:
 
 
 def measure(
-    name: str, trajectory: Source, start: float | None = None, end: float | None = None, **selection: Any
+    source: Source, observable: str, start: float | None = None, end: float | None = None, **selection: Any
 ) -> Observable:
-    """An observable of a trajectory or a simulation; start, and what `selection` states (see
-    `Named.selections`): as of the functions of `gaspart.analysis`; end: the time until which frames count, by
-    default all. Without a start the first quarter of what is left does not count. Raises SceneError for an
-    unknown name, a selection that the observable does not have, as `until_time` and as that function does."""
-    one = OBSERVABLES[known(name)]
-    require_selection(name, selection)
+    """An observable of a trajectory (its path, or an open one) or a simulation, by its name as on the command
+    line: `measure("run.nc", "pressure")`.
+
+    start, and what `selection` states, such as species=1 or axis="x" (see `Named.selections`): as of the
+    functions of `gaspart.analysis`; end: the time until which frames count, by default all. Without a start
+    the first quarter of what is left does not count. Raises SceneError for an unknown name, a selection that
+    the observable does not have, as `until_time` and as that function does."""
+    one = OBSERVABLES[known(observable)]
+    require_selection(observable, selection)
     function = getattr(analysis, one.function)
-    with until_time(trajectory, end, one.needs == "pairs") as source:
-        found: Observable = function(source, start=start, **one.arguments, **selection)
+    with until_time(source, end, one.needs == "pairs") as part:
+        found: Observable = function(part, start=start, **one.arguments, **selection)
     return found
 
 

@@ -64,7 +64,7 @@ def mean_squared_displacement(
 
     Of a run with correlations and displacements the lags are those of the correlations, and all samples
     count, unless lags, species, particles or per_axis are given. Theory: that of Enskog's diffusion
-    coefficient and an exponential velocity correlation. Raises SceneError for fewer than 16 moving particles,
+    coefficient and the linear Boltzmann equation. Raises SceneError for fewer than 16 moving particles,
     unless they are selected, frames at uneven times, and frames too far apart to follow particles across
     periodic faces.
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import io
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import xarray as xr
@@ -14,6 +14,7 @@ from gaspart.analysis.estimate import concise
 from gaspart.analysis.observables import name_of
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
+from gaspart.scene.faces import wall_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +32,20 @@ STRETCHES = 20
 """Number of stretches of a run, whose means a plot of a scalar shows."""
 
 
-class Observable(xr.Dataset):
+class ByFace(xr.Dataset):
+    """A Dataset that may have the dimension `face`, of names such as `x low`."""
+
+    __slots__ = ()
+
+    def sel(self, *given: Any, **named: Any) -> Self:
+        """As of a Dataset; a face by either of its names, `x_low` or `x low`."""
+        for places in (*(one for one in given if isinstance(one, dict)), named):
+            if "face" in places:
+                places["face"] = wall_of(places["face"])
+        return super().sel(*given, **named)
+
+
+class Observable(ByFace):
     """The result of a function of `gaspart.analysis`.
 
     Variables: the quantity, by the name in the attribute `quantity`; the same with the suffix _error, one

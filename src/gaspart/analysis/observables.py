@@ -277,6 +277,8 @@ OBSERVABLES: dict[str, Named] = {
         selections=("axis", "species"),
         conditions=(where.unsheared, where.has_axis, where.has_species),
         theory="places.density",
+        by_impulses=True,
+        ends_runs=True,
     ),
     "velocity": Named(
         title="mean velocity",
@@ -400,7 +402,9 @@ TOO_SHORT = ("frames", "duration", "collisions", "wall_hits", "start", "D")
 def known(name: object) -> str:
     """The name of an observable. Raises SceneError for any other value."""
     if not isinstance(name, str) or name not in OBSERVABLES:
-        raise SceneError("observable", name, unknown_word(name, OBSERVABLES, "observable"))
+        here = [one for one, declared in OBSERVABLES.items() if declared.function == name]
+        rule = f"is called {here[0]} here" if here else unknown_word(name, OBSERVABLES, "observable")
+        raise SceneError("observable", name, rule)
     return name
 
 

@@ -37,9 +37,10 @@ def shell_volumes(bins: int, dimension: int) -> np.ndarray:
 
 def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> np.ndarray | None:
     """(2, S, bins) what the pairs that collide and all others give to g(r), in S stretches of a run that
-    begin at the frames `starts` (S,). None if the run has not kept it, or not in parts of these shells."""
+    begin at the frames `starts` (S,). None if the run has not kept it, or not in parts of these shells, or
+    if a stretch takes no time."""
     has = kept(run)
-    if has is None or furthest > has.furthest * (1.0 + _ALIKE):
+    if has is None or starts[-1] == len(run.time) - 1 or furthest > has.furthest * (1.0 + _ALIKE):
         return None
     each = furthest / bins * has.shells / has.furthest
     merged = round(each)
@@ -59,7 +60,7 @@ def mixed_g(counted: np.ndarray, parts: np.ndarray, volumes: np.ndarray) -> np.n
     contacts, found = parts[0].mean(axis=0), parts.sum(axis=0)
     missing = ((counted - found) @ volumes) / (contacts @ volumes)
     impulses = found + missing[:, None] * contacts
-    return counted + mixture(counted, impulses) * (impulses - counted)
+    return counted + mixture(counted, impulses, periodic=False) * (impulses - counted)
 
 
 def estimator(run: Run, furthest: float, by_impulses: bool) -> dict[str, str]:

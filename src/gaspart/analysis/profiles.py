@@ -61,7 +61,8 @@ def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
     freedoms = np.where(total > 0.0, filled - 1.0, np.nan)
     with np.errstate(invalid="ignore"):
         rest = (above - values * below) / np.where(total > 0.0, total, np.nan) * len(below)
-    exact = still or bool((np.abs(values - values.flat[0]) <= _ROUNDING * np.abs(values)).all())
+    known = values[total > 0.0]
+    exact = still or bool((np.abs(known - known[:1]) <= _ROUNDING * np.abs(known)).all())
     for cell in np.argwhere(filled > _LEAST_FREEDOM):
         at = tuple(cell)
         series = rest[(slice(None), *at)]

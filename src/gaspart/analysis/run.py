@@ -118,9 +118,7 @@ class Run:
     @cached_property
     def moving(self) -> np.ndarray:
         """(N,) which particles are not fixed. Raises SceneError if the file lacks some particles."""
-        stored = self.data.sizes["atom"]
-        if stored < self.count:
-            raise SceneError("follow", stored, f"needs all {self.count} particles in the file")
+        self.require_all()
         return np.isfinite(self.masses)
 
     @property
@@ -206,6 +204,12 @@ class Run:
     def is_subset(self) -> bool:
         """Whether only some of the particles are in the file."""
         return self.data.sizes["atom"] < self.count
+
+    def require_all(self) -> None:
+        """Raise SceneError if only some of the particles are in the file."""
+        if self.is_subset:
+            rule = f"needs all {self.count} particles in the file"
+            raise SceneError("follow", self.data.sizes["atom"], rule)
 
     @property
     def dissipates(self) -> bool:

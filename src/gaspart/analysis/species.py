@@ -51,7 +51,7 @@ def by_species(source: Source, start: float | None = None) -> xr.Dataset:
         for kind, row in zip(kinds, rows, strict=True):
             for name in _of_motion():
                 try:
-                    row[name] = measure(name, run_of_all, start, species=kind)
+                    row[name] = measure(run_of_all, name, start, species=kind)
                 except SceneError as error:
                     missing[f"{name} of species {kind}"] = error.rule
     table = xr.Dataset(coords={"species": ("species", kinds, {"long_name": "number of the species"})})

@@ -109,7 +109,7 @@ def profile(
         along = {"position": (middle, {"units": "length", "long_name": names[k]})}
         result = observable(of, along, found.values, found.errors, **about)
         if of == "density":
-            result.attrs |= estimator(run, k, by_impulses is not None)
+            result.attrs |= estimator(run, k, bins, by_impulses is not None)
         return with_freedom(result, found)
 
 
@@ -123,9 +123,7 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
 
     with open_run(source, start) as run:
         require_defined("order", run.scene)
-        if run.data.sizes["atom"] < run.count:
-            rule = f"needs all {run.count} particles in the file"
-            raise SceneError("follow", run.data.sizes["atom"], rule)
+        run.require_all()
         lengths = run.scene.container.lengths
         frames, time = chosen_frames(run, run.positions), chosen_frames(run, run.time)
         if run.dimension == 2:
@@ -141,10 +139,10 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
 def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
     """Of the moving particles, or one species, NaN where fixed ones leave no room. Raises SceneError for
     a file that holds the first particles of several kinds only."""
-    stored = run.data.sizes["atom"]
-    if stored < run.count and len(run.scene.kinds) > 1:
-        raise SceneError("follow", stored, f"needs all {run.count} particles in the file")
+    if len(run.scene.kinds) > 1:
+        run.require_all()
     chosen = np.isfinite(run.masses) & (run.species == (run.species if species is None else species))
+    stored = run.data.sizes["atom"]
     members = np.flatnonzero(chosen[:stored])
     cells = Cells(run, members, (axis,), (bins,))
     if np.isfinite(run.masses).all():

@@ -17,7 +17,6 @@ from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import means_of
 from gaspart.analysis.waves import amplitudes, factors, in_shells, shells_of
-from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
 from gaspart.trajectory.pairs import pair_names, pairs_of
 
@@ -87,16 +86,15 @@ def _measured(
     """(16, ..., wave_number) means over stretches of the run of `products` (..., M), of positions and M wave
     vectors, in intervals of |k|, and the coordinate. Raises SceneError; see `structure_factor`."""
     bins = count_of("bins", bins, least=2)
-    stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
-    if run.is_subset:
-        raise SceneError("follow", stored, f"needs all {run.count} particles in the file")
+    lengths = run.scene.container.lengths
+    run.require_all()
     diameter, least = 2.0 * run.scene.largest_radius, 2.0 * np.pi / max(lengths)
     rule = f"must be above that of the longest wave, {least:.4g}"
     end = _HIGHEST / diameter if highest is None else highest
     end = number("highest", end, rule, above=least)
     waves, shell, k = shells_of(lengths, end, bins, _WAVES)
     frames = chosen_frames(run, run.positions)
-    room = max(STRETCHES, _WORK // (stored * len(waves)))
+    room = max(STRETCHES, _WORK // (run.count * len(waves)))
     frames = frames[:: -(-len(frames) // room)]
     found = [
         np.apply_along_axis(in_shells, -1, np.mean([products(frame, waves) for frame in part], axis=0), shell)

@@ -77,6 +77,7 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
         if run.scene.alike:
             return _coefficient(run, "thermal_conductivity", "heat", lag)
         require_defined("thermal_conductivity", run.scene)
+        run.require_all()
         settings = _stored(run)
         lags = _lags_until(settings, lag)
         return conductivity_without_diffusion(run, lags * settings.interval)

@@ -37,7 +37,7 @@ _EXAMPLES = """examples:
   gaspart advise scene.yaml --observable Z --accuracy 1e-3
   gaspart advise scene.yaml --observable D --accuracy 1e-2 --budget 60
   gaspart advise heated.yaml --observable temperature --accuracy 3e-2
-  gaspart advise --config config/config.yaml     the cost of a complete grid, in core-hours"""
+  gaspart advise --config config/config.yaml   # core-hours of all points"""
 
 
 def add_advise(parser: Parser) -> None:

@@ -8,8 +8,8 @@ from gaspart.cli.arguments import Parser, add_output, config_command, print_line
 from gaspart.cli.progress import waiting
 
 _EXAMPLES = """examples:
-  gaspart archive results -o archive.zip            the full reproduction
-  gaspart archive results/smoke -o smoke.zip        that of a config with `run: smoke`
+  gaspart archive results -o archive.zip       # the full reproduction
+  gaspart archive results/smoke -o smoke.zip   # of a config with `run: smoke`
   gaspart archive results -o all.zip --trajectories"""
 
 

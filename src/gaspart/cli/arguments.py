@@ -12,6 +12,8 @@ from gaspart.errors import entry_points_of, unknown_word, visible
 from gaspart.keys.values import number
 
 T = TypeVar("T")
+WIDTH = 78
+"""Of the help, in characters: that of a terminal of 80 columns."""
 
 
 class UsageError(Exception):
@@ -77,6 +79,15 @@ def _reader(kind: Callable[[str], T], name: str, limits: dict[str, float]) -> Ca
     return read
 
 
+def pixels(text: str) -> tuple[int, int]:
+    """A reader of a width and a height, such as 1000x750."""
+    try:
+        width, height = (int(part) for part in text.split("x"))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} must be of the form 1000x750") from None
+    return width, height
+
+
 def set_command(
     parser: Parser,
     run: Callable[[argparse.Namespace], None],
@@ -84,8 +95,19 @@ def set_command(
     examples: str | None = None,
 ) -> None:
     """Describe a command in its parser, and let `run` carry it out."""
-    parser.description, parser.epilog = fill(description, width=100), examples
+    parser.description, parser.epilog = fill(description, width=WIDTH), examples
     parser.set_defaults(command=run, parser=parser)
+
+
+def listed(meanings: dict[str, str]) -> str:
+    """Names with a line for each, as options have it; a line that is too long is continued."""
+    column = 24
+    lines = []
+    for name, meaning in meanings.items():
+        text = fill(meaning, WIDTH, initial_indent=" " * column, subsequent_indent=" " * column)
+        fits = len(name) + 4 <= column
+        lines.append(f"  {name:{column - 2}}{text.lstrip()}" if fits else f"  {name}\n{text}")
+    return "\n".join(lines)
 
 
 def add_output(parser: argparse.ArgumentParser, what: str, overwrite: str) -> None:

@@ -8,7 +8,7 @@ from gaspart.cli.arguments import Parser, config_command, print_lines, set_comma
 
 _EXAMPLES = """examples:
   gaspart budget config/config.yaml
-  gaspart budget config/precise.yaml -o budget.csv     a line for each claim"""
+  gaspart budget config/precise.yaml -o budget.csv    # a line for each claim"""
 
 
 def add_budget(parser: Parser) -> None:

@@ -5,15 +5,25 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from gaspart.cli.arguments import CheckFailed, Parser, config_command, print_line, real, set_command, several
+from gaspart.cli.arguments import (
+    CheckFailed,
+    Parser,
+    config_command,
+    print_line,
+    print_lines,
+    real,
+    set_command,
+    several,
+)
 from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene
 from gaspart.yaml_text import read_yaml
 
 _EXAMPLES = """examples:
-  gaspart check scene.yaml                          validity, and placement of its particles
-  gaspart check config/paper.yaml                   every point of every grid
-  gaspart check run.nc                              a trajectory of gaspart, AMBER or LAMMPS (dump netcdf)
-  gaspart check dump.gsd --time-step 0.005          of HOOMD, which counts steps
+  gaspart check scene.yaml                   # validity, placement
+  gaspart check config/paper.yaml            # every point of every grid
+  gaspart check run.nc                       # of gaspart, AMBER or LAMMPS
+  gaspart check dump.gsd --time-step 0.005   # of HOOMD, which counts steps
   gaspart check frames.xyz --radius 0.5 --lengths 10,10,10
 
 exit code: 0 if all checks pass, 1 if one fails, 2 if the file cannot be read"""
@@ -53,7 +63,7 @@ def _check(given: argparse.Namespace) -> None:
         for key in ("radius", "lengths", "boundary", "time_step"):
             if getattr(given, key) is not None:
                 raise SceneError(key, getattr(given, key), "has a meaning for trajectories only")
-        checks = _written(given.file, given.tolerance)
+        checks, scales = _written(given.file, given.tolerance)
     else:
         from gaspart.inspection.checks import judge
         from gaspart.inspection.readers import read_frames
@@ -61,18 +71,20 @@ def _check(given: argparse.Namespace) -> None:
         frames = read_frames(given.file, given.radius, given.lengths, given.boundary, given.time_step)
         kind = "discs" if frames.dimension == 2 else "spheres"
         print_line(f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames")
-        checks = judge(frames, given.tolerance)
+        checks, scales = judge(frames, given.tolerance), []
     for check in checks:
         print_line(check)
+    print_lines(scales)
     if any(check.passed is False for check in checks):
         raise CheckFailed
 
 
-def _written(file: str, tolerance: float | None) -> list:
-    """The checks of a YAML file: a scene, or a config of the workflow."""
+def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:
+    """The checks of a YAML file: a scene, with the lines of its scales, or a config of the workflow."""
+    from gaspart.accuracy.scales import scales
     from gaspart.inspection.written import judge_scene
 
     content, path = read_yaml(file), Path(file)
     if isinstance(content, dict) and ("experiments" in content or "figures" in content):
-        return config_command("check")(path)
-    return judge_scene(path, tolerance)
+        return config_command("check")(path), []
+    return judge_scene(path, tolerance), scales(Scene.from_file(path)).lines

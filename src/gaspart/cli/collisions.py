@@ -9,7 +9,7 @@ from gaspart.cli.progress import waiting
 from gaspart.scene.scene import Scene
 
 _EXAMPLE = """example:
-  gaspart collisions scene.yaml -o collisions.nc --count 100000 --equilibration 10"""
+  gaspart collisions scene.yaml -o met.nc --count 100000 --equilibration 10"""
 
 
 def add_collisions(parser: Parser) -> None:

@@ -8,8 +8,8 @@ from gaspart.cli.arguments import Parser, set_command
 
 SHELLS = ("bash", "zsh", "tcsh")
 _EXAMPLES = """examples:
-  eval "$(gaspart completion bash)"                                  in this shell
-  gaspart completion bash > ~/.local/share/bash-completion/completions/gaspart    in all later shells"""
+  eval "$(gaspart completion bash)"              # in this shell
+  gaspart completion bash >> ~/.bash_completion  # in all later shells"""
 
 
 def add_completion(parser: Parser) -> None:

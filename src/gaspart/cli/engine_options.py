@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Iterable
 from functools import cache
 from typing import Any
 
-from gaspart.cli.arguments import Parser, alone, several
+from gaspart.cli.arguments import alone, several
 from gaspart.engines import ENGINES
 from gaspart.errors import SceneError, shown
 from gaspart.keys import Kind, described, schema_of
@@ -24,7 +25,7 @@ def engine_settings() -> dict[str, Kind]:
     return settings
 
 
-def add_setting(parser: Parser, name: str, kind: Kind) -> None:
+def add_setting(group: argparse._ArgumentGroup, name: str, kind: Kind) -> None:
     """Add the option of a setting: a number, a word, or a flag that changes its default."""
     option, meaning, default = name.replace("_", "-"), kind["description"], kind.get("default")
     usual = "" if default is None else f"; default: {default}"
@@ -32,15 +33,15 @@ def add_setting(parser: Parser, name: str, kind: Kind) -> None:
     if types == "boolean":
         option, action = (f"no-{option}", "store_false") if default else (option, "store_true")
         meaning = f"switches off: {meaning}" if default else meaning
-        parser.add_argument(f"--{option}", dest=name, action=action, default=None, help=meaning)
+        group.add_argument(f"--{option}", dest=name, action=action, default=None, help=meaning)
     elif "enum" in kind:
         words = one_of(word for word in kind["enum"] if word is not None)
-        parser.add_argument(f"--{option}", metavar="NAME", help=f"{meaning}: {words}{usual}")
+        group.add_argument(f"--{option}", metavar="NAME", help=f"{meaning}: {words}{usual}")
     else:
         sides = "array" in types
         read: Any = _sides if sides else int if "integer" in types else float
         metavar = "N[,N...]" if sides else "N" if read is int else "X"
-        parser.add_argument(f"--{option}", type=read, metavar=metavar, help=f"{meaning}{usual}")
+        group.add_argument(f"--{option}", type=read, metavar=metavar, help=f"{meaning}{usual}")
 
 
 def _sides(text: str) -> int | tuple[int, ...]:

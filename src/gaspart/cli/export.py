@@ -7,8 +7,8 @@ import argparse
 from gaspart.cli.arguments import Parser, add_output, add_trajectory, integer, print_line, set_command
 
 _EXAMPLES = """examples:
-  gaspart export run.nc -o state.gsd                the last frame, for HOOMD and OVITO
-  gaspart export run.nc -o start.data --frame 0     the first, for LAMMPS: read_data start.data"""
+  gaspart export run.nc -o state.gsd              # last frame, for HOOMD
+  gaspart export run.nc -o start.data --frame 0   # first frame, for LAMMPS"""
 
 
 def add_export(parser: Parser) -> None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 _EXAMPLES = """examples:
   gaspart info run.nc
-  gaspart info run.nc --scene > scene.yaml      then the printed command, for the same bits"""
+  gaspart info run.nc --scene > scene.yaml   # to run it again"""
 
 
 def add_info(parser: Parser) -> None:
@@ -27,6 +27,7 @@ def add_info(parser: Parser) -> None:
 
 
 def _info(given: argparse.Namespace) -> None:
+    from gaspart.accuracy.scales import scales
     from gaspart.cli.run import run_options
     from gaspart.inspection.certificate import certificate
     from gaspart.trajectory.opening import check_frames, opened
@@ -55,6 +56,7 @@ def _info(given: argparse.Namespace) -> None:
     for line in _request(recipe, stored_at, frames):
         print_line(line)
     print_line(f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}")
+    print_lines(scales(scene).lines)
     print_lines(certificate(stored_at))
     print_lines(_measurable(recipe))
     for key, value in recipe.engine.predictions(scene).items():

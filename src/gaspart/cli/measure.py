@@ -17,6 +17,7 @@ from gaspart.cli.arguments import (
     Parser,
     UsageError,
     add_trajectory,
+    listed,
     print_line,
     real,
     set_command,
@@ -38,26 +39,27 @@ _EXAMPLES = """examples:
   gaspart measure run.nc Z msd
   gaspart measure run.nc vacf -o vacf.png
   gaspart measure run.nc msd -o msd.csv --start 10
-  gaspart measure run-1.nc run-2.nc run-3.nc D      replicas: their mean, with the scatter of the runs
+  gaspart measure run-1.nc run-2.nc run-3.nc D   # replicas: mean and scatter
   gaspart measure run.nc D --per-axis
-  gaspart measure run.nc D --particles 0 --lag 2    of one tracer, at a lag
+  gaspart measure run.nc D --particles 0 --lag 2    # of one tracer, at a lag
   gaspart measure run.nc density --axis x
   gaspart measure run.nc velocity --axis x --species 0 --start 10 --end 20
-  gaspart measure run.nc field --of temperature --axes xz --cells 20,10 -o field.png"""
+  gaspart measure run.nc field --of temperature --axes xz -o field.png"""
 
 
 def add_measure(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
-    names = "; ".join(f"{name}: {one.listed}" for name, one in OBSERVABLES.items())
-    names += f"; {_FIELD}: density, flow or temperature in cells along some axes"
-    text = f"{names}. Uncertainties are one standard deviation; of curves a few rows are printed. "
-    text += "Several files are runs of one scene with other seeds or initial states: their mean and scatter "
-    text += "are given."
+    text = "Observables of a trajectory. Uncertainties are one standard deviation; of curves a few rows are "
+    text += "printed. Several files are runs of one scene with other seeds or initial states: their mean and "
+    text += "scatter are given."
     set_command(parser, _measure, text, _EXAMPLES)
+    meanings = {name: one.listed for name, one in OBSERVABLES.items()}
+    meanings[_FIELD] = "density, flow or temperature in cells along some axes"
+    parser.description = f"{parser.description}\n\nobservables:\n{listed(meanings)}"
     add = parser.add_argument
     add_trajectory(parser)
     words = (*OBSERVABLES, _FIELD)
-    add("words", nargs="+", choices=_Words(words), metavar="NAME", help=", ".join(words))
+    add("words", nargs="+", choices=_Words(words), metavar="NAME", help="one of the observables above")
     text = "time from which frames count; default: a quarter of the run"
     add("--start", type=real(least=0.0), metavar="T", help=text)
     add("--end", type=real(least=0.0), metavar="T", help="time until which frames count; default: the end")
@@ -165,7 +167,7 @@ def _measured(
                 if name == _FIELD:
                     found = _measure_field(trajectory, times, selection | field)
                 else:
-                    found = measure(name, trajectory, *times, **selection)
+                    found = measure(trajectory, name, *times, **selection)
             yield name, found
 
 

@@ -18,6 +18,15 @@ from gaspart.files import FileKind, output_path, writing
 from gaspart.scene.scene import Scene
 
 _FOLDER = Path(__file__).parent / "templates"
+_CHAPTERS = {
+    "Gases and fluids": ("gas", "spheres", "rarefied", "brownian", "rough"),
+    "Walls": ("chambers", "plates", "slit", "piston", "adsorption", "sticky"),
+    "Gravity": ("atmosphere", "separation"),
+    "Heat and flow": ("heat", "metal", "shear", "channel"),
+    "Crystals and packings": ("crystal", "melting", "packing"),
+    "Grains": ("cooling", "hourglass", "shaken", "sheared"),
+}
+"""All templates, in each chapter from the simple to the special."""
 _EXAMPLES = """examples:
   gaspart new gas.yaml
   gaspart new hot.yaml --template heat
@@ -37,10 +46,11 @@ _SCENE = FileKind("a scene file", _is_scene)
 
 @dataclass(frozen=True)
 class Template:
-    """A template: its name, title and description, the command that runs it, the figure of the workflow (None
-    for a scene of which there is none), the text of the file."""
+    """A template: its name, the chapter of the gallery, its title and description, the command that runs it,
+    the figure of the workflow (None for a scene of which there is none), the text of the file."""
 
     name: str
+    chapter: str
     title: str
     description: str
     command: str
@@ -50,17 +60,18 @@ class Template:
 
 @cache
 def templates() -> dict[str, Template]:
-    """All templates, by name."""
-    return {path.stem: _read(path) for path in sorted(_FOLDER.glob("*.yaml"))}
+    """All templates, by name, in the order of the gallery."""
+    return {name: _read(name, chapter) for chapter, names in _CHAPTERS.items() for name in names}
 
 
-def _read(path: Path) -> Template:
+def _read(name: str, chapter: str) -> Template:
+    path = _FOLDER / f"{name}.yaml"
     text = path.read_text(encoding="utf-8")
     comments = [line.removeprefix("# ") for line in text.splitlines() if line.startswith("#")]
     notes = [line.strip() for line in comments if line.startswith("  ")]
     description = " ".join(line for line in comments[1:] if not line.startswith("  "))
     figure = notes[1].removeprefix("figure: ") if len(notes) > 1 else None
-    return Template(path.stem, comments[0], description, notes[0], figure, text)
+    return Template(name, chapter, comments[0], description, notes[0], figure, text)
 
 
 def add_new(parser: Parser) -> None:
@@ -87,10 +98,10 @@ def _new(given: argparse.Namespace) -> None:
     with writing(output, _SCENE, given.force) as scratch:
         scratch.write_text(_renamed(template, output), encoding="utf-8")
     print_line(f"{output}: {template.title}. Run it:")
-    print_line(_command(template, output))
+    print_line(named_command(template, output))
 
 
-def _command(template: Template, path: Path) -> str:
+def named_command(template: Template, path: Path) -> str:
     """The command that runs the scene, with the names of the file and of its trajectory."""
     scene, trajectory = shlex.quote(str(path)), shlex.quote(str(path.with_suffix(".nc")))
     command = template.command.replace(f"{template.name}.yaml", scene)
@@ -100,4 +111,4 @@ def _command(template: Template, path: Path) -> str:
 def _renamed(template: Template, path: Path) -> str:
     """The text of the file, without the note on the figure."""
     kept = [line for line in template.text.splitlines(keepends=True) if not line.startswith("#   figure")]
-    return "".join(kept).replace(template.command, _command(template, path))
+    return "".join(kept).replace(template.command, named_command(template, path))

@@ -12,6 +12,7 @@ from gaspart.cli.arguments import (
     add_output,
     add_trajectory,
     integer,
+    pixels,
     print_line,
     real,
     set_command,
@@ -48,7 +49,7 @@ def add_render(parser: Parser) -> None:
         metavar="N",
         help="picture: counted from 0, or from the end if negative; default: -1",
     )
-    add("--size", type=_size, metavar="WxH", help="in pixels; default: 1000x750")
+    add("--size", type=pixels, metavar="WxH", help="in pixels; default: 1000x750")
     add("--colour", metavar="NAME", help="speed (default) or species")
     add("--frames-per-second", type=real(above=0.0), metavar="X", help="film; default: 25")
     add("--start", type=real(), metavar="T", help="film: from this time on; default: the first frame")
@@ -64,14 +65,6 @@ def add_render(parser: Parser) -> None:
     add("--clock", action="store_true", default=None, help=text)
     text = "direction from which spheres are seen: azimuth and elevation in degrees; default: 298,24"
     add("--camera", type=several(real()), metavar="A,E", help=text)
-
-
-def _size(text: str) -> tuple[int, int]:
-    try:
-        width, height = (int(part) for part in text.split("x"))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} must be of the form 1000x750") from None
-    return width, height
 
 
 def _render(given: argparse.Namespace) -> None:

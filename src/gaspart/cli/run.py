@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart.analysis.observables import having
-from gaspart.cli.arguments import Parser, UsageError, alone, print_line, set_command, several
+from gaspart.cli.arguments import Parser, UsageError, alone, print_line, print_lines, set_command, several
 from gaspart.cli.engine_options import add_setting, as_option, engine_settings, joined, one_of, stated
 from gaspart.cli.progress import clear_line, progress, waiting
 from gaspart.engines import ENGINES, engine_from_dict, engine_to_dict
@@ -31,8 +31,12 @@ _PREPARING = "placing particles, compiling kernels (once for each kind of scene)
 _EXAMPLES = """examples:
   gaspart run scene.yaml -o run.nc --duration 100 --sample-interval 1 --seed 1
   gaspart run scene.yaml -o run.nc --until Z=1e-3 --at-most 1000
-  gaspart run scene.yaml -o run.nc --engine step --time-step 0.01 --duration 100 --sample-interval 1
+  gaspart run scene.yaml -o run.nc --duration 100 --sample-interval 1 \\
+    --engine step --time-step 0.01
   gaspart info run.nc"""
+
+_USAGE = """gaspart run SCENE -o FILE --duration T --sample-interval T [options]
+       gaspart run SCENE -o FILE --until NAME=X [--at-most T] [options]"""
 
 
 def add_run(parser: Parser) -> None:
@@ -44,8 +48,9 @@ def add_run(parser: Parser) -> None:
         "as small as required, which is examined at 64, 96, 128, 192 ... frames."
     )
     set_command(parser, _run, text, _EXAMPLES)
+    parser.usage = _USAGE
     add = parser.add_argument
-    add("scene", help="scene file (YAML)")
+    add("scene", metavar="SCENE", help="scene file (YAML)")
     add("-o", "--output", required=True, metavar="FILE", help="trajectory (AMBER NetCDF)")
     add("--engine", default="event", metavar="NAME", help=f"{one_of(ENGINES)}; default: event")
     add("--seed", type=several(int), default=(0,), metavar="N[,N...]", help="default: 0")
@@ -55,17 +60,20 @@ def add_run(parser: Parser) -> None:
         "or engine, such as images that slide or a piston"
     )
     add("--from", dest="initial", metavar="FILE", help=text)
-    _add_ends(parser)
-    _add_contents(parser)
+    _add_ends(parser.add_argument_group("when the run ends"))
+    _add_contents(parser.add_argument_group("what the file has"))
+    files = parser.add_argument_group("files and interruptions")
+    files.add_argument("--force", action="store_true", help="replace a trajectory of another run")
+    _add_checkpoints(files)
+    text = "for experts: by default chosen for the scene, all but --time-step of step"
+    settings = parser.add_argument_group("settings of the engines", text)
     for name, kind in engine_settings().items():
-        add_setting(parser, name, kind)
-    add("--force", action="store_true", help="replace a trajectory of another run")
-    _add_checkpoints(parser)
+        add_setting(settings, name, kind)
 
 
-def _add_ends(parser: argparse.ArgumentParser) -> None:
+def _add_ends(group: argparse._ArgumentGroup) -> None:
     """What ends a run."""
-    add = parser.add_argument
+    add = group.add_argument
     add("--duration", type=float, metavar="T", help="duration of the run, in the scene's unit")
     text = (
         "time between frames, of which the duration is a multiple; default with --until, for plain gases: "
@@ -82,9 +90,9 @@ def _add_ends(parser: argparse.ArgumentParser) -> None:
     add("--start", type=float, metavar="T", help=text)
 
 
-def _add_contents(parser: argparse.ArgumentParser) -> None:
+def _add_contents(group: argparse._ArgumentGroup) -> None:
     """What is in the file."""
-    add = parser.add_argument
+    add = group.add_argument
     add(
         "--displacements",
         action="store_true",
@@ -124,25 +132,28 @@ def add_resume(parser: Parser) -> None:
     _add_checkpoints(parser)
 
 
-def _add_checkpoints(parser: argparse.ArgumentParser) -> None:
+def _add_checkpoints(group: argparse._ActionsContainer) -> None:
     text = "leave the state at the end in FILE.checkpoint.npz, for `gaspart resume --duration`"
-    parser.add_argument("--keep-checkpoint", action="store_true", help=text)
+    group.add_argument("--keep-checkpoint", action="store_true", help=text)
     text = "seconds between checkpoints, the most that is lost if the run is killed; default: 30"
-    parser.add_argument("--checkpoint-seconds", type=float, default=30.0, metavar="S", help=text)
-    parser.add_argument("--quiet", action="store_true", help="show no progress")
+    group.add_argument("--checkpoint-seconds", type=float, default=30.0, metavar="S", help=text)
+    group.add_argument("--quiet", action="store_true", help="show no progress")
 
 
 def _run(given: argparse.Namespace) -> None:
     set_note("no state was saved yet; the same command starts it again")
+    from gaspart.accuracy.scales import scales
     from gaspart.runs import run
 
-    until = _until(given)
+    scene = Scene.from_file(given.scene)
+    until, correlations = _until(given, scene), _correlations(given.correlations, given.stress)
     settings = {key: getattr(given, key) for key in engine_settings() if getattr(given, key) is not None}
-    scene, correlations = Scene.from_file(given.scene), _correlations(given.correlations, given.stress)
     try:
         engine = engine_from_dict({"name": given.engine, **settings})
     except SceneError as error:
         raise UsageError(as_option(error, given.engine)) from None
+    if not given.quiet:
+        print_lines(line for line in scales(scene).lines if not line.startswith("suggested"))
     status = _Status()
     with waiting(_PREPARING, given.quiet) as started:
         load_numba(ours=True)
@@ -184,8 +195,9 @@ def _requests(text: str) -> list[tuple[str, float]]:
     return requests
 
 
-def _until(given: argparse.Namespace) -> list[Accuracy] | None:
-    """What --until asks for. Raises UsageError for options that exclude or need each other."""
+def _until(given: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
+    """What --until asks for. Raises UsageError for options that exclude or need each other, with a duration
+    for the scene where there is none."""
     if given.until is not None:
         if given.duration is not None:
             raise UsageError("--duration: excludes --until; the longest duration is --at-most")
@@ -199,8 +211,12 @@ def _until(given: argparse.Namespace) -> list[Accuracy] | None:
         if value is None
     ]
     if missing:
-        rule = "the following arguments are required"
-        raise UsageError(f"{rule}: {', '.join(missing)}, or --until; see `gaspart run --help`")
+        from gaspart.accuracy.scales import scales
+
+        rule = f"the following arguments are required: {', '.join(missing)}, or --until"
+        proposal = scales(scene).proposal
+        hint = f"for this scene {proposal}" if proposal else "see `gaspart run --help`"
+        raise UsageError(f"{rule}; {hint}")
     return None
 
 

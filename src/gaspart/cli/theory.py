@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.analysis.observables import OBSERVABLES
-from gaspart.cli.arguments import Parser, real, set_command, several
+from gaspart.cli.arguments import Parser, listed, real, set_command, several
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas
 
@@ -107,11 +107,11 @@ _EXAMPLES = """examples:
 
 def add_theory(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
-    names = "; ".join(f"{name}: {quantity.meaning}" for name, quantity in _QUANTITIES.items())
-    text = f"{names}. Units: k_B = 1."
-    set_command(parser, _theory, text, _EXAMPLES)
+    set_command(parser, _theory, "A value of theory, with its source. Units: k_B = 1.", _EXAMPLES)
+    meanings = {name: quantity.meaning for name, quantity in _QUANTITIES.items()}
+    parser.description = f"{parser.description}\n\nquantities:\n{listed(meanings)}"
     add = parser.add_argument
-    add("quantity", choices=tuple(_QUANTITIES), metavar="QUANTITY", help=", ".join(_QUANTITIES))
+    add("quantity", choices=tuple(_QUANTITIES), metavar="QUANTITY", help="one of the above")
     add("--eta", type=several(real(least=0.0)), required=True, metavar="X[,X...]", help="packing fraction")
     add("--dimension", type=int, choices=(2, 3), default=3, help="default: 3")
     text = "of particles that touch, or the kinetic equation that the DSMC engine solves; default: exact"

@@ -9,8 +9,8 @@ from gaspart.cli.progress import waiting
 
 _EXAMPLES = """examples:
   gaspart verify archive.zip
-  gaspart verify archive.zip --rerun 3              and three points simulated again
-  gaspart verify unpacked/                          a folder into which it was unpacked
+  gaspart verify archive.zip --rerun 3   # and three points simulated again
+  gaspart verify unpacked/               # a folder into which it was unpacked
 
 exit code: 0 if all checks pass, 1 if one fails, 2 if the file is no archive"""
 

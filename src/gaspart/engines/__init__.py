@@ -5,6 +5,7 @@ from __future__ import annotations
 from gaspart.engines.engine import (
     ENGINES,
     Engine,
+    chosen,
     engine_from_dict,
     engine_to_dict,
     offered,
@@ -22,6 +23,7 @@ __all__ = [
     "Engine",
     "EventDriven",
     "TimeStepped",
+    "chosen",
     "engine_from_dict",
     "engine_to_dict",
     "offered",

@@ -197,6 +197,18 @@ def reference_engine() -> Engine:
     return next(engine for engine in ENGINES.values() if engine.reference)()
 
 
+def chosen(engine: Engine | str | None) -> Engine:
+    """The engine that a user gives: by its name with default settings, or None for the reference. Raises
+    SceneError for other things, and for an engine that needs settings."""
+    if engine is None:
+        return reference_engine()
+    if isinstance(engine, str):
+        return engine_from_dict({"name": engine})
+    if not isinstance(engine, Engine):
+        raise SceneError("engine", engine, f"must be an engine: {constructors()}")
+    return engine
+
+
 def offered() -> list[Engine]:
     """The engines among which advice chooses, the reference first."""
     return sorted(

@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.analysis.statistics import autocorrelation_time
+from gaspart.inspection.energy import energy_line
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.opening import opened
+from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
 
 
@@ -18,19 +20,12 @@ def certificate(path: Path) -> list[str]:
     with opened(path) as file:
         if not len(file.dimensions["frame"]):
             return ["no frame yet"]
-        names = ["kinetic_energy", "collisions", "virial_sum", "worst_contact", "time"]
+        names = ["collisions", "virial_sum", "worst_contact", "time"]
         names += [name for name in ("deepest_overlap", "overlaps_left") if name in file.variables]
         series = {name: np.asarray(file[name][:], dtype=float) for name in names}
-    return [_drift(scene, series["kinetic_energy"]), _contacts(series), _samples(scene, series)]
-
-
-def _drift(scene: Scene, energy: np.ndarray) -> str:
-    """Drift of the kinetic energy, where the scene conserves it."""
-    elastic = scene.restitution is None or scene.restitution.smooth_and_elastic
-    if not elastic or scene.gravity is not None or scene.faces or scene.vibrates:
-        return f"kinetic energy from {energy[0]:.6g} to {energy[-1]:.6g}: this scene does not conserve it"
-    drift = np.abs(energy - energy[0]).max() / max(energy[0], np.finfo(float).tiny)
-    return f"drift of the energy: {drift:.1e} of it at most"
+    with open_trajectory(path) as data:
+        drift = energy_line(scene, data)
+    return [drift, _contacts(series), _samples(scene, series)]
 
 
 def _contacts(series: dict) -> str:

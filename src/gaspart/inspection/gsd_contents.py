@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError, optional
-from gaspart.files import descriptor_path, open_regular
+from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Given
+from gaspart.system import descriptor_path
 
 _TOPOLOGY = ("bonds", "angles", "dihedrals", "impropers", "constraints", "pairs")
 _SPHERE_RADIUS = "state/hpmc/sphere/radius"

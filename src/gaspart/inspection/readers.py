@@ -19,9 +19,8 @@ from gaspart.inspection.frames import Frames
 from gaspart.inspection.gsd_contents import read_gsd
 from gaspart.inspection.netcdf_contents import read_netcdf
 from gaspart.inspection.xyz_contents import read_xyz
+from gaspart.system import memory
 
-_MEMORY = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-"""Bytes of this machine's memory, which the frames of a file are read into."""
 SUFFIXES = (".nc", ".gsd", ".xyz")
 _READERS = {
     **dict.fromkeys((".nc", ".ncdf", ".partial"), read_netcdf),
@@ -80,8 +79,7 @@ def _require_memory(path: Path) -> None:
     """Raise SceneError for a file larger than the memory, such as a sparse one; OSError for none."""
     with open_regular(path) as file:
         size = os.fstat(file.fileno()).st_size
-    if size > _MEMORY:
-        rule = (
-            f"has {size / 1e9:.3g} GB; this machine has {_MEMORY / 1e9:.3g} GB of memory, to hold all frames"
-        )
+    there = memory()
+    if there is not None and size > there:
+        rule = f"has {size / 1e9:.3g} GB; this machine has {there / 1e9:.3g} GB of memory, to hold all frames"
         raise SceneError("file", str(path), rule)

@@ -61,17 +61,23 @@ def from_mapping(cls: type[T], mapping: object, where: str) -> T:
     """Make the dataclass `cls` from a mapping whose keys must all be fields of it. Raises SceneError."""
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping of keys to values")
-    known = {f.name: f for f in fields(cls)}
-    for key in mapping:
-        if key not in known:
-            raise SceneError(f"{where}.{key}", mapping[key], unknown_word(key, known))
-    for name, field in known.items():
+    refuse_unknown(cls, mapping, where)
+    for field in fields(cls):
+        name = field.name
         if name not in mapping and field.default is field.default_factory:  # both MISSING: no default
             raise SceneError(f"{where}.{name}", None, "is required")
     try:
         return cls(**mapping)
     except SceneError as error:
         raise error.inside(where) from None
+
+
+def refuse_unknown(cls: Any, mapping: dict, where: str) -> None:
+    """Raise SceneError for a key that is no field of a dataclass."""
+    known = [item.name for item in fields(cls)]
+    for key, value in mapping.items():
+        if key not in known:
+            raise SceneError(f"{where}.{key}", value, unknown_word(key, known))
 
 
 def instance_of(cls: type, meaning: str) -> Kind:

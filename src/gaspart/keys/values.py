@@ -120,7 +120,9 @@ def _items(key: str, value: Any, rule: str, most: int) -> Iterable[Any]:
 
 
 def instances(key: str, value: Any, kinds: type | tuple[type, ...], rule: str) -> tuple:
-    """`value`, a list or another iterable, as a tuple of instances of `kinds`."""
+    """`value`, a list or another iterable, or a single one, as a tuple of instances of `kinds`."""
+    if isinstance(value, kinds):
+        return (value,)
     found: list[Any] = []
     for item in _items(key, value, rule, MOST_LISTED + 1):
         if not isinstance(item, kinds):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
@@ -26,7 +27,7 @@ class Canvas:
 
     def __init__(self, lengths: np.ndarray, size: tuple[int, int]) -> None:
         width, height = size
-        self.scale, self.corner = scale_of(lengths, size)
+        self.lengths, (self.scale, self.corner) = lengths, scale_of(lengths, size)
         self.image = np.ones((height, width, 3))
         self._height = height
 
@@ -38,6 +39,15 @@ class Canvas:
     def discs(self, positions: np.ndarray, radii: np.ndarray, colours: np.ndarray) -> None:
         """Discs, later ones over earlier ones; none smaller than half a pixel in radius."""
         draw_discs(self.image, self._pixels(positions), np.maximum(self.scale * radii, 0.5), colours)
+
+    def cut(self, periodic: Sequence[bool]) -> None:
+        """Leave white what lies beyond the container along the axes that are periodic."""
+        width, height = self.lengths
+        low, high = np.rint(self._pixels(np.array([[0.0, height], [width, 0.0]]))).astype(int)
+        if periodic[0]:
+            self.image[:, : low[0]] = self.image[:, high[0] :] = 1.0
+        if periodic[1]:
+            self.image[: low[1]] = self.image[high[1] :] = 1.0
 
     def line(self, points: np.ndarray, colour: tuple[float, float, float] = INK, width: int = 1) -> None:
         """A line through points (N, 2), `width` pixels wide (odd)."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import os
 from collections.abc import Callable, Iterator
 from itertools import islice
 from pathlib import Path
@@ -23,6 +22,8 @@ from gaspart.rendering.shown import Film
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
+from gaspart.system import path_for_others
+from gaspart.trajectory.opening import no_run
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,7 +78,9 @@ def film(
         _ffmpeg()  # before a picture is drawn
     to = _gif if path.suffix == ".gif" else _mp4
     with opened(trajectory) as source:
-        if isinstance(source, Simulation | State | Scene):
+        if isinstance(source, Scene):
+            raise no_run(source)
+        if isinstance(source, Simulation | State):
             raise SceneError(
                 "trajectory", source, "must be a path or an open trajectory: a film needs frames"
             )
@@ -200,7 +203,7 @@ def _mp4(scratch: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate
     write_frames = _ffmpeg().write_frames
     with scratch.open("rb") as file:
         # as this process has it open: by its name ffmpeg would make it anew if a signal has removed it
-        path = f"/proc/{os.getpid()}/fd/{file.fileno()}"
+        path = path_for_others(file)
         writer = write_frames(path, size, fps=rate, macro_block_size=2, output_params=options, **quiet)
         try:
             writer.send(None)

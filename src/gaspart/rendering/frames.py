@@ -51,10 +51,10 @@ def render(
     `State`, or of a `Scene` at time 0 (seed 0): uint8, (H, W, 3), an array that notebooks show as a picture.
 
     Spheres are drawn in perspective, with light and shadow, over the container's floor (z = 0); discs from
-    above, with their periodic images at periodic faces. Interior walls of a state are not drawn.
-    size: (W, H) pixels. colour: "speed", from dark at rest to bright at the speed
-    `fastest` (twice the root-mean-square one) and above; "species"; or an array (N, 3) of red, green and
-    blue from 0 to 1. clock: whether the scene's parameters and the meaning of the colours are written above,
+    above, cut at periodic faces, with the parts that are seen at the other side. Interior walls of a state
+    are not drawn. size: (W, H) pixels. colour: "speed", from dark at rest to bright at the speed `fastest`
+    (twice the root-mean-square one) and above, fixed particles grey; "species"; or an array (N, 3) of red,
+    green and blue from 0 to 1. clock: whether parameters and the meaning of the colours are written above,
     the time and a bar of a round length (of spheres: in the middle of the container) below. camera: azimuth
     and elevation in degrees from which spheres are seen, (298, 24). The same particles give the same pixels.
 
@@ -113,6 +113,7 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
         lengths=shown["cell_lengths"][: positions.shape[1]],
         walls=_walls(scene, float(shown["time"]), shown.get("piston_position")),
         masses=per_particle(scene, "mass")[: len(source["radius"])].astype(float),
+        fixed=per_particle(scene, "fixed")[: len(source["radius"])].astype(bool),
         periodic=fixed_images(scene),
         parameters=parameters_of(scene),
     )
@@ -155,7 +156,8 @@ def _of_state(state: State, scene: Scene | None) -> DrawnParticles:
     periodic = fixed_images(scene) if scene else (False,) * state.dimension
     parameters = parameters_of(scene) if scene else ()
     looks = state.positions, state.radii, state.species, state.speeds
-    return DrawnParticles(*looks, state.lengths, walls, periodic, state.masses, parameters)
+    fixed = np.isinf(state.masses)
+    return DrawnParticles(*looks, state.lengths, walls, periodic, state.masses, fixed, parameters)
 
 
 def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.ndarray:

@@ -12,13 +12,16 @@ from gaspart.rendering.style import COLOURS
 COLOURINGS = ("speed", "species")
 FASTEST = 2.0
 """The scale of speeds ends at this many root-mean-square speeds."""
+FIXED = (0.62, 0.62, 0.62)
+"""The colour of fixed particles among those that are coloured by speed."""
 
 
 @dataclass(frozen=True)
 class DrawnParticles:
     """positions (N, d), radii (N,), species (N,), speeds (N,); lengths (d,) of the container; walls
     (M, 2, d), the ends of the interior ones, of plates those of their sides; periodic, whether each axis is;
-    masses (N,), if they are known; parameters: short texts on the scene.
+    masses (N,), if they are known; fixed (N,), whether each never moves, None if it is not known; parameters:
+    short texts on the scene.
     """
 
     positions: np.ndarray
@@ -29,6 +32,7 @@ class DrawnParticles:
     walls: np.ndarray
     periodic: tuple[bool, ...] = (False, False, False)
     masses: np.ndarray | None = None
+    fixed: np.ndarray | None = None
     parameters: tuple[str, ...] = ()
 
     @property
@@ -120,14 +124,17 @@ def colours_of(
     """(N, 3) red, green and blue from 0 to 1.
 
     colour: "speed", dark at rest and bright from `fastest` on (without it, from `FASTEST` root-mean-square
-    speeds on); "species"; or an array (N, 3). Raises SceneError for anything else.
+    speeds on), of fixed particles grey; "species"; or an array (N, 3). Raises SceneError for anything else.
     """
     if isinstance(colour, str):
         if colour not in COLOURINGS:
             raise SceneError("colour", colour, f"must be one of {', '.join(COLOURINGS)}")
         if colour == "species":
             return _palette()[particles.species % len(COLOURS)]
-        return _ramp(particles.speeds / _fastest(particles, fastest))
+        colours = _ramp(particles.speeds / _fastest(particles, fastest))
+        if particles.fixed is not None:
+            colours[particles.fixed] = FIXED
+        return colours
     given = np.asarray(colour, dtype=float)
     if given.shape != (len(particles.radii), 3):
         raise SceneError(

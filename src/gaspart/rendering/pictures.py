@@ -80,6 +80,7 @@ def _plane(
     canvas = Canvas(particles.lengths, size)
     shown, shifts = _images(particles)
     canvas.discs(particles.positions[shown] + shifts, particles.radii[shown], colours[shown])
+    canvas.cut(particles.periodic[:2])
     x, y = particles.lengths
     canvas.line(np.array([[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]]))
     for wall in particles.walls:

@@ -18,17 +18,19 @@ from gaspart.files import FileKind, output_path, writing
 from gaspart.keys.values import count_of
 from gaspart.rendering.camera import edges_of
 from gaspart.rendering.frames import opened, particles_of
-from gaspart.rendering.particles import FASTEST, DrawnParticles
+from gaspart.rendering.particles import FASTEST, FIXED, DrawnParticles
 from gaspart.rendering.style import COLOURS
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
+from gaspart.trajectory.opening import no_run
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _TEMPLATE = Path(__file__).with_name("view.html")
 _RAMP = 16  # colours of the bar of speeds
+_HIGHEST = 254  # of speeds and bond orders as bytes; the byte above is that of fixed particles
 _MARK = "gaspart view"
 
 
@@ -76,7 +78,9 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
     """
     count_of("frames", frames, least=1)
     with opened(source) as found:
-        if isinstance(found, State | Scene):
+        if isinstance(found, Scene):
+            raise no_run(found)
+        if isinstance(found, State):
             raise SceneError(
                 "source",
                 f"a {type(found).__name__}",
@@ -111,11 +115,13 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
     places = np.zeros((len(shown), len(first.radii), 3), dtype="<u2")
     inside = np.clip([one.positions / one.lengths for one in shown], 0.0, 1.0)
     places[:, :, :d] = np.rint(65535.0 * inside)
-    speeds = np.rint(255.0 * np.clip([one.speeds / fastest for one in shown], 0.0, 1.0)).astype(np.uint8)
+    speeds = np.rint(_HIGHEST * np.clip([one.speeds / fastest for one in shown], 0.0, 1.0)).astype(np.uint8)
+    if first.fixed is not None:
+        speeds[:, first.fixed] = _HIGHEST + 1
     lengths = np.zeros(3)
     lengths[:d] = first.lengths
     lines = _lines(lengths, [one.walls for one in shown])
-    colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 1.0, 256))[:, :3]
+    colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 1.0, _HIGHEST + 1))[:, :3]
     return {
         "dimension": d,
         "count": len(first.radii),
@@ -130,8 +136,8 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
         "species": _text((first.species % 256).astype(np.uint8)),
         "lines": _text(lines.astype("<f4")),
         "ends": lines.shape[1],
-        "map": _text(np.rint(255.0 * colours).astype(np.uint8)),
-        "ramp": colours[:: 256 // _RAMP].round(3).tolist(),
+        "map": _text(np.rint(255.0 * np.vstack([colours, [FIXED]])).astype(np.uint8)),
+        "ramp": colours[:: _HIGHEST // _RAMP].round(3).tolist(),
         "palette": [list(matplotlib.colors.to_rgb(colour)) for colour in COLOURS],
     }
 
@@ -145,7 +151,7 @@ def _order(shown: list[DrawnParticles]) -> dict:
         raise SceneError("order", True, f"bond order needs more than {NEIGHBOURS} particles")
     measure, name, highest = (hexatic, "|ψ6|", 1.0) if first.dimension == 2 else (local_steinhardt, "q6", 0.6)
     values = np.array([np.abs(measure(one.positions, one.lengths)) for one in shown])
-    parts = np.rint(255.0 * np.clip(values / highest, 0.0, 1.0)).astype(np.uint8)
+    parts = np.rint(_HIGHEST * np.clip(values / highest, 0.0, 1.0)).astype(np.uint8)
     return {"values": _text(parts), "name": name, "highest": highest}
 
 

@@ -191,9 +191,13 @@ def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
             yield key, value
 
 
-def explained(error: SceneError) -> SceneError:
-    """An error of a config; what lacks all keys is explained where the working directory is another one."""
-    if error.rule != "is required" or Path("config/config.yaml").exists():
+def explained(error: SceneError, config: dict, module: bool) -> SceneError:
+    """An error of a config; what lacks all keys is explained. config: the merged one; module: whether the
+    Snakefile of another workflow uses this one as a module."""
+    if error.rule != "is required" or Path("config/config.yaml").exists() or (module and config):
         return error
+    if module:
+        rule = 'is empty: the Snakefile that has the module states `configfile: "..."` above it'
+        return SceneError("config", config, rule)
     rule = "has no config/config.yaml, over which others are laid: run Snakemake in the project's folder"
     return SceneError("folder", str(Path.cwd()), rule)

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from gaspart.analysis.observables import OBSERVABLES
-from gaspart.engines import Engine, EventDriven, engine_to_dict
+from gaspart.engines import Engine, chosen, engine_to_dict
 from gaspart.errors import SceneError, unknown_word
 from gaspart.keys.values import count_of, number
 from gaspart.reproduction.config import check_point, gridded_points
@@ -24,16 +24,17 @@ from gaspart.reproduction.points.measurable import distinct, require_observable
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.points.point_keys import ENGINE_KEYS, EXTENTS, GAS, PREFIX
 from gaspart.reproduction.sweep_axes import axes_of, names_of
+from gaspart.reproduction.sweep_plot import SweepTable
 from gaspart.reproduction.sweep_points import make_all
 from gaspart.reproduction.sweep_table import Measured, measured, table
 from gaspart.runs import Accuracy
-from gaspart.scene.scene import Scene
+from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
 from gaspart.trajectory.until import Until
 
 if TYPE_CHECKING:
-    import xarray as xr
+    pass
 
 EXPERIMENT = "points"
 """The folder of the trajectories within that of a sweep; with each point's name it makes the seeds."""
@@ -51,7 +52,7 @@ def sweep(
     observables: Iterable[str],
     *,
     folder: str | Path,
-    engine: Engine | None = None,
+    engine: Engine | str | None = None,
     duration: float | None = None,
     until: Accuracy | Sequence[Accuracy] | None = None,
     at_most: float | None = None,
@@ -63,7 +64,7 @@ def sweep(
     workers: int = 1,
     progress: Progress | None = None,
     overwrite: bool = False,
-) -> xr.Dataset:
+) -> SweepTable:
     """Run a scene for each combination of some values, and measure observables of each run.
 
     over: the values of each key that varies; without any key there is one point. A key is one of a config:
@@ -80,17 +81,19 @@ def sweep(
     random stream. workers: processes that run points at a time, which changes no bit. progress(done, points,
     name) is called when a point is complete; by default it writes a line to the standard error.
 
-    Returns a Dataset with a dimension for each key, with each observable, its standard uncertainty (_error),
-    its value by theory, if there is one (_theory), its curve's own dimension, such as `rdf_distance` (where
-    places differ `rdf_distance_places`), and `duration`. What could not be made or measured is NaN; `failure`
-    has the reason, otherwise "". Trajectories are `folder`/points/<name>/replica-<k>.nc: complete ones are
-    not made again, one that was cut short goes on, and those of other settings are replaced only with
-    `overwrite`. Several sweeps may use a folder, also at the same time.
+    Returns a Dataset that plots itself (`SweepTable.plot`), with a dimension for each key, with each
+    observable, its standard uncertainty (_error), its value by theory, if there is one (_theory), its curve's
+    own dimension, such as `rdf_distance` (where places differ `rdf_distance_places`), `face` and
+    `component`, which all observables share, and `duration`. What could not be made or measured is NaN;
+    `failure` has the reason, otherwise "". Trajectories are `folder`/points/<name>/replica-<k>.nc: complete
+    ones are not made again, one that was cut short goes on, and those of other settings are replaced only
+    with `overwrite`. Several sweeps may use a folder, also at the same time.
 
     Raises SceneError for settings that contradict each other, trajectories of another sweep, an observable
     that no point can have, and a grid of which no point can be run.
     """
-    engine = _checked(scene, EventDriven() if engine is None else engine)
+    require_scene(scene)
+    engine = chosen(engine)
     axes = axes_of(over)
     names = names_of(observables, axes)
     length = _length(duration, until, at_most, samples, equilibration)
@@ -114,15 +117,6 @@ class _Plan:
     def able(self) -> list[Point]:
         """The points without a reason."""
         return [point for point in self.points if point.name not in self.failures]
-
-
-def _checked(scene: Any, engine: Any) -> Engine:
-    """The engine. Raises SceneError for other things."""
-    if not isinstance(scene, Scene):
-        raise SceneError("scene", scene, "must be a gaspart.Scene")
-    if not isinstance(engine, Engine):
-        raise SceneError("engine", engine, "must be an engine, such as gaspart.EventDriven()")
-    return engine
 
 
 def _experiment(point: dict[str, Any], axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:

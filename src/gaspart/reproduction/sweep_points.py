@@ -6,25 +6,26 @@ the files of all, such as a full disk or a trajectory of another sweep, ends the
 
 from __future__ import annotations
 
-import fcntl
 import os
 import pickle
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from multiprocessing import connection
 from pathlib import Path
-from signal import SIGTERM
+from signal import SIGTERM, raise_signal
 
 from gaspart.errors import SceneError, SimulationError
+from gaspart.files import only_process
 from gaspart.interruption import deferred, exit_on_signals
 from gaspart.kernels.compile.loading import load_numba
 from gaspart.reproduction.jobs.replicas import replica_paths, write_replicas
 from gaspart.reproduction.jobs.simulate import recipes, record
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.points.variants import compile_kernels, compile_task, variant
+from gaspart.system import POSIX
 
 _LOOK = 0.1  # seconds between two looks at signals while processes run
 _PATIENCE = 60.0  # seconds for a process to write a checkpoint before it is killed
@@ -42,6 +43,8 @@ def make_all(
         for point in ordered:
             finished(point, make(point, overwrite))
         return
+    if not POSIX:
+        raise SceneError("workers", workers, "more than one process needs Linux or macOS; workers=1")
     for one in {variant(point): point for point in ordered}.values():  # or each process would compile them
         with suppress(SceneError, SimulationError):  # of its own point alone
             compile_kernels(compile_task(one))
@@ -54,7 +57,7 @@ def make(point: Point, overwrite: bool) -> str:
     folder = Path(point.path)
     try:
         wanted = recipes(**point.arguments)
-        with _alone(folder):
+        with only_process(folder, wait=True):
             if not folder.exists():
                 write_replicas(record, wanted, folder, None, overwrite)
                 return ""
@@ -72,23 +75,6 @@ def make(point: Point, overwrite: bool) -> str:
     except MemoryError:
         return "there is not enough memory"
     return ""
-
-
-@contextmanager
-def _alone(folder: Path) -> Iterator[None]:
-    """Wait until no other process makes the point of a folder. May raise OSError."""
-    path = Path(f"{folder}.lock")
-    while True:
-        flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW
-        with open(os.open(path, flags, 0o666), "rb", buffering=0) as file:
-            fcntl.flock(file, fcntl.LOCK_EX)
-            with suppress(FileNotFoundError):  # the process that held it has removed it
-                if os.stat(path).st_ino == os.fstat(file.fileno()).st_ino:
-                    try:
-                        yield
-                    finally:
-                        path.unlink(missing_ok=True)
-                    return
 
 
 class _Process:
@@ -199,7 +185,7 @@ def _end_with_parent() -> None:
     standard input is then closed."""
     while os.read(0, 64):
         pass
-    os.kill(os.getpid(), SIGTERM)
+    raise_signal(SIGTERM)
 
 
 if __name__ == "__main__":

@@ -10,11 +10,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.declaration import DIMENSIONS
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import Observable
 from gaspart.engines import Engine, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.sweep_plot import SweepTable
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.yaml_text import dump_yaml
@@ -47,7 +49,7 @@ def measured(point: Point, names: Sequence[str], part: bool) -> tuple[Measured, 
                 durations.append(float(trajectory["time"][-1]))
                 for name in names:
                     try:
-                        found[name].append(measure(name, trajectory, start))
+                        found[name].append(measure(trajectory, name, start))
                     except SceneError as error:
                         refused.setdefault(name, error.inside(f"{name} of {path}"))
         except SceneError as error:  # a damaged file
@@ -57,7 +59,7 @@ def measured(point: Point, names: Sequence[str], part: bool) -> tuple[Measured, 
 
 def table(
     rows: list[Measured], names: Sequence[str], axes: Mapping[str, list], run: Mapping[str, Any]
-) -> xr.Dataset:
+) -> SweepTable:
     """The Dataset of a sweep; rows: in the order of the product of the values of `axes`; run: scene, engine
     and seed, which its attributes state."""
     data = xr.Dataset(
@@ -71,14 +73,14 @@ def table(
             found[number] = None
             reasons = [failures[number], f"{name}: has other components than elsewhere"]
             failures[number] = "; ".join(filter(None, reasons))
-        for key, variable in _variables(name, found, axes).items():
-            data[key] = variable
+        of_one = xr.Dataset(_variables(name, found, axes))
+        data = xr.merge([data, of_one], join="outer", combine_attrs="override")
     durations = [float(np.mean(row.durations)) if row.durations else np.nan for row in rows]
     shape = [len(values) for values in axes.values()]
     data["duration"] = (tuple(axes), np.reshape(durations, shape), {"units": "time"})
     about = {"long_name": "why something is NaN"}
     data["failure"] = (tuple(axes), np.reshape(np.array(failures, dtype=object), shape), about)
-    return data
+    return SweepTable(data.data_vars, data.coords, data.attrs)
 
 
 def _of_other_form(points: Sequence[list[Observable] | None]) -> list[int]:
@@ -109,7 +111,8 @@ def _variables(
     along = [str(dim) for dim in first.estimate.dims]
     places = [[one.estimate[dim].values for dim in along] for replicas in known for one in replicas]
     common = all(np.array_equal(a, b) for row in places for a, b in zip(row, places[0], strict=True))
-    dims = (*axes, *(f"{name}_{dim}" for dim in along))
+    inner = [dim if common and DIMENSIONS[dim].names else f"{name}_{dim}" for dim in along]
+    dims = (*axes, *inner)
     found = {}
     for part in _PARTS:
         each = [mean_of(replicas, part) if replicas else None for replicas in points]
@@ -120,7 +123,7 @@ def _variables(
     for axis, dim in enumerate(along):
         about = dict(first[dim].attrs)
         if common:
-            found[f"{name}_{dim}"] = xr.DataArray(places[0][axis], dims=(f"{name}_{dim}",), attrs=about)
+            found[inner[axis]] = xr.DataArray(places[0][axis], dims=(inner[axis],), attrs=about)
         else:
             each = [replicas[0].estimate[dim].values if replicas else None for replicas in points]
             at = xr.DataArray(_stacked(each, axes), dims=(*axes, f"{name}_{dim}"), attrs=about)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.keys import (
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
 FACES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
+"""Keys of faces. In results they are named as walls, `x low`; users may write either."""
 COMPONENTS = ("all", "normal")
 WAVEFORMS = ("sine", "sawtooth")
 FLOW, GRADIENT = 0, 1
@@ -278,6 +279,18 @@ def faces_of(scene: Scene, kind: type[S]) -> list[tuple[int, S]]:
 def pistons(scene: Scene) -> list[tuple[int, Piston]]:
     """The faces that are pistons, one at most, with their number."""
     return faces_of(scene, Piston)
+
+
+def key_of(face: Any) -> Any:
+    """The key of a face that is given by either of its names; other things as they are."""
+    return face.strip().replace(" ", "_") if isinstance(face, str) else face
+
+
+def wall_of(face: Any) -> Any:
+    """The name of a face as a wall, `x low`, likewise; of several faces each."""
+    if isinstance(face, list | tuple):
+        return [wall_of(one) for one in face]
+    return face.strip().replace("_", " ") if isinstance(face, str) else face
 
 
 def sliding_faces(scene: Scene) -> list[tuple[int, Thermal]]:

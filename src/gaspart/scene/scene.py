@@ -23,6 +23,7 @@ from gaspart.keys import (
     from_mapping,
     instance_of,
     instances_of,
+    refuse_unknown,
     set_fields,
     validate,
     vector,
@@ -32,7 +33,7 @@ from gaspart.scene.container import Container
 from gaspart.scene.driving import check_driven
 from gaspart.scene.face_checks import check_faces
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
-from gaspart.scene.faces import LeesEdwards, Sticky, Surface, surface_from_dict, surface_to_dict
+from gaspart.scene.faces import LeesEdwards, Sticky, Surface, key_of, surface_from_dict, surface_to_dict
 from gaspart.scene.features import FEATURES, check_features, features
 from gaspart.scene.gas import Gas, Mixture, mixture_of
 from gaspart.scene.geometry import ball_volume
@@ -101,6 +102,8 @@ class Scene:
 
     def __post_init__(self) -> None:
         validate(self)
+        if isinstance(self.faces, dict):
+            set_fields(self, faces={key_of(name): face for name, face in self.faces.items()})
         if self.count > MOST_PARTICLES:
             raise SceneError("count", self.count, f"there may be {MOST_PARTICLES} particles")
         self._check_gravity()
@@ -344,6 +347,7 @@ class Scene:
             if not isinstance(mapping, dict):
                 raise SceneError("scene", mapping, "must be a mapping of keys to values")
             parts = dict(mapping)
+            refuse_unknown(cls, parts, "scene")
             if "container" not in parts:
                 raise SceneError("container", None, "is required")
             parts["container"] = from_mapping(Container, parts["container"], "container")
@@ -372,3 +376,9 @@ class Scene:
     def to_file(self, path: str | Path) -> None:
         """Write the scene as YAML."""
         write_yaml(path, self.to_dict())
+
+
+def require_scene(value: object) -> None:
+    """Raise SceneError for what is no scene, such as the path of its file."""
+    if not isinstance(value, Scene):
+        raise SceneError("scene", value, "must be a Scene, such as Scene.from_file(path)")

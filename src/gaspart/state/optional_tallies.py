@@ -6,7 +6,7 @@ its name in `Engine.tallies`, and a part (`engines.features.part.TallyPart`) tha
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, ClassVar
 
@@ -133,11 +133,28 @@ class PairImpulseTally(OptionalTally):
         return {"shell": self.shells}
 
 
-def impulse_tallies(text: str | None, of_pairs: str | None) -> tuple[OptionalTally, ...]:
-    """What a run asks for that is to keep impulses along an axis, of pairs, or both. Raises SceneError as
-    `from_text`."""
-    along = () if text is None else (ImpulseTally.from_text(text),)
-    return along if of_pairs is None else (*along, PairImpulseTally.from_text(of_pairs))
+def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int) -> tuple[ImpulseTally, ...]:
+    """Those along an axis, if a run of a scene can keep them and the density follows from them; tallies: the
+    names of those that its engine can make."""
+    asked = ImpulseTally("xyz"[axis], bins)
+    try:
+        asked.check(scene)
+    except SceneError:
+        return ()
+    one_mass = all(kind.alike for kind in scene.kinds)
+    pulled = bool(scene.gravity and scene.gravity[axis])
+    by_mass = pulled or scene.container.periodic[axis]
+    return (asked,) if asked.name in tallies and (one_mass or not by_mass) else ()
+
+
+def impulse_tallies(text: str | None) -> tuple[OptionalTally, ...]:
+    """What a run asks for that is to keep impulses, if it is. Raises SceneError as `from_text`."""
+    return () if text is None else (ImpulseTally.from_text(text),)
+
+
+def pair_impulse_tallies(text: str | None) -> tuple[OptionalTally, ...]:
+    """The same of those of pairs. Raises SceneError as `PairImpulseTally.from_text`."""
+    return () if text is None else (PairImpulseTally.from_text(text),)
 
 
 @dataclass(frozen=True)

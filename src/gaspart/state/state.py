@@ -135,11 +135,21 @@ class State:
         return self.kinetic_energy + self.potential_energy + self.vibrational_energy
 
     def copy(self) -> State:
-        """A state that shares no array with this one."""
+        """A state that shares no array with this one, to be changed and given to another simulation."""
         arrays: dict[str, Any] = {
             key: value.copy() for key, value in vars(self).items() if isinstance(value, np.ndarray)
         }
         return replace(self, **arrays)
+
+    def read_only(self) -> State:
+        """A state whose arrays cannot be changed: a change would not be that of the simulation."""
+        state = replace(self)
+        for key, value in vars(self).items():
+            if isinstance(value, np.ndarray):
+                view = value.view()
+                view.flags.writeable = False
+                setattr(state, key, view)
+        return state
 
 
 def _finite(values: np.ndarray) -> np.ndarray:

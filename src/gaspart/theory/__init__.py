@@ -8,4 +8,4 @@ is a ValueError.
 
 from gaspart.public import attach as _attach
 
-__getattr__, __dir__, __all__ = _attach(__name__)
+__getattr__, __dir__, __all__ = _attach(__name__, for_users=True)

@@ -44,12 +44,12 @@ from gaspart.theory.free_flights import free_time_pdf as free_time_pdf
 from gaspart.theory.freezing import COEXISTENCE_DENSITY as COEXISTENCE_DENSITY
 from gaspart.theory.freezing import COEXISTENCE_PRESSURE as COEXISTENCE_PRESSURE
 from gaspart.theory.freezing import CRYSTAL_OF_1024_DISCS as CRYSTAL_OF_1024_DISCS
-from gaspart.theory.freezing import LIQUID_DISCS as LIQUID_DISCS
-from gaspart.theory.freezing import LIQUID_OF_870_DISCS as LIQUID_OF_870_DISCS
+from gaspart.theory.freezing import ETOMICA_CRYSTAL_UNCERTAINTY as ETOMICA_CRYSTAL_UNCERTAINTY
 from gaspart.theory.freezing import LOWEST_CRYSTAL as LOWEST_CRYSTAL
 from gaspart.theory.freezing import alder_hoover_young_crystal as alder_hoover_young_crystal
 from gaspart.theory.freezing import coexistence_packing_fractions as coexistence_packing_fractions
 from gaspart.theory.freezing import crystal_finite_size_correction as crystal_finite_size_correction
+from gaspart.theory.freezing import etomica_crystal as etomica_crystal
 from gaspart.theory.freezing import speedy_crystal as speedy_crystal
 from gaspart.theory.geometry import number_density as number_density
 from gaspart.theory.geometry import packing_fraction as packing_fraction
@@ -134,6 +134,8 @@ from gaspart.theory.structure import percus_yevick_rdf as percus_yevick_rdf
 from gaspart.theory.structure import percus_yevick_structure_factor as percus_yevick_structure_factor
 from gaspart.theory.structure import verlet_weis_rdf as verlet_weis_rdf
 from gaspart.theory.structure import verlet_weis_structure_factor as verlet_weis_structure_factor
+from gaspart.theory.tables import literature as literature
+from gaspart.theory.tables import measured as measured
 from gaspart.theory.vibrated import bed_height as bed_height
 from gaspart.theory.vibrated import bed_loss as bed_loss
 from gaspart.theory.vibrated import sawtooth_temperature as sawtooth_temperature

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gaspart.theory._arguments import Numbers, Values, checked, checked_packing_fraction
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 from gaspart.theory.brownian import langevin_msd
 from gaspart.theory.enskog import collision_rate, enskog_diffusion, enskog_viscosity, mean_free_path
 from gaspart.theory.geometry import number_density
@@ -23,6 +23,18 @@ VISCOSITY_RATIO_UNCERTAINTY = 0.02
 _SHIFT = 0.05  # of the shift in a long container, see `diffusion_in_cube`
 _DENSE = 0.45, 0.03
 # Packing fraction from which on the uncertainty is larger, and which; the difference is 2 % at 0.487.
+_VELOCITY_DECAY = {
+    2: (
+        (0.846023, 1.076378, 1.483431, 2.029232, 2.713878),
+        (0.4579645, 0.4737591, 0.0658662, 0.0023976, 0.0000127),
+    ),
+    3: (
+        (0.6175907, 0.8096178, 1.1017965, 1.4991710, 2.0148242),
+        (0.7870072, 0.1861966, 0.0259296, 0.0008627, 0.0000038),
+    ),
+}
+"""Rates, in collisions of a particle, and weights of the velocity autocorrelation by the linear Boltzmann
+equation, whose spectrum five Sonine polynomials represent (by `boltzmann`, tested)."""
 YEH_HUMMER_CONSTANT = 2.837297
 """Madelung-like constant of a cubic periodic container (Yeh and Hummer 2004, abstract)."""
 
@@ -127,15 +139,20 @@ def enskog_mean_squared_displacement(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Mean-squared displacement 2 d D [t - (1 - exp(-g t)) / g], g = k_B T / (m D), D Enskog's (length^2).
+    """Mean-squared displacement 2 d int (t - s) C(s) ds, C(s) = (k_B T / m) sum w exp(-r s) (length^2).
 
-    From an exponential velocity autocorrelation: ballistic d (k_B T / m) t^2 at short times (exact), 2 d D t
-    at long ones; g is 2 to 3 % below the exact initial rate. Dilute gases; no long-time tail. `time`
+    The velocity autocorrelation is that of the linear Boltzmann equation at Enskog's collision rate, with the
+    rates r and weights w of five Sonine polynomials: at long times, where it is 2 d D t, to 6e-5 of Enskog's
+    D (2D) or 1e-5 (3D), before that to less. No correlated collisions and no long-time tail. `time`
     broadcasts with eta.
     """
-    diffusion = enskog_diffusion(packing_fraction, dimension, diameter, temperature, mass, contact)
-    rate = temperature / (mass * diffusion)
-    return langevin_msd(time, diffusion, rate, dimension)
+    gas = {"diameter": diameter, "temperature": temperature, "mass": mass, "contact": contact}
+    frequency = collision_rate(packing_fraction, dimension, **gas)
+    total = 0.0
+    for relative, weight in zip(*_VELOCITY_DECAY[checked_dimension(dimension)], strict=True):
+        rate = relative * frequency
+        total = total + weight * langevin_msd(time, temperature / (mass * rate), rate, dimension)
+    return total
 
 
 def _spreading(

@@ -14,24 +14,21 @@ COEXISTENCE_PRESSURE = {2: 9.185, 3: 11.5727}
 
 Discs (liquid and hexatic): Bernard and Krauth, Phys. Rev. Lett. 107, 155704 (2011); Engel and others, Phys.
 Rev. E 87, 042134 (2013); there written beta P (2 sigma)^2 with sigma the radius. The equal-area
-construction of their pressures of 1024^2 discs, which are in the repository of LIQUID_OF_870_DISCS, gives
-9.1850. Spheres (fluid and face-centred cubic): 11.5727(10), Fernandez and others, Phys. Rev. Lett. 108,
-165701 (2012), abstract.
+construction of their pressures of 1024^2 discs (`theory.literature`) gives 9.1850. Spheres (fluid and
+face-centred cubic): 11.5727(10), Fernandez and others, Phys. Rev. Lett. 108, 165701 (2012), abstract;
+11.5681 by equal pressures and chemical potentials of the equations that etomica fits to simulations of the
+fluid and of a crystal without vacancies.
 """
 COEXISTENCE_DENSITY = {2: (0.700 * 4.0 / np.pi, 0.716 * 4.0 / np.pi), 3: (0.939, 1.0375)}
 """Number densities of the fluid that freezes and of the ordered phase that melts; sources as above."""
-LIQUID_DISCS = (0.698, 9.1708)
-"""Packing fraction and pressure of the disc liquid just before freezing, at 65 536 discs: 9.17080(25),
-Bernard and Krauth (2011), and 9.17078(5), Engel and others (2013), in jellyfysh/HistoricDisks."""
-LIQUID_OF_870_DISCS = {0.68: (8.513233, 0.000037), 0.70: (9.12956, 0.00017)}
-"""Pressure of 870 discs and its uncertainty by packing fraction, in a periodic container of sides 29 to
-30 sqrt(3) / 2: event-chain programs of Li and others, J. Chem. Phys. 157, 234111 (2022), in their repository
-jellyfysh/HistoricDisks (DigitizedData/ThisWork.csv). In a square they find 8.513249(37) and 9.12966(15). At
-0.68 the virial series with its tail is 2.7 % higher."""
 CRYSTAL_OF_1024_DISCS = (0.725, 9.382, 0.024)
 """Packing fraction, pressure and its uncertainty of 1024 discs in a crystal, in a periodic container of
 sides 1 to sqrt(3) / 2: P V_0 / N k_B T = 8.125(21), Zollweg and Chester, Phys. Rev. B 46, 11186 (1992),
 figure 1, as read in jellyfysh/HistoricDisks."""
+ETOMICA_CRYSTAL_UNCERTAINTY = 1.6e-5
+"""Relative uncertainty of `etomica_crystal` from 0.527 on: its largest difference from ten runs of DynamO."""
+_ETOMICA = [-0.4338711486444215, 0.390812049911003, 0.595451683236023, 18.59059648880398, -288.1675745716088]
+_ETOMICA += [3206.943027086472, -21037.60905875148, 83177.92071175583, -180636.8017944632, 170205.791013758]
 LOWEST_CRYSTAL = {2: 0.70, 3: 0.49}
 """Packing fraction below which the crystals' equations are not drawn: no crystal lives there for long."""
 
@@ -58,6 +55,18 @@ def speedy_crystal(packing_fraction: Numbers) -> Values:
     """
     z = 1.0 / (1.0 + _expansion(packing_fraction, 3))
     return 3.0 / (1.0 - z) - 0.5921 * (z - 0.7072) / (z - 0.601)
+
+
+def etomica_crystal(packing_fraction: Numbers) -> Values:
+    """Face-centred cubic crystal of spheres without vacancies: Z = 3/x + c_0 + c_1 x + ... + c_9 x^9.
+
+    x = 1 - eta / eta_c. The coefficients that etomica fits to simulations of its authors from 0.524 on
+    (github.com/etomica/etomica, HardSphereSolid.java, commit b6fc002). From 0.527 to 0.545 it is within
+    ETOMICA_CRYSTAL_UNCERTAINTY of runs of DynamO with 1.1e6 spheres, errors 3 to 6e-6 (`theory.literature`,
+    tested), below which Speedy's equation is by 2 to 5e-4. From LOWEST_CRYSTAL to close packing.
+    """
+    x = 1.0 - 1.0 / (1.0 + _expansion(packing_fraction, 3))
+    return 3.0 / x + np.polynomial.polynomial.polyval(x, _ETOMICA)
 
 
 def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Values:

@@ -21,9 +21,9 @@ HIGHEST_PACKING_FRACTION = {2: STABLE_DISCS, 3: METASTABLE_SPHERES}
 
 # Relative standard uncertainty of the equation of spheres, up to each packing fraction and beyond: its
 # largest difference from the independent equation that etomica fits to its authors' simulations
-# (github.com/etomica/etomica, HardSphereFluid.java, commit 6c23860). Up to the first, 193 runs of DynamO with
-# up to 2e6 spheres agree with it (tested).
-_SPHERES_ERROR = np.array([0.471239, 0.523599]), np.array([4.3e-6, 1e-5, 1.1e-4])
+# (github.com/etomica/etomica, HardSphereFluid.java, commit 6c23860). 193 runs of DynamO with up to
+# 2e6 spheres, up to 0.471, agree with it (tested).
+_SPHERES_ERROR = np.array([0.445059, 0.523599]), np.array([4.3e-6, 1e-5, 1.1e-4])
 # What the series of discs lacks near freezing, or a little more: 0.140 at eta = 0.67 and 0.267 at 0.68, by
 # the pressures of 224 and 870 discs of Li and others, J. Chem. Phys. 157, 234111 (2022), continued to
 # infinity as 1/N, and 1.2 at 0.70, the pressure of coexistence.
@@ -60,7 +60,7 @@ def compressibility_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
     2D, in quadrature: the coefficients' uncertainties; the tail's slope; the difference to Liu's independent
     equation, but no more than the complete tail, because at low density the series is the better of the two;
     and what both are found to lack near freezing, 0.4 % at eta = 0.65 and 10 % at 0.70. 3D: the sharper of
-    two bounds: the difference to another equation (4.3e-6 of Z up to eta = 0.471, 1e-5 up to 0.524), or the
+    two bounds: the difference to another equation (4.3e-6 of Z up to eta = 0.445, 1e-5 up to 0.524), or the
     difference to the virial series to B10 plus its tail and the coefficients' uncertainties (below 1e-6 for
     eta < 0.1).
     """

@@ -13,9 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError, optional
-from gaspart.files import FileKind, begins_with, descriptor_path, output_path, writing
+from gaspart.files import FileKind, begins_with, output_path, writing
 from gaspart.state.insertion import per_particle
-from gaspart.trajectory.opening import check_frames, opened
+from gaspart.system import descriptor_path
+from gaspart.trajectory.opening import check_frames, opened, run_path
 from gaspart.trajectory.recipe import read_recipe
 
 EXPORT_FORMATS = {
@@ -48,7 +49,7 @@ def export(trajectory: str | Path, path: str | Path, frame: int = -1, overwrite:
     path = output_path(path)
     if path.suffix not in EXPORT_FORMATS:
         raise SceneError("output", str(path), f"must end in {' or '.join(EXPORT_FORMATS)}")
-    snapshot = _snapshot(Path(trajectory), frame)
+    snapshot = _snapshot(run_path(trajectory), frame)
     with writing(path, EXPORT_FORMATS[path.suffix], overwrite) as scratch:
         (_write_gsd if path.suffix == ".gsd" else _write_data)(scratch, snapshot)
     return path

@@ -16,6 +16,7 @@ from typing import BinaryIO
 
 import numpy as np
 
+from gaspart.system import read_at, write_at
 from gaspart.trajectory.amber import FRAME_COUNT_AT, MAGIC, WORD, Layout, frame_bytes
 
 _CHUNK = 1 << 24  # bytes that are read at once
@@ -42,7 +43,7 @@ def damaged_frame(file: int, header: bytes, numbers: range) -> int | None:
     at_once = max(1, _CHUNK // size)
     for first in range(numbers.start, numbers.stop, at_once):
         wanted = min(at_once, numbers.stop - first)
-        data = memoryview(os.pread(file, wanted * size, len(header) + first * size))
+        data = memoryview(read_at(file, wanted * size, len(header) + first * size))
         for n in range(wanted):
             frame = data[n * size : (n + 1) * size]
             if len(frame) < size or frame[-WORD:] != _frame_checksum(frame, first + n, header_checksum):
@@ -54,7 +55,7 @@ def frames_of(file: BinaryIO, header: bytes, count: int) -> Iterator[memoryview]
     """The first frames of an open file, as they are in it."""
     size = frame_bytes(header)
     for n in range(count):
-        yield memoryview(bytearray(os.pread(file.fileno(), size, len(header) + n * size)))
+        yield memoryview(bytearray(read_at(file.fileno(), size, len(header) + n * size)))
 
 
 class CheckedFrames:
@@ -104,7 +105,7 @@ class Frames:
         except OSError:
             self._file.truncate(0)
             raise
-        os.pwrite(self._file.fileno(), header[: len(MAGIC)], 0)
+        write_at(self._file.fileno(), header[: len(MAGIC)], 0)
 
     def append(self, values: dict[str, np.ndarray | float]) -> None:
         """Write one frame: a value for every variable of the layout, vectors of 2 or 3 components."""
@@ -128,7 +129,7 @@ class Frames:
             unwritten = unwritten[self._file.write(unwritten) :]
 
     def _count_frames(self) -> None:
-        os.pwrite(self._file.fileno(), struct.pack(">I", self.count), FRAME_COUNT_AT)
+        write_at(self._file.fileno(), struct.pack(">I", self.count), FRAME_COUNT_AT)
 
     def sync(self) -> None:
         """Return when all data are on the disk."""

@@ -13,7 +13,7 @@ from gaspart.scene.faces import GRADIENT, pistons
 from gaspart.state.given import state_from_arrays
 from gaspart.state.state import State
 from gaspart.trajectory.checkpoint import kept_beside
-from gaspart.trajectory.opening import checked
+from gaspart.trajectory.opening import checked, run_path
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe, read_recipe
 from gaspart.trajectory.run import simulation_of
@@ -31,14 +31,14 @@ def last_state(path: str | Path) -> State:
     another run, and, of a last frame, one that lacks particles (`follow`) or does not hold the state: of a
     scene with sticky faces.
     """
-    path = Path(path)
+    path = run_path(path)
     recipe = read_recipe(path)
     with checked(path) as (_, header, frames):
         checkpoint = kept_beside(path, header, "to start from the last frame, in single precision")
     if checkpoint and checkpoint.frames == frames:
         simulation = simulation_of(recipe)
         simulation.restore(checkpoint.arrays)
-        return simulation.state
+        return simulation.state.copy()
     if recipe.stored_count < recipe.scene.count:
         rule = f"has {recipe.stored_count} of {recipe.scene.count} particles, and no checkpoint"
         raise SceneError("file", str(path), rule)

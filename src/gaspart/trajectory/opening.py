@@ -9,13 +9,30 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from gaspart.errors import SceneError
-from gaspart.files import descriptor_path, open_regular
+from gaspart.files import open_regular
+from gaspart.scene.scene import Scene
+from gaspart.system import descriptor_path
 from gaspart.trajectory import amber
 from gaspart.trajectory.frames import CheckedFrames, damaged_frame, frame_count
 from gaspart.trajectory.partial import PARTIAL
 
 if TYPE_CHECKING:
     import netCDF4
+
+
+def run_path(given: object) -> Path:
+    """The path of a trajectory that a user gives. Raises SceneError for other things."""
+    if isinstance(given, str | os.PathLike):
+        return Path(given)
+    raise no_run(given)
+
+
+def no_run(given: object) -> SceneError:
+    """The error of what is no trajectory."""
+    rule = "must be the path of a trajectory, which gaspart.run writes"
+    if isinstance(given, Scene):
+        rule = "this is a scene: run it first, gaspart.run(scene, duration=..., path=...)"
+    return SceneError("trajectory", f"a {type(given).__name__}", rule)
 
 
 @contextmanager

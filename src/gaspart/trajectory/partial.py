@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -10,7 +9,8 @@ from pathlib import Path
 from typing import BinaryIO
 
 from gaspart.errors import SceneError
-from gaspart.files import FileKind, may_replace, open_regular
+from gaspart.files import FileKind, may_replace, only_process, open_regular
+from gaspart.system import NO_LINK
 from gaspart.trajectory import amber
 
 PARTIAL = ".partial"
@@ -52,22 +52,15 @@ def writing(path: Path) -> Iterator[None]:
 
 @contextmanager
 def locked(partial: Path) -> Iterator[BinaryIO]:
-    """The partial file, open to read and write, without a buffer, locked by this process.
+    """The partial file, open to read and write, without a buffer, locked by this process. It may be closed
+    within the block, as before it is renamed; the lock stays.
 
     Raises SceneError for a file that gaspart did not write, for a link, and for a file with a second name:
     what is written to it would change what the user has under that name.
     """
     with suppress(FileNotFoundError):  # another process has finished it just now
         may_replace(partial, UNFINISHED, overwrite=True)
-    descriptor = os.open(partial, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
-    with open(descriptor, "r+b", buffering=0) as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            ours = os.stat(partial).st_ino == os.fstat(file.fileno()).st_ino
-        except (BlockingIOError, FileNotFoundError):
-            ours = False
-        if not ours:
-            raise SceneError("path", str(partial), "is being written by another process")
+    with _alone(partial), open(partial, "r+b", buffering=0, opener=_open_or_create) as file:
         may_replace(partial, UNFINISHED, overwrite=True)  # again: it may have appeared before it was opened
         if os.fstat(file.fileno()).st_nlink > 1:
             rule = "is a file with a second name (a hard link), which would change too; copy it instead"
@@ -75,5 +68,22 @@ def locked(partial: Path) -> Iterator[BinaryIO]:
         try:
             yield file
         finally:
-            if os.fstat(file.fileno()).st_size == 0:
-                partial.unlink(missing_ok=True)
+            file.close()
+            with suppress(FileNotFoundError):  # it was renamed
+                if not partial.lstat().st_size:
+                    partial.unlink()
+
+
+@contextmanager
+def _alone(partial: Path) -> Iterator[None]:
+    """Hold the lock of a partial file. Raises SceneError if another process does."""
+    try:
+        with only_process(partial):
+            yield
+    except BlockingIOError:
+        raise SceneError("path", str(partial), "is being written by another process") from None
+
+
+def _open_or_create(path: str, flags: int) -> int:
+    """The opener of a file that may not exist yet, and is no link."""
+    return os.open(path, flags | os.O_CREAT | NO_LINK, 0o666)

@@ -12,7 +12,7 @@ from gaspart.errors import SceneError
 from gaspart.state.tally import ENERGY, Tally
 from gaspart.trajectory import amber
 from gaspart.trajectory.correlator import stress_units
-from gaspart.trajectory.opening import open_checked
+from gaspart.trajectory.opening import open_checked, run_path
 from gaspart.trajectory.pairs import pair_names
 from gaspart.trajectory.recipe import stored_recipe
 
@@ -57,7 +57,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
 
     from gaspart.trajectory.checked_store import CheckedStore
 
-    path = Path(path)
+    path = run_path(path)
     file, checked = open_checked(path)
     try:
         recipe = stored_recipe(file, path)

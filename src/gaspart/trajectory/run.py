@@ -26,7 +26,7 @@ from gaspart.trajectory.checkpoint import (
 )
 from gaspart.trajectory.extension import is_beginning, longer, take_over
 from gaspart.trajectory.frames import Frames, frame_count
-from gaspart.trajectory.opening import check_frames, checked
+from gaspart.trajectory.opening import check_frames, checked, run_path
 from gaspart.trajectory.partial import TRAJECTORY, locked, partial_path, writing
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
 from gaspart.trajectory.recording import Progress, Recording
@@ -69,7 +69,7 @@ def resume(path: str | Path, options: WriteOptions) -> Path:
     Raises SceneError if there is nothing to resume, if another version of the program began it, and for a
     file at `path` that is no complete trajectory of gaspart.
     """
-    path = Path(path)
+    path = run_path(path)
     partial = partial_path(path)
     try:
         with writing(path):
@@ -142,6 +142,7 @@ def _carry_out(wanted: Recipe, path: Path, options: WriteOptions) -> Path:
             # again: another process may have finished or begun a run before the lock
             if not is_finished(wanted, path, options.examiner, options.overwrite):
                 _record(wanted, simulation, file, path, options)
+                file.close()  # Windows renames no open file
                 place(partial, path, TRAJECTORY, options.overwrite or is_beginning(path, wanted))
                 if not options.keep_checkpoint:
                     remove_checkpoint(checkpoint)

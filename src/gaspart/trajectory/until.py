@@ -10,6 +10,7 @@ from itertools import takewhile
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import number
+from gaspart.scene.faces import wall_of
 
 _ACCURACIES = 1e-8, 1.0
 _FIRST = 64, 96
@@ -35,6 +36,7 @@ class Requirement:
         if self.start is not None:
             start = number("until.start", self.start, "must not be negative", least=0.0)
             object.__setattr__(self, "start", start)
+        object.__setattr__(self, "face", wall_of(self.face))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Requirement) and astuple(self) == astuple(other)

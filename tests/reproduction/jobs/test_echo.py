@@ -24,7 +24,7 @@ def test_a_short_way_leads_back_to_the_start_and_a_long_one_does_not(engine):
 
 def test_the_exponent_is_the_growth_of_neighbouring_runs():
     """Of spheres at 0.04, over distances from 1e-9 to 1e-2 diameters, which is some 6 collisions of each."""
-    run = xr.Dataset(*echo(GAS, EventDriven(), [(n,) for n in range(8)], 1.0, 0.5, 24))
+    run = xr.Dataset(*echo(GAS, EventDriven(), [(n,) for n in range(8)], 1.0, 0.7, 24))
     grown = []
     for s, apart in zip(run.collisions.values, run.divergence.values, strict=True):
         inside = (apart > 1e-9) & (apart < 1e-2)

@@ -1,4 +1,4 @@
-"""The data of what a reader may vary on the page."""
+"""The data of what a reader may choose on the page."""
 
 import json
 
@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gaspart.reproduction.report.explore import costs, series
+from gaspart.reproduction.families.tradeoff.choices import ENGINES, PARTS
+from gaspart.reproduction.families.tradeoff.panels import NAMES
+from gaspart.reproduction.report.explore import engines, series
 from gaspart.theory.state import compressibility_factor
 
 
@@ -26,22 +28,31 @@ def test_the_series_reach_the_equation_of_state_where_it_is_dilute():
         assert "NaN" not in json.dumps(one)
 
 
-def test_the_costs_are_those_of_the_model_by_engine():
-    dims = ("gas", "observable", "count", "accuracy", "engine")
-    seconds = np.arange(16.0).reshape(1, 2, 2, 2, 2)
-    seconds[0, 1, 1, 1, 1] = np.nan
+def test_costs_and_errors_of_all_engines_are_those_of_the_map():
+    """Two observables, of which one was measured at one of two packing fractions."""
+    shape = (2, 2, 3, len(ENGINES))
+    cost = np.arange(1.0, 1.0 + np.prod(shape)).reshape(shape)
+    cost[1, 0] = np.nan  # nothing was run
+    cost[0, 0, 0, 1], cost[0, 0, 0, 2] = np.inf, np.nan  # out of reach; not run
+    error = np.full((*shape, len(PARTS)), 0.00123456)
+    error[0, 0, 0, 2] = np.nan
+    dims = ("quantity", "fraction", "accuracy", "solver")
     dataset = xr.Dataset(
-        {"model": (dims, seconds), "gas_dimension": ("gas", [3]), "gas_packing_fraction": ("gas", [0.2])},
+        {"cost": (dims, cost), "error": ((*dims, "part"), error)},
         coords={
-            "observable": ["Z", "D"],
-            "count": [10, 20],
-            "accuracy": [0.1, 0.01],
-            "engine": ["event", "step"],
+            "quantity": ["Z", "D"],
+            "fraction": [0.01, 0.3],
+            "accuracy": [0.1, 0.01, 0.001],
+            "solver": list(ENGINES),
+            "part": list(PARTS),
+            "count": [1000, 10000],
         },
     )
-    found = costs(dataset)
-    assert [one["name"].split()[:3] for one in found] == [
-        [name, "of", str(count)] for count in (10, 20) for name in ("Z", "D")
-    ]
-    assert found[0]["seconds"] == {"event": [0.0, 2.0], "step": [1.0, 3.0]}
-    assert found[3]["seconds"] == {"event": [12.0, 14.0], "step": [13.0, None]}
+    found = engines(dataset)
+    assert found["count"] == 1000 and found["accuracies"] == [0.1, 0.01, 0.001]
+    assert [one["name"] for one in found["engines"]] == [NAMES[engine] for engine in ENGINES]
+    z, d = found["observables"]
+    assert (z["name"], z["fractions"], d["fractions"]) == ("compressibility factor Z", [0.01, 0.3], [0.3])
+    assert z["cost"][0][0] == [1.0, -1.0, None, 4.0] and d["cost"] == [cost[1, 1].tolist()]
+    assert z["error"][0][0][0] == [0.00123] * len(PARTS) and z["error"][0][0][2] == [None] * len(PARTS)
+    assert "NaN" not in json.dumps(found) and "Infinity" not in json.dumps(found)

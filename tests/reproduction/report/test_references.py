@@ -6,7 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from gaspart.reproduction.report.references import CITATION, Reference, cited, linked, read_references
+from gaspart.reproduction.report.references import (
+    CITATION,
+    Reference,
+    cited,
+    linked,
+    read_references,
+    used,
+)
 
 ROOT = Path(__file__).parents[3]
 REFERENCES = read_references(ROOT / "workflow/report/references.yaml")
@@ -48,6 +55,16 @@ def test_a_citation_is_names_and_a_link_to_the_number_of_its_reference(text, nam
     assert [int(number) for number in re.findall(r'href="#reference-(\d+)"', made)] == numbers
     assert all(f"{name}\N{NO-BREAK SPACE}<a " in made for name in names)
     assert numbers or made == text
+
+
+def test_only_cited_references_are_listed_and_numbered_from_1():
+    kept = used(["[Ernst 1970], [0, 1]", "the figure of [Source C]; [van\nZon 1998]"], BY_KEY)
+    assert [(one.key, one.number) for one in kept.values()] == [
+        ("van Zon 1998", 1),
+        ("Ernst 1970", 2),
+        ("source C", 3),
+    ]
+    assert 'href="#reference-3"' in linked("[source C]", kept) and used(["nothing"], BY_KEY) == {}
 
 
 def test_a_reference_is_listed_by_authors_place_and_year():

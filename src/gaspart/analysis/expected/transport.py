@@ -24,7 +24,7 @@ _WINDOW = 12.0, 24.0
 
 
 def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) -> Expected | None:
-    """(lag,) by an exponential velocity correlation; axes: along each of them."""
+    """(lag,) by the linear Boltzmann equation; axes: along each of them."""
     gas = None if run.is_subset else run.moving_fluid
     if gas is None:
         return None
@@ -32,7 +32,7 @@ def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) ->
     contact = bulk.contact_value(gas, equation)
     curve = theory.enskog_mean_squared_displacement(time, **gas.parameters, contact=contact)
     source = SOURCES[equation]
-    return curve / (run.dimension if axes else 1), math.nan, f"{source}, exponential velocity correlation"
+    return curve / (run.dimension if axes else 1), math.nan, f"{source}, linear Boltzmann equation"
 
 
 def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:

@@ -6,7 +6,9 @@ Mean values of a gas that fills its container evenly, with Maxwellian velocities
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -53,36 +55,40 @@ def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: i
     return 1.0 / free + SLOPE[dimension] * ratio / free**2 + BEND[dimension] * ratio**2 / free**3
 
 
-def rates(scene: Scene, dense: bool) -> Rates:
-    """The rates of a scene at its start, or as hot as its faces; dense: with contact values of a
-    dense gas."""
-    d, kinds = scene.dimension, _moving(scene)
+Kinds: TypeAlias = Sequence[Species | Particle]
+
+
+def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
+    """The rates of a scene at its start, or as hot as its faces; dense: with contact values of a dense gas;
+    instead: fewer kinds of particles that stand for those of the scene, each pair of which is evaluated."""
+    d, kinds = scene.dimension, moving_kinds(scene) if instead is None else instead
     heat = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
     if not kinds:
         return Rates(0.0, 0.0, math.inf)
-    squares = [max(_square(kind, d), heat / kind.mass) for kind in kinds]
-    often, speed = _rates(scene, dense, [1.0 / kind.mass for kind in kinds])
-    return Rates(*_rates(scene, dense, squares), path=speed / often if often > 0.0 else math.inf)
+    squares = [max(square_of(kind, d), heat / kind.mass) for kind in kinds]
+    often, speed = _rates(scene, kinds, dense, [1.0 / kind.mass for kind in kinds])
+    return Rates(*_rates(scene, kinds, dense, squares), path=speed / often if often > 0.0 else math.inf)
 
 
 def highest_speed(scene: Scene) -> float:
     """The highest mean speed that particles can come to have with the energy of the start, all of it shared
     so that each has the same momentum."""
-    kinds = _moving(scene)
+    kinds = moving_kinds(scene)
     energy = sum(
-        0.5 * kind.count * kind.mass * scene.dimension * _square(kind, scene.dimension) for kind in kinds
+        0.5 * kind.count * kind.mass * scene.dimension * square_of(kind, scene.dimension) for kind in kinds
     )
     inverse, number = sum(kind.count / kind.mass for kind in kinds), sum(kind.count for kind in kinds)
     return math.sqrt(2.0 * energy * inverse) / max(1, number)
 
 
-def _moving(scene: Scene) -> list[Species | Particle]:
+def moving_kinds(scene: Scene) -> list[Species | Particle]:
+    """Those whose particles are there and not fixed."""
     return [kind for kind in scene.kinds if kind.count and not kind.fixed]
 
 
-def _rates(scene: Scene, dense: bool, squares: list[float]) -> tuple[float, float]:
+def _rates(scene: Scene, kinds: Kinds, dense: bool, squares: list[float]) -> tuple[float, float]:
     """Frequency and speed of kinds with these mean squares of a velocity component."""
-    d, kinds, square = scene.dimension, _moving(scene), np.array(squares)
+    d, square = scene.dimension, np.array(squares)
     radius = np.array([kind.radius for kind in kinds])
     number = np.array([float(kind.count) for kind in kinds])
     lower, upper = accessible(scene)
@@ -97,7 +103,7 @@ def _rates(scene: Scene, dense: bool, squares: list[float]) -> tuple[float, floa
     return frequency, float((number * np.sqrt(mean * square)).sum() / number.sum())
 
 
-def _square(kind: Species | Particle, dimension: int) -> float:
+def square_of(kind: Species | Particle, dimension: int) -> float:
     """The mean square of a velocity component at the start."""
     if isinstance(kind, Particle):
         return sum(v * v for v in kind.velocity) / dimension

@@ -17,6 +17,7 @@ from gaspart.reproduction.archive.finished import Finished
 from gaspart.reproduction.archive.limits import MOST_ROWS
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.points.point import TRAJECTORIES
+from gaspart.system import memory
 from gaspart.trajectory import provenance
 from gaspart.trajectory.recipe import stored_revision
 
@@ -159,13 +160,12 @@ def rows_of(text: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
 
 def machine() -> dict[str, Any]:
     """Processor, memory and system of this machine, and the installed packages."""
-    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     packages = {one.name: one.version for one in distributions() if one.name}
     return {
         "processor": _processor(),
         "architecture": platform.machine(),
         "processors": os.cpu_count(),
-        "memory_bytes": memory,
+        "memory_bytes": memory(),
         "system": platform.platform(),
         "python": platform.python_version(),
         "packages": dict(sorted(packages.items(), key=lambda one: one[0].lower())),

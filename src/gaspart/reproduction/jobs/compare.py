@@ -80,7 +80,7 @@ def compare(
     exact.advance(duration=equilibration)
     rows: list[list[dict]] = [[] for _ in engines]
     for _ in range(samples):
-        state, references = exact.state, {}
+        state, references = exact.state.copy(), {}
         for row, engine in zip(rows, engines, strict=True):
             steps = max(LEAST_STEPS, round(interval / engine.time_step))
             duration = steps * engine.time_step

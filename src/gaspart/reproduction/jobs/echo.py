@@ -33,7 +33,7 @@ KEYS: dict[str, Kind] = {
         "number of echoes, after 1, 2 ... of the intervals into which the length is divided", default=1
     ),
 }
-DISPLACEMENT = 1e-10
+DISPLACEMENT = 1e-13
 """Root-mean-square displacement, in diameters, from which the exact flow's divergence is measured."""
 TANGENT_COLLISIONS = 100.0
 """Collisions per particle over which the exponent of the linearised dynamics is measured, for each seed."""
@@ -77,7 +77,7 @@ def echo(
     for n, seed in enumerate(seeds):
         equilibrium = Simulation(scene, EventDriven(), seed=seed)
         equilibrium.advance(duration=equilibration)
-        state = equilibrium.state
+        state = equilibrium.state.copy()
         there = engine.start(scene, state)
         start = there.state  # rounded to the engine's precision
         pair = [EventDriven().start(scene, one) for one in (state, _displaced(state, seed))]

@@ -174,7 +174,7 @@ def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: f
     quick = replace(engine, **usual) if engine.equation == "exact" else reference_engine()
     simulation = Simulation(scene, quick, seed=seed)
     simulation.advance(duration=equilibration)
-    return simulation.state
+    return simulation.state.copy()
 
 
 def _timed(

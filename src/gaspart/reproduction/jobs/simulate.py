@@ -147,10 +147,10 @@ def recipes(
 ) -> list[Recipe]:
     """The recipe of each replica; settings: the other fields of `Recipe`. Raises SceneError for settings
     that cannot be run."""
-    from gaspart.state.optional_tallies import impulse_tallies
+    from gaspart.state.optional_tallies import impulse_tallies, pair_impulse_tallies
     from gaspart.trajectory.correlator import Correlations
     from gaspart.trajectory.recipe import Recipe
 
-    tallies = impulse_tallies(impulses, pair_impulses)
+    tallies = *impulse_tallies(impulses), *pair_impulse_tallies(pair_impulses)
     stated = None if correlations is None else Correlations(**correlations)
     return [Recipe(seed=seed, correlations=stated, tallies=tallies, **settings) for seed in seeds]

@@ -1,5 +1,5 @@
-"""Quantities that a reader may vary on the page, from data that the figures have measured: the packing
-fraction of a virial series, and the accuracy for which a run is to be paid."""
+"""What a reader may choose on the page, from data that the figures have measured: the packing fraction of a
+virial series, and the observable, the packing fraction and the accuracy for which an engine is wanted."""
 
 from __future__ import annotations
 
@@ -19,19 +19,20 @@ if TYPE_CHECKING:
 _STEPS = 100
 
 
-def explanations(paths: Mapping[str, str]) -> dict[str, Any] | None:
-    """Quantities that a reader may vary, from the measurements of figures, {figure: path}; None unless there
-    are an equation of state and costs."""
+def states(paths: Mapping[str, str]) -> list[dict[str, Any]]:
+    """`series` of the measurements of figures, {figure: path}, that are equations of state."""
     import xarray as xr
 
-    states = {figure: stated for figure, stated in registry.series().items() if figure in paths}
-    prices = [figure for figure in registry.costs() if figure in paths]
-    if not states or not prices:
-        return None
-    return {
-        "series": series({figure: xr.load_dataset(paths[figure]) for figure in states}, states),
-        "costs": [row for figure in prices for row in costs(xr.load_dataset(paths[figure]))],
-    }
+    stated = {figure: one for figure, one in registry.series().items() if figure in paths}
+    return series({figure: xr.load_dataset(paths[figure]) for figure in stated}, stated)
+
+
+def choice_of_engine(paths: Mapping[str, str]) -> dict[str, Any] | None:
+    """`engines` of the figure of the cost of an accuracy, with its name; None unless it is on the page."""
+    import xarray as xr
+
+    found = [figure for figure in registry.costs() if figure in paths]
+    return {"figure": found[0], **engines(xr.load_dataset(paths[found[0]]))} if found else None
 
 
 def series(
@@ -62,27 +63,50 @@ def series(
     return rows
 
 
-def costs(dataset: xr.Dataset) -> list[dict[str, Any]]:
-    """For each gas, number of particles and observable of a figure of costs the accuracies, and by engine the
-    seconds of processor time that reach them by the fitted model, None where the engine does not."""
-    rows = []
-    for gas in range(dataset.sizes["gas"]):
-        for count in dataset["count"].values:
-            for observable in ("Z", "D"):
-                at = dataset.isel(gas=gas).sel(count=count, observable=observable)
-                kind = "discs" if int(at["gas_dimension"]) == 2 else "spheres"
-                eta = float(at["gas_packing_fraction"])
-                rows.append(
-                    {
-                        "name": f"{observable} of {count} {kind} at packing fraction {eta:g}",
-                        "accuracy": _numbers(dataset["accuracy"].values),
-                        "seconds": {
-                            str(engine): _numbers(at["model"].sel(engine=engine).values)
-                            for engine in dataset["engine"].values
-                        },
-                    }
-                )
-    return rows
+def engines(dataset: xr.Dataset) -> dict[str, Any]:
+    """Costs and errors of all engines, from a dataset of `families.tradeoff.maps`.
+
+    `count` of particles; `accuracies`; `engines`: name and colour of each; `parts`: what makes errors;
+    `observables`: of each its name, its packing fractions and over packing fraction, accuracy and engine
+    `cost` in s (None if the engine was not run, -1 where none of its settings is so accurate) and, over part
+    too, `error`, relative (None where it is not known).
+    """
+    from matplotlib.colors import to_hex
+
+    from gaspart.reproduction.families.tradeoff import panels
+
+    found = []
+    for quantity in dataset["quantity"].values:
+        of = dataset.sel(quantity=quantity)
+        of = of.isel(fraction=np.isfinite(of["cost"]).any(("accuracy", "solver")).values)
+        if of.sizes["fraction"]:
+            cost = of["cost"].transpose("fraction", "accuracy", "solver")
+            found.append(
+                {
+                    "key": str(quantity),
+                    "name": panels.TITLES[str(quantity)].replace("$", ""),
+                    "fractions": _numbers(of["fraction"].values),
+                    "cost": _nested(np.where(np.isposinf(cost), -1.0, cost)),
+                    "error": _nested(of["error"].transpose(*cost.dims, "part").values),
+                }
+            )
+    return {
+        "count": int(dataset["count"].values[0]),
+        "accuracies": _numbers(dataset["accuracy"].values),
+        "engines": [
+            {"name": panels.NAMES[engine], "colour": to_hex(panels.tint(engine))}
+            for engine in map(str, dataset["solver"].values)
+        ],
+        "parts": list(panels.PART_NAMES),
+        "observables": found,
+    }
+
+
+def _nested(values: np.ndarray) -> list:
+    """An array as nested lists of numbers as JSON has them, with three digits."""
+    if values.ndim > 1:
+        return [_nested(part) for part in values]
+    return [float(f"{value:.3g}") if math.isfinite(value) else None for value in values.tolist()]
 
 
 def _numbers(values: np.ndarray) -> list[float | None]:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import html
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from gaspart.yaml_text import read_yaml
@@ -59,6 +59,14 @@ def cited(citation: re.Match[str], references: Mapping[str, Reference]) -> Refer
     """The reference that a match of `CITATION` cites; None for other texts in square brackets."""
     key = " ".join(citation[1].split())
     return references.get(key) or references.get(key[0].lower() + key[1:])
+
+
+def used(texts: Iterable[str], references: Mapping[str, Reference]) -> dict[str, Reference]:
+    """The references that some texts cite, by key and in the same order, numbered from 1."""
+    found = (cited(citation, references) for text in texts for citation in CITATION.finditer(text))
+    keys = {reference.key for reference in found if reference is not None}
+    kept = (reference for key, reference in references.items() if key in keys)
+    return {one.key: replace(one, number=number) for number, one in enumerate(kept, 1)}
 
 
 def linked(text: str, references: Mapping[str, Reference]) -> str:

@@ -88,7 +88,7 @@ def _curves(eta, dimension, interval, lags):
         "viscosity": float(theory.enskog_viscosity(eta, dimension)),
         "time": time,
         "msd": theory.enskog_mean_squared_displacement(time, eta, dimension),
-        "msd_error": 1e-3 * theory.enskog_mean_squared_displacement(time, eta, dimension),
+        "msd_error": 4e-4 * theory.enskog_mean_squared_displacement(time, eta, dimension),
         "running": running,
         "running_error": np.full(lags, 1e-4),
     }

@@ -68,8 +68,9 @@ def discs(error=0.005, seed=1):
 
 def _compared(seed):
     """The pressures of 870 discs, as published."""
-    known = theory.LIQUID_OF_870_DISCS
-    eta, pressure = np.array(list(known)), np.array([value for value, _ in known.values()])
+    known = theory.literature("pressure", 2)
+    known = known[(known.container == "29 x 30") & np.isin(known.packing_fraction, [0.68, 0.7])]
+    eta, pressure = known.packing_fraction, known.value
     dataset = _table(eta, pressure, np.full(eta.size, 0.1), 0.0015, seed + 1)
     names = [f"pressure{name}" for name in ("", "_error", "_drift", "_drift_error")]
     renamed = {name: f"compared_{name}" for name in (*names, "packing_fraction")}
@@ -80,7 +81,7 @@ def spheres(error=0.005, seed=1):
     """The crystal melts below 0.5; a fluid start stays fluid to 0.5."""
     volume = np.pi / 6.0
     fluid = theory.compressibility_factor(np.minimum(SPHERES, 0.5), 3)
-    crystal = np.where(SPHERES >= 0.5, theory.speedy_crystal(np.maximum(SPHERES, 0.5)), fluid)
+    crystal = np.where(SPHERES >= 0.5, theory.etomica_crystal(np.maximum(SPHERES, 0.5)), fluid)
     z = np.stack([crystal, fluid])
     order = np.array([[0.02, 0.02, 0.4, 0.5, 0.52], [0.02, 0.02, 0.02, np.nan, np.nan]])
     dataset = _table(SPHERES, z * SPHERES / volume, order, error, seed)

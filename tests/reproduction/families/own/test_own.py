@@ -158,7 +158,7 @@ def test_the_names_of_the_curves_are_known(simulated):
     with gp.open_trajectory(path) as trajectory:
         for name in OBSERVABLES:
             try:
-                found = measuring.measure(name, trajectory)
+                found = measuring.measure(trajectory, name)
             except SceneError:  # needs another run
                 continue
             if any(found[dim].dtype.kind in "fiu" for dim in found.estimate.dims):

@@ -17,7 +17,7 @@ def echoes(growth, engine="event", first=None, jump_after=None, seeds=6, samples
     distance = np.minimum((first or SIDE * 2.0**-53) * np.exp(growth * s), 3.0)
     if jump_after is not None:
         distance = np.where(s > jump_after, 2.0, distance)
-    apart = np.minimum(1e-10 * np.exp(growth * s), 3.0)
+    apart = np.minimum(1e-13 * np.exp(growth * s), 3.0)
     attributes = {"count": 125, "dimension": 3, "side": SIDE, "packing_fraction": 0.1, "time_step": 0.0}
     return xr.Dataset(
         {

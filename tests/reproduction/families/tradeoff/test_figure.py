@@ -60,6 +60,14 @@ def test_bars_are_the_parts_of_the_error():
     assert [bar.get_width() for bar in rows] == pytest.approx(list(at))
 
 
+def test_of_a_small_run_the_nearest_places_are_shown():
+    ds = time_to_accuracy_measurement().isel(fraction=[1, 4])
+    ds["cost"] = ds.cost.where((ds.fraction != 0.3) | (ds.quantity != "D"))
+    (at,) = panels.places(ds)
+    assert (at.quantity, at.fraction, at.accuracy) == ("D", 0.001, 0.01)
+    assert len(draw(tradeoff.time_to_accuracy, ds).axes[-1].patches) > 0
+
+
 def test_a_gas_in_which_no_engine_is_accurate_enough_is_left_white():
     ds = time_to_accuracy_measurement()
     ds["cost"] = ds.cost.where(ds.fraction != 0.1, np.inf)

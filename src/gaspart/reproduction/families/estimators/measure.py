@@ -48,7 +48,7 @@ def _compared(run: Run, width: float) -> dict[str, float]:
     filled = np.flatnonzero(counted.mean(axis=0) > _FILLED * counted.mean())
     counted, impulses = counted[:, filled], impulses[:, filled]
     apart = counted - impulses
-    mixed = counted - mixture(counted, impulses) * apart
+    mixed = counted - mixture(counted, impulses, periodic=False) * apart
     own, other, both = (one.var(axis=0, ddof=1) for one in (counted, impulses, mixed))
     square = apart.mean(axis=0) ** 2 / apart.var(axis=0, ddof=1) * _BLOCKS
     tally = {name: run.increments(name).sum(axis=0) for name in ("collisions", "wall_hits", "pair_tests")}
@@ -64,7 +64,7 @@ def _compared(run: Run, width: float) -> dict[str, float]:
 def blocks_of(run: Run, width: float) -> tuple[np.ndarray, np.ndarray]:
     """(blocks, bins) the mean number of particles in bins of this width by counts and by impulses. Raises
     SceneError for a width that the bins of the run do not divide."""
-    axis, has = run.dimension - 1, kept(run)
+    axis, has = run.dimension - 1, kept(run.data)
     length = float(run.scene.container.lengths[axis])
     bins = round(length / width)
     found = numbers_by_impulses(run, axis, bins, None)

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 
+from gaspart.errors import SceneError
+
 
 def guarded(work: Callable, items: Sequence, limit: float) -> list:
     """`work(item)` for each item, in order; None for one that takes more than `limit` seconds, or ends its
-    process. Compiled code cannot be interrupted, so it is run in a child process, which can be killed."""
+    process. Compiled code cannot be interrupted, so it is run in a child process, which can be killed.
+
+    Raises SceneError where the system cannot fork processes, such as Windows."""
+    if not hasattr(os, "fork"):
+        raise SceneError("system", os.name, "this figure needs one that forks processes: Linux or macOS")
     results: list = []
     context = get_context("fork")
     while len(results) < len(items):

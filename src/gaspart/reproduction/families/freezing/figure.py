@@ -14,6 +14,12 @@ from gaspart.reproduction.table import Row, Table
 
 LOOKS = {"crystal": 1, "fluid": 0}
 """Index of the colour and marker of each start."""
+PUBLISHED = (
+    (870, "Li 2022", "29 x 30", ":"),
+    (65536, "Engel 2013", "square", "--"),
+    (1048576, "Engel 2013", "square", "-"),
+)
+"""Number, source, container and line of what others have measured."""
 EQUILIBRATED = 3.0
 """Points whose starts or halves differ by more standard errors are drawn hollow: not in equilibrium."""
 
@@ -92,11 +98,19 @@ def _loop(axis: Axes, states: Table, starts: dict[str, Table]) -> None:
         if np.isfinite(side.plateau.value):
             ends, level = [side.plateau_low, side.plateau_high], [side.plateau.value] * 2
             axis.plot(ends, level, color=style.COLOURS[LOOKS[start]], linewidth=0.8)
-    known = theory.LIQUID_DISCS
-    axis.plot(*known, marker="*", color="black", linestyle="none", markersize=6, label="65 536 discs (2013)")
+    _published(axis)
     low, high = np.nanmin(states.pressure.value), np.nanmax(states.pressure.value)
     axis.set_ylim(low - 0.1 * (high - low), high + 0.25 * (high - low))
     style.labelled(axis, y="pressure $P\\sigma^2/k_\\mathrm{B}T$", legend="lower right")
+
+
+def _published(axis: Axes) -> None:
+    """The pressures of more discs, and of as many as are compared, by programs of others."""
+    known = theory.literature("pressure", 2)
+    for count, source, container, dashes in PUBLISHED:
+        same = (known.source == source) & (known.container == container) & (known["count"] == count)
+        rows, label = known[same], f"{count:,} discs".replace(",", " ")
+        axis.plot(rows.packing_fraction, rows.value, color="black", lw=0.8, linestyle=dashes, label=label)
 
 
 def _order(axis: Axes, starts: dict[str, Table], dimension: int) -> None:
@@ -141,7 +155,7 @@ def _branches(axis: Axes, eta: np.ndarray, starts: dict[str, Table]) -> None:
     crystal = np.linspace(theory.LOWEST_CRYSTAL[3], eta[-1], 100)
     for at, z, label, kind in (
         (fluid, theory.compressibility_factor(fluid, 3), "fluid (KLM)", 2),
-        (crystal, theory.speedy_crystal(crystal), "crystal (Speedy)", 3),
+        (crystal, theory.etomica_crystal(crystal), "crystal (etomica)", 3),
     ):
         axis.plot(at, at / (np.pi / 6.0) * z, color=style.COLOURS[kind], label=label)
     for start, side in starts.items():

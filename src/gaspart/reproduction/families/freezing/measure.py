@@ -98,7 +98,7 @@ def _sphere(point: Point) -> dict[str, Any]:
     z = Estimate(*row["pressure"]) / row["density"]
     if solid:
         finite = float(theory.crystal_finite_size_correction(z.value, row["count"]))
-        reference = float(theory.speedy_crystal(eta)) if eta >= theory.LOWEST_CRYSTAL[3] else np.nan
+        reference = float(theory.etomica_crystal(eta)) if eta >= theory.LOWEST_CRYSTAL[3] else np.nan
     elif eta <= theory.HIGHEST_PACKING_FRACTION[3]:
         finite = float(theory.finite_size_correction(eta, 3, row["count"], ensemble="canonical"))
         reference = float(theory.compressibility_factor(eta, 3))

@@ -9,6 +9,8 @@ from matplotlib.figure import Figure
 from scipy import stats
 
 from gaspart.rendering import style
+from gaspart.reproduction.claims import Estimate
+from gaspart.reproduction.families.scatter.claims import mean_deviation
 from gaspart.reproduction.table import Table
 
 FURTHEST = 5.0
@@ -20,13 +22,13 @@ def claims_scatter(ds: xr.Dataset) -> Figure:
     claims, names = Table(ds, "claim"), Table(ds, "name")
     shown = np.unique(claims.figure)
     figure, (upper, lower) = style.new((2.2,), (0.5 + 0.155 * max(1, shown.size),))
-    _distribution(upper, claims.deviation[claims.scattered])
+    _distribution(upper, claims.deviation[claims.scattered], mean_deviation(names))
     _figures(lower, claims, names.assign(figure=np.arange(len(names)))[shown])
     style.letters(upper, lower)
     return figure
 
 
-def _distribution(axis: Axes, alone: np.ndarray) -> None:
+def _distribution(axis: Axes, alone: np.ndarray, mean: Estimate) -> None:
     """Density of the deviations without an allowance, and the standard Gaussian."""
     z = np.linspace(-FURTHEST, FURTHEST, 400)
     axis.plot(z, stats.norm.pdf(z), color=style.REFERENCE, label="Gaussian")
@@ -39,7 +41,7 @@ def _distribution(axis: Axes, alone: np.ndarray) -> None:
             density=True,
             color=style.GREY,
             alpha=0.5,
-            label=f"{alone.size}, rms {rms:.2f}",
+            label=f"{alone.size}, rms {rms:.2f}, mean {mean}",
         )
     style.labelled(axis, "deviation / standard deviations", "density", "upper right", ylim=(0.0, 0.6))
 

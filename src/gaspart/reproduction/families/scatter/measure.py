@@ -23,8 +23,9 @@ def claims_scatter(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
 
     Over `claim`: deviation in standard deviations; figure, the number of its figure; scattered, whether the
     deviation is a standard Gaussian number if the claim is true: without an allowance for the uncertainty of
-    the theory, which makes deviations smaller. Over `name`, the figures: number of scattered claims, and
-    their chi_square. Over `class`: counts of the scattered claims in classes of equal probability.
+    the theory, which makes deviations smaller. Over `name`, the figures: number of scattered claims, their
+    chi_square, and the signed total of their deviations. Over `class`: counts of the scattered claims in
+    classes of equal probability.
     """
     found = {Path(path).stem: [row for row in read(path) if _is_deviation(row)] for path in tables}
     rows = [
@@ -47,6 +48,7 @@ def claims_scatter(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
             "scattered": ("claim", scattered),
             "number": ("name", np.array([len(values) for values in own], dtype=int), units),
             "chi_square": ("name", np.array([np.sum(values**2) for values in own], dtype=float), units),
+            "total": ("name", np.array([np.sum(values) for values in own], dtype=float), units),
             "counts": ("class", counts, units),
         },
         coords={"name": list(found)},

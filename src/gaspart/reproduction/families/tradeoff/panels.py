@@ -27,7 +27,8 @@ TINTS = {"event": (0, 0.65), "step": (1, 0.5), "boltzmann": (2, 0.6), "enskog": 
 """Colour of each engine, and the part of white in it: figures are read on it."""
 PART_NAMES = ("model", "step, cells", "noise", "equilibration", "finite size")
 PLACES = (("D", 0.01, 0.01), ("D", 0.3, 0.01))
-"""Observable, packing fraction and accuracy of the errors that are shown."""
+"""Observable, packing fraction and accuracy of the errors that are shown; where they were not measured the
+nearest ones that were."""
 HIGHEST = 1.6
 """Of the accuracy: up to which errors are drawn."""
 _SMALL = 5.6
@@ -94,14 +95,21 @@ def _fraction(value: float) -> str:
 
 
 def places(ds: xr.Dataset) -> list[Row]:
-    """The `PLACES` that were measured."""
-    found = []
+    """The `PLACES`, or the measured ones nearest to them, each once."""
+    found: dict[tuple[str, float, float], Row] = {}
     for quantity, fraction, accuracy in PLACES:
-        near = np.isclose(ds.fraction, fraction)
-        if near.any():
-            of = ds.sel(quantity=quantity).isel(fraction=int(np.argmax(near)))
-            found.append(Row(of.isel(accuracy=int(np.argmin(np.abs(ds.accuracy.values - accuracy))))))
-    return found
+        of = ds.sel(quantity=quantity)
+        of = of.isel(fraction=np.isfinite(of.cost).any(("accuracy", "solver")).values)
+        if of.sizes["fraction"]:
+            of = of.isel(fraction=_nearest(of.fraction, fraction))
+            at = Row(of.isel(accuracy=_nearest(of.accuracy, accuracy)))
+            found.setdefault((quantity, float(at.fraction), float(at.accuracy)), at)
+    return list(found.values())
+
+
+def _nearest(values: xr.DataArray, wanted: float) -> int:
+    """The position of the value whose ratio to the wanted one is nearest to 1."""
+    return int(np.argmin(np.abs(np.log(values.values / wanted))))
 
 
 def breakdown(axis: Axes, ds: xr.Dataset) -> None:

@@ -1,0 +1,163 @@
+"""Mistakes in Python, answered in one line that names the remedy: calls that do not fit, names that do not
+exist, and parts of what cannot change.
+
+`gaspart.public.attach` gives this to public functions and classes when they are loaded: none does it by
+itself. Files and command lines have the same answers by `unknown_word`.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import FrozenInstanceError, is_dataclass
+from difflib import get_close_matches
+from functools import wraps
+from inspect import Parameter, signature
+from types import FunctionType, ModuleType
+from typing import Any
+
+from gaspart.errors import OneLine, SceneError, unknown_word
+from gaspart.synonyms import ELSEWHERE
+
+_NAMED = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
+_guided: set[type] = set()
+
+
+class MissingName(OneLine, AttributeError):
+    """A name that a package or an object does not have, with what was probably meant."""
+
+    def __init__(self, owner: ModuleType | type, name: str) -> None:
+        super().__init__(name)
+        self._owner, self._name = owner, name
+
+    def __reduce__(self) -> tuple:
+        return (AttributeError, (str(self),))
+
+    def __str__(self) -> str:  # when it is shown: most of them are not, as those of hasattr
+        name = repr(self._owner.__name__)
+        kind = f"module {name}" if isinstance(self._owner, ModuleType) else f"{name} object"
+        what = f"{kind} has no attribute {self._name!r}"
+        return f"{what}; {remedy}" if (remedy := _remedy(self._owner, self._name)) else what
+
+
+class FixedValue(OneLine, FrozenInstanceError):
+    """An attempt to change a part of what cannot change."""
+
+    def __init__(self, owner: type, name: str) -> None:
+        made = f"dataclasses.replace({owner.__name__.lower()}, {name}=...)"
+        super().__init__(f"{name} of a {owner.__name__} cannot change; make another one: {made}")
+
+    def __reduce__(self) -> tuple:
+        return (FrozenInstanceError, self.args)
+
+
+def _remedy(owner: ModuleType | type, name: str) -> str:
+    """What was probably meant by a name; "" if nothing is known that is like it."""
+    remedies = ELSEWHERE.get(owner.__name__.rpartition(".")[2], {})
+    if name in remedies:
+        return remedies[name]
+    for part, inner in _parts(owner):
+        if name in dir(inner) or name in getattr(inner, "__annotations__", ()):
+            return f"it is {part}.{name}"
+    known = [one for one in {*dir(owner), *getattr(owner, "__annotations__", ())} if not one.startswith("_")]
+    near = get_close_matches(name, sorted(known), n=1)
+    return f"did you mean {near[0]}?" if near else ""
+
+
+def _parts(owner: ModuleType | type) -> Iterable[tuple[str, ModuleType | type]]:
+    """What has names of its own: packages within a package, and attributes whose type is a public class."""
+    if isinstance(owner, ModuleType):
+        within = ((f"{owner.__name__}.{name}", getattr(owner, name)) for name in ("analysis", "theory"))
+        return within if owner.__name__ == "gaspart" else ()
+    public = sys.modules["gaspart"]
+    stated = {
+        name: member.fget.__annotations__.get("return")
+        for name, member in vars(owner).items()
+        if isinstance(member, property) and member.fget
+    }
+    stated |= getattr(owner, "__annotations__", {})
+    classes = {name: getattr(public, str(kind)) for name, kind in stated.items() if str(kind) in dir(public)}
+    return classes.items()
+
+
+def guided(thing: Any) -> Any:
+    """A public function, or class, that answers mistakes; other things as they are."""
+    if isinstance(thing, FunctionType):
+        return _answering(thing, thing.__name__)
+    if isinstance(thing, type) and not issubclass(thing, BaseException) and thing not in _guided:
+        _guided.add(thing)
+        _guide(thing)
+    return thing
+
+
+def _guide(cls: Any) -> None:
+    """Let the calls and the missing names of a class be answered."""
+    for name, member in list(vars(cls).items()):
+        if isinstance(member, FunctionType) and not name.startswith("_"):
+            setattr(cls, name, _answering(member, f"{cls.__name__}.{name}"))
+        elif isinstance(member, classmethod) and not name.startswith("_"):
+            setattr(cls, name, classmethod(_answering(member.__func__, f"{cls.__name__}.{name}")))
+    if isinstance(cls.__init__, FunctionType):
+        cls.__init__ = _answering(cls.__init__, cls.__name__)
+    before = getattr(cls, "__getattr__", None)
+
+    def missing(instance: Any, name: str) -> Any:
+        if before is not None:
+            try:
+                return before(instance, name)
+            except AttributeError:
+                pass
+        raise MissingName(type(instance), name)
+
+    cls.__getattr__ = missing
+    if is_dataclass(cls) and cls.__dataclass_params__.frozen:
+
+        def fixed(instance: Any, name: str, value: Any) -> None:
+            raise FixedValue(type(instance), name)
+
+        cls.__setattr__ = fixed
+
+
+def _answering(function: Callable, title: str) -> Callable:
+    """A function whose calls that do not fit raise SceneError instead of TypeError."""
+
+    @wraps(function)
+    def call(*given: Any, **named: Any) -> Any:
+        try:
+            return function(*given, **named)
+        except TypeError:
+            if (mistake := _mistake(function, title, given, named)) is None:
+                raise
+            raise mistake from None
+
+    return call
+
+
+def _mistake(function: Callable, title: str, given: tuple, named: dict[str, Any]) -> SceneError | None:
+    """What does not fit in a call; None if it fits, so that its error is one of the function itself."""
+    form = signature(function)
+    try:
+        form.bind(*given, **named)
+        return None
+    except TypeError:
+        pass
+    parameters = {name: one for name, one in form.parameters.items() if name not in ("self", "cls")}
+    known = [name for name, one in parameters.items() if one.kind in _NAMED]
+    for name, value in named.items():
+        if name not in parameters:
+            return SceneError(name, value, unknown_word(name, known, f"argument of {title}"))
+    first = [name for name in known if parameters[name].kind is not Parameter.KEYWORD_ONLY]
+    shift = len(form.parameters) - len(parameters)
+    for name, value in named.items():
+        if name in first[: len(given) - shift]:
+            return SceneError(name, value, f"is given twice to {title}")
+    if len(given) - shift > len(first):
+        rest = [name for name in known if name not in first]
+        rule = f"is too much for {title}, which takes {', '.join(first) or 'nothing'} without names"
+        rule += f", and by name {', '.join(rest)}" if rest else ""
+        return SceneError(f"argument {len(first) + 1}", given[len(first) + shift], rule)
+    absent = first[len(given) - shift :] + [name for name in known if name not in first]
+    for name in absent:
+        if name not in named and parameters[name].default is Parameter.empty:
+            return SceneError(name, None, f"is required by {title}")
+    return None

@@ -1,0 +1,79 @@
+"""The energy of a run of any scene: what the particles have, and what they have exchanged."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart.errors import SceneError
+from gaspart.scene.faces import Sticky, Well
+from gaspart.scene.scene import Scene
+from gaspart.state.insertion import per_particle
+from gaspart.state.wells import places_in_wells, well_energies
+
+_FRAMES = 64  # that are in memory at once
+
+
+def energy_line(scene: Scene, data: xr.Dataset) -> str:
+    """By how much the energy of a run has drifted: the total energy less what contacts, faces and kicks have
+    exchanged, which every scene conserves, relative to the largest energy of motion."""
+    kinetic = data["kinetic_energy"].values
+    try:
+        total = conserved_energy(scene, data)
+    except SceneError as error:
+        ends = f"kinetic energy from {kinetic[0]:.6g} to {kinetic[-1]:.6g}"
+        return f"{ends}; drift of the energy not known: {error.rule}"
+    scale = max(float(kinetic.max()), np.finfo(float).tiny)
+    drift = np.abs(total - total[0]).max() / scale
+    text = f"drift of the energy: {drift:.1e} of it at most"
+    if _exchanged(data).any():
+        text += ", less what contacts, faces and kicks have exchanged"
+    return text + (" (positions have single precision)" if _positioned(scene, data) else "")
+
+
+def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
+    """(T,) the kinetic, vibrational and potential energy of the frames of an open trajectory, with what was
+    exchanged added, relative to any zero. Raises SceneError where the file does not tell."""
+    energy = data["kinetic_energy"].values + _exchanged(data)
+    if "vibrations" in data:
+        energy += data["vibrations"].values.sum(axis=1)
+    if scene.gravity is None and not any(isinstance(face, Well) for face in scene.faces.values()):
+        return energy
+    if data.sizes["atom"] < scene.count:
+        raise SceneError("follow", data.sizes["atom"], "the file has not all particles")
+    if any(isinstance(face, Sticky) for face in scene.faces.values()):
+        raise SceneError("faces", "sticky", "the file does not say which particles stick")
+    frames = len(energy)
+    for first in range(0, frames, _FRAMES):
+        part = slice(first, first + _FRAMES)
+        energy[part] += _potential(scene, data.isel(frame=part))
+    return energy
+
+
+def _exchanged(data: xr.Dataset) -> np.ndarray:
+    """(T,) the energy that contacts and faces have taken since time 0, less what kicks have given."""
+    taken = data["dissipated_energy"].values + data["wall_energy"].values.sum(axis=1)
+    return np.asarray(taken - data["thermostat_energy"].values, dtype=float)
+
+
+def _positioned(scene: Scene, data: xr.Dataset) -> bool:
+    """Whether the potential energy is that of positions in single precision."""
+    return scene.gravity is not None and "displacements" not in data
+
+
+def _potential(scene: Scene, data: xr.Dataset) -> np.ndarray:
+    """(T,) the energy of all particles under gravity, relative to that at time 0 if there are displacements,
+    and in wells."""
+    places = data["coordinates"].values.astype(float)
+    energy = np.zeros(len(places))
+    if scene.gravity is not None:
+        falls = [along and g != 0.0 for along, g in zip(scene.container.periodic, scene.gravity, strict=True)]
+        if any(falls) and "displacements" not in data:
+            raise SceneError("displacements", False, "a fall through periodic faces needs --displacements")
+        ways = data["displacements"].values if "displacements" in data else places
+        masses = np.where(per_particle(scene, "fixed").astype(bool), 0.0, per_particle(scene, "mass"))
+        energy -= np.einsum("n,tnd,d->t", masses.astype(float), ways, np.array(scene.gravity))
+    radii = per_particle(scene, "radius").astype(float)
+    if any(isinstance(face, Well) for face in scene.faces.values()):
+        energy += [well_energies(scene, places_in_wells(scene, one, radii)).sum() for one in places]
+    return energy

@@ -1,0 +1,9 @@
+"""Our values beside those of others."""
+
+from gaspart.keys import names
+
+TITLE = "Beside values of others"
+CHAPTER = "Equation of state and structure"
+FIGURES = {
+    "literature": {"judged": names("experiments whose values have claims of their own, not only together")}
+}

@@ -1,0 +1,46 @@
+"""Our values over those of others."""
+
+from __future__ import annotations
+
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gaspart.rendering import style
+from gaspart.reproduction.families.literature.claims import EQUILIBRIUM
+from gaspart.reproduction.table import Table
+
+LABELS = {
+    "Z": "$Z$, fluid of spheres",
+    "Z_crystal": "$Z$, crystal of spheres",
+    "pressure": "$P$, 870 discs",
+    "diffusion": "$D$ of spheres",
+    "viscosity": "viscosity of spheres",
+    "conductivity": "conductivity of spheres",
+}
+
+
+def literature(dataset: xr.Dataset) -> Figure:
+    """Ratios to the values of others, less 1: pressures, and transport coefficients."""
+    figure, (static, transport) = style.new((2.4,), (2.4,))
+    values = Table(dataset, "value")
+    for axis, wanted in ((static, True), (transport, False)):
+        _ratios(axis, values[[(quantity in EQUILIBRIUM) == wanted for quantity in values.quantity]])
+    style.letters(static, transport)
+    return figure
+
+
+def _ratios(axis: Axes, values: Table) -> None:
+    """Ours as points with their errors, those of others as wide pale bars about 0."""
+    style.level(axis, 0.0)
+    for kind, (name, label) in enumerate(LABELS.items()):
+        part = values[values.quantity == name]
+        if not part:
+            continue
+        eta, theirs = part.packing_fraction, part.theirs.value
+        known = 100.0 * part.theirs.error / theirs
+        axis.errorbar(
+            eta, 0.0 * eta, known, linestyle="none", color=style.COLOURS[kind], elinewidth=4.0, alpha=0.35
+        )
+        style.points(axis, eta, 100.0 * (part.ours / theirs - 1.0), kind=kind, label=label)
+    style.labelled(axis, r"packing fraction $\eta$", "ours over others' $-1$  (%)", legend="best")

@@ -1,0 +1,124 @@
+"""Our values of spheres and discs beside those that programs of others have measured.
+
+In units of the diameter, the mass and k_B T, and of the infinite system where the law of finite numbers is
+known to the accuracy of both, else of as many particles in the same container.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart import theory
+from gaspart.analysis.correlations import between
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.run import Run
+from gaspart.analysis.statistics import combine_estimates, mean_of
+from gaspart.analysis.transport import green_kubo
+from gaspart.reproduction.families.displacement.measure import spheres
+from gaspart.reproduction.families.shared.pressure import pressure
+from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import table
+from gaspart.scene.gas import Gas, plain_gas
+from gaspart.trajectory.reading import open_trajectory
+
+CONTAINERS = {2: "29 x 30", 3: "cube"}
+"""That of our points, as `theory.literature` names it."""
+SAME = 1e-8
+"""Largest difference of two packing fractions that are the same in nine digits."""
+STRETCH = 0.3, 1.0
+"""Times between which others have taken the slope of Einstein's expressions, the mean of the integrals."""
+FLUXES = {"viscosity": "shear", "conductivity": "heat"}
+
+
+def literature(points: list[Point], settings: dict) -> xr.Dataset:
+    """Each of our values that others have measured too.
+
+    settings: `judged`, experiments whose values have claims of their own; those of others are judged by
+    their figures. Over `value`: quantity (see `theory.literature`), packing_fraction, count, judged; ours and
+    theirs with their errors; source of theirs. Z of both is that of the infinite system, to first order in
+    1/N; theirs is the mean of all runs at the packing fraction, weighted by their errors. Of the other
+    quantities both are those of `count` particles; D is that of particles whose total momentum is zero, and
+    viscosity and conductivity are means of the integral over `STRETCH`.
+    """
+    rows = [
+        row | {"judged": int(point.experiment in settings["judged"])}
+        for point in points
+        for row in _values(point)
+    ]
+    return table("value", rows, dict, units={})
+
+
+def _values(point: Point) -> Iterator[dict[str, Any]]:
+    """The values of a point that others have measured, perhaps none."""
+    gas = plain_gas(point.scene)
+    if gas.dimension == 3 and not {"displacements", "stress"} & set(point.settings):
+        yield from _of_infinite_system(point, gas)
+        return
+    for quantity, ours in _of_as_many(point, gas).items():
+        known = _known(gas, quantity)
+        for one in known[known.count == gas.count]:
+            yield _row(gas, quantity, ours, Estimate(float(one.value), float(one.error)), str(one.source))
+
+
+def _row(gas: Gas, quantity: str, ours: Estimate, theirs: Estimate, source: str) -> dict[str, Any]:
+    return {
+        "quantity": quantity,
+        "dimension": gas.dimension,
+        "packing_fraction": gas.packing_fraction,
+        "count": gas.count,
+        "ours": ours,
+        "theirs": theirs,
+        "source": source,
+    }
+
+
+def _known(gas: Gas, quantity: str) -> np.recarray:
+    """What others have measured at its packing fraction in such a container."""
+    rows = theory.literature(quantity, gas.dimension)
+    same = np.abs(rows.packing_fraction - gas.packing_fraction) < SAME
+    return rows[same & (rows.container == CONTAINERS[gas.dimension])]
+
+
+def _of_infinite_system(point: Point, gas: Gas) -> Iterator[dict[str, Any]]:
+    """Z of a fluid or a crystal of spheres. Ours is that of the canonical ensemble (see
+    `analysis.series.compressibility`), theirs that of a fixed energy and momentum, which a crystal shifts by
+    nothing to first order."""
+    eta = gas.packing_fraction
+    fluid = eta <= theory.HIGHEST_PACKING_FRACTION[3]
+    quantity = "Z" if fluid else "Z_crystal"
+    known = _known(gas, quantity)
+    if not len(known):
+        return
+    z = pressure(point).z
+    if fluid:
+        shift = float(theory.finite_size_correction(eta, 3, gas.count, ensemble="canonical"))
+        shifts = np.array([theory.finite_size_correction(eta, 3, int(count)) for count in known["count"]])
+    else:
+        shift, shifts = float(theory.crystal_finite_size_correction(z.value, gas.count)), np.zeros(len(known))
+    theirs = combine_estimates(Estimate(known.value - shifts, known.error))
+    yield _row(gas, quantity, z - shift, theirs, str(known.source[0]))
+
+
+def _of_as_many(point: Point, gas: Gas) -> dict[str, Estimate]:
+    """The quantities of a point of finite numbers, by name."""
+    if gas.dimension == 2:
+        return {"pressure": gas.packing_fraction * 4.0 / np.pi * pressure(point).z}
+    if point.settings.get("stress"):
+        return {quantity: _coefficient(point, flux) for quantity, flux in FLUXES.items()}
+    return {"diffusion": (1.0 - 1.0 / gas.count) * spheres(point)["diffusion"]}
+
+
+def _coefficient(point: Point, flux: str) -> Estimate:
+    """A transport coefficient by the mean of Green and Kubo's integral until times in `STRETCH`."""
+    samples: list[float] = []
+    for path in point.replica_paths:
+        with open_trajectory(path) as trajectory:
+            run = Run(point.scene, trajectory["time"].values, trajectory)
+            lags = trajectory["lag"].values
+            inside = between(lags + 0.5 * (lags[1] - lags[0]), *STRETCH)
+            samples += list(green_kubo(run, flux)[:, inside].mean(axis=1))
+    return mean_of(samples)

@@ -1,0 +1,117 @@
+"""What operating systems do differently, in one place.
+
+The rest of the package calls what is here, and otherwise only what Python has on all of them. Of Windows and
+macOS the tests simulate what is absent there (`tests/test_system.py`); nothing was run on them.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import errno
+import os
+import threading
+from pathlib import Path
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # this module is imported before signals are handled: no slow imports
+    from typing import IO
+
+POSIX = os.name == "posix"
+OPEN_AS_IT_IS = getattr(os, "O_NONBLOCK", 0)
+"""Flag of `os.open`: return at once, also for a pipe. Windows has none."""
+NO_LINK = getattr(os, "O_NOFOLLOW", 0)
+"""Flag of `os.open`: refuse a link. Without it the caller's own check before has to do."""
+_HERE, _NO_REPLACE = -100, 1
+"""AT_FDCWD and RENAME_NOREPLACE of Linux's renameat2."""
+_position = threading.Lock()
+
+
+def memory() -> int | None:
+    """Bytes of this machine's memory; None where the system does not tell, as on Windows."""
+    try:
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, ValueError, OSError):
+        return None
+
+
+def is_own(found: os.stat_result) -> bool:
+    """Whether a file belongs to this user. True on Windows, where files have no number of a user."""
+    return not hasattr(os, "geteuid") or found.st_uid == os.geteuid()
+
+
+def is_private(found: os.stat_result) -> bool:
+    """Whether no other user may write to a file or folder. True on Windows, whose modes do not tell."""
+    return is_own(found) and not (POSIX and found.st_mode & 0o022)
+
+
+def is_running(process: int) -> bool:
+    """Whether there is a process of this number; True if that cannot be known, as on Windows."""
+    if not POSIX:  # where signal 0 is Ctrl-C
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (PermissionError, OverflowError):
+        return True
+    return True
+
+
+def descriptor_path(file: IO[bytes]) -> str:
+    """A path of an open file in ASCII, for libraries that accept UTF-8 names only; its own where the system
+    has none."""
+    path = f"/proc/self/fd/{file.fileno()}"
+    return path if os.path.exists(path) else str(file.name)
+
+
+def path_for_others(file: IO[bytes]) -> str:
+    """A path by which another process opens what this one has open, also when its name is gone; where the
+    system has none, its name."""
+    path = f"/proc/{os.getpid()}/fd/{file.fileno()}"
+    return path if os.path.exists(path) else str(file.name)
+
+
+def read_at(descriptor: int, size: int, offset: int) -> bytes:
+    """Up to `size` bytes from `offset` on; the position in the file stays. May raise OSError."""
+    if hasattr(os, "pread"):
+        return os.pread(descriptor, size, offset)
+    with _position:
+        before = os.lseek(descriptor, 0, os.SEEK_CUR)
+        os.lseek(descriptor, offset, os.SEEK_SET)
+        try:
+            return os.read(descriptor, size)
+        finally:
+            os.lseek(descriptor, before, os.SEEK_SET)
+
+
+def write_at(descriptor: int, data: bytes, offset: int) -> None:
+    """Write a few bytes at `offset`; the position in the file stays. May raise OSError."""
+    if hasattr(os, "pwrite"):
+        os.pwrite(descriptor, data, offset)
+        return
+    with _position:
+        before = os.lseek(descriptor, 0, os.SEEK_CUR)
+        os.lseek(descriptor, offset, os.SEEK_SET)
+        try:
+            os.write(descriptor, data)
+        finally:
+            os.lseek(descriptor, before, os.SEEK_SET)
+
+
+def rename_to_new(old: Path, new: Path) -> None:
+    """Rename a file or folder without replacing one. Raises FileExistsError where there is one."""
+    if not POSIX:  # where this never replaces
+        os.rename(old, new)
+        return
+    rename = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
+    if rename and rename(_HERE, os.fsencode(old), _HERE, os.fsencode(new), _NO_REPLACE) == 0:
+        return
+    code = ctypes.get_errno() if rename else errno.ENOSYS
+    if code not in (errno.ENOSYS, errno.EINVAL, errno.EOPNOTSUPP):
+        raise OSError(code, os.strerror(code), str(new))
+    # Not supported by this file system or C library: a new, empty one is replaced instead.
+    if old.is_dir():
+        new.mkdir()
+    else:
+        os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+    os.replace(old, new)

@@ -1,0 +1,52 @@
+"""Numbers that programs have measured, as tables: those of others, and this one."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.theory._arguments import checked_dimension
+
+
+def literature(quantity: str, dimension: int) -> np.recarray:
+    """What programs of others have measured of hard discs and spheres, and published: a row for each value.
+
+    quantity: of spheres "Z", "Z_crystal" (face-centred cubic), "diffusion", "viscosity" or "conductivity"; of
+    discs "pressure", from the liquid to the hexatic. Fields of the records, of which each is an attribute:
+    packing_fraction; count, the number of particles; container ("cube", "square", or the sides of "29 x 30"
+    discs of a triangular lattice), periodic; value and its standard error, diameter = mass = k_B T = 1;
+    source. None of them is corrected for its number of particles. Their provenance is in `data/README.md`.
+    Raises SceneError for a quantity that the table does not have.
+    """
+    return _of("literature", quantity, dimension)
+
+
+def measured(quantity: str, dimension: int) -> np.recarray:
+    """What this program has measured of fluids of hard discs and spheres: a row for each value, to be cited.
+
+    quantity: "Z" or "contact_value", both of the infinite system (finite numbers taken off to first order in
+    1/N); "viscosity", "bulk_viscosity" and "conductivity", by Green and Kubo until 16 collisions of a
+    particle (30 in dense gases); of spheres "diffusion" too, N / (N - 1) times that of particles whose total
+    momentum is zero. The last four are those of `count` particles; of discs they grow with the logarithm of
+    time and of the container. Fields and units are those of `literature`; source is the figure of the
+    reproduction. The commit and the command that made the table are in `data/README.md`. Raises SceneError
+    for a quantity that the table does not have.
+    """
+    return _of("measured", quantity, dimension)
+
+
+def _of(table: str, quantity: str, dimension: int) -> np.recarray:
+    """The rows of one quantity."""
+    rows = _read(table)
+    same = rows[rows.dimension == checked_dimension(dimension)]
+    found = same[same.quantity == quantity]
+    if not len(found):
+        raise SceneError("quantity", quantity, f"must be one of {', '.join(np.unique(same.quantity))}")
+    return found
+
+
+@cache
+def _read(table: str) -> np.recarray:
+    path = Path(__file__).parent / "data" / f"{table}.csv"
+    return np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8").view(np.recarray)
