@@ -71,7 +71,7 @@ def estimator(run: Run, furthest: float, by_impulses: bool) -> dict[str, str]:
     found = {"estimator": "counts"}
     engine = json.loads(run.data.attrs.get("engine", "{}")).get("name")
     if engine in ENGINES and PairImpulseTally.name in ENGINES[engine].tallies:
-        asked = PairImpulseTally(float(f"{furthest:.3g}"), 200, 0.1)
+        asked = PairImpulseTally(float(furthest), 200, 0.1)
         try:
             asked.check(run.scene)
         except SceneError:
