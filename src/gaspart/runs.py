@@ -27,7 +27,7 @@ from gaspart.files import is_same_file, output_path
 from gaspart.keys.values import count_of
 from gaspart.replicas import record_together, resume_together
 from gaspart.scene.scene import Scene, require_scene
-from gaspart.state.optional_tallies import OptionalTally, impulse_tallies
+from gaspart.state.optional_tallies import OptionalTally, impulse_tallies, pair_impulse_tallies
 from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
@@ -83,6 +83,7 @@ def run(
     correlations: Correlations | None = None,
     pairs: bool = False,
     impulses: str | None = None,
+    pair_impulses: str | None = None,
     initial: State | str | Path | None = None,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
@@ -91,34 +92,32 @@ def run(
     keep_checkpoint: bool = False,
     replicas: int = 1,
 ) -> Path:
-    """Run a scene, by default by the event-driven engine, and write its trajectory to `path`; returns `path`.
+    """Run a scene and write its trajectory to `path`; returns `path`.
 
-    A frame at time 0 and at every sample_interval to the duration, which is an integer multiple of it; with
-    `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also the
-    spins; with `follow` only so many particles, from the first on (counters are still those of all). With
-    `correlations` each frame has the sums so far of the velocities' correlations, and with `displacements` of
-    the mean-squared displacement, over all pairs of samples, which may lie much closer than frames; with
-    `Correlations(stress=True)` those of the stress tensor and the heat flux instead. With `pairs` each frame
-    counts the collisions of each pair of species so far; with `impulses`, such as "z:200", it has what a more
-    accurate density along z needs (both event-driven). A run of the same recipe and program that was cut
-    short is continued, a complete one is not changed. Another trajectory at `path`, or unfinished next to it,
-    is replaced only with `overwrite`; a file of another kind never. With `keep_checkpoint` the state at the
-    end stays in `path.checkpoint.npz`, and `resume` goes on from it.
+    engine: by default event-driven, or by a name as on the command line; of a seed see `Simulation`. A frame at time 0 and at every sample_interval to the duration, an integer multiple of it; with
+    `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also spins;
+    with `follow` only so many particles, from the first on (counters are those of all). With `correlations`
+    each frame has the sums so far of the velocities' correlations, and with `displacements` of the
+    mean-squared displacement, over all pairs of samples, much closer than frames if need be, or with
+    `Correlations(stress=True)` those of the stress tensor and the heat flux. With `pairs` each frame
+    counts the collisions of each pair of species so far; `impulses`, such as "z:200", and `pair_impulses`,
+    such as "3:300:0.5" (distance, shells, share of contacts), keep what a more accurate density along z and
+    g(r) need (all event-driven). A run of the same recipe and program that was cut short is continued, a
+    complete one is not changed; another trajectory at `path` is replaced only with `overwrite`, another file
+    never. With `keep_checkpoint` the last state stays in `path.checkpoint.npz`, from which `resume` goes on.
 
     With `initial`, a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`), the run
-    starts from it (`Simulation`). Particles and the size of the container must be the scene's; the rest may
-    differ. Defaults of engines follow from the scene's `speed` or `temperature` all the same.
-
+    starts from it (`Simulation`). Particles and container size must be the scene's; the rest may differ, and
+    defaults of engines follow from the scene's `speed` or `temperature` all the same.
     With `until` the run ends when standard error / |value| of all these observables is as small as required,
     examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
     without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
     With `replicas` so many runs are made at a time, a process each: `run-1.nc`, `run-2.nc` ... of `run.nc`
     (`gaspart.replica_paths`), of the seed with 1, 2 ... behind it. With `until` their mean is as accurate.
-
-    `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` after each
-    examination. SIGINT and SIGTERM take effect after a checkpoint: the caller's own handlers are then called.
-    Raises SceneError for invalid settings, a file that cannot be written, and what this run cannot measure;
-    SimulationError if it breaks an invariant, with its state kept in `path.failed.npz`.
+    `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` then. SIGINT
+    and SIGTERM take effect after a checkpoint, before the caller's handlers. Raises SceneError for invalid
+    settings, a file that cannot be written, and what this run cannot measure; SimulationError if it breaks an
+    invariant, with its state kept in `path.failed.npz`.
     """
     engine = _engine_of(scene, engine)
     wanted = _request(duration, sample_interval, until, at_most)
@@ -126,7 +125,7 @@ def run(
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
-    tallies = _tallies(impulses, wanted, scene, engine)
+    tallies = *_tallies(impulses, wanted, scene, engine), *pair_impulse_tallies(pair_impulses)
     recipe = Recipe(*settings, pairs, _start(initial, scene, path, replicas), tallies)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return _record(in_replicas(recipe, replicas), _required(path), options, examined)

@@ -10,48 +10,61 @@ import numpy as np
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
+from gaspart.analysis.pair_impulses import estimator, g_by_impulses, kept, mixed_g, shell_volumes
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
+from gaspart.scene.impulses import FURTHEST
 
 STRETCHES = 16
+_BINS = 100
 MOST_FRAMES = 320
 """Frames, evenly spaced, that are searched for pairs of particles."""
 
 
 def rdf(
-    source: Source, bins: int = 100, furthest: float | None = None, start: float | None = None
+    source: Source, bins: int | None = None, furthest: float | None = None, start: float | None = None
 ) -> Observable:
     """Radial distribution function g(r) of all particles of a periodic scene, (distance,), dimensionless.
 
     Pairs per those of N particles that are independent of one another, N (N - 1) / 2 pairs in the volume: 1
     at every distance in an ideal gas of any number. Of a fluid it tends to 1 + (1 - S(0)) / N at large
     distances, S(0) its reduced compressibility (Lebowitz and Percus, Phys. Rev. 122, 1675 (1961)). Mean
-    over up to 320 frames; furthest: the largest distance (five of the largest diameters, or just below half
-    of the shortest side). Theory: the value at contact that belongs to the pressure of N particles, at the
-    first bins beyond the diameter only. Raises SceneError for walls, fewer than two particles, too few
-    frames and too large a distance.
+    over up to 320 frames. furthest: the largest distance (five of the largest diameters, or just below half
+    of the shortest side); bins: 100; both by default those of the impulses of pairs that the run has kept.
+    These, in shells of which each bin has as many, make g(r) more accurate than counts
+    (`gaspart.analysis.pair_impulses`); the attribute `estimator` says so. Theory: the value at contact that
+    belongs to the pressure of N particles, at the first bins beyond the diameter only. Raises SceneError for
+    walls, fewer than two particles, too few frames and too large a distance.
     """
     from gaspart.analysis.order import radial_distribution
 
-    bins = count_of("bins", bins, least=2)
     with open_run(source, start) as run:
         require_defined("rdf", run.scene)
+        has = kept(run)
+        bins = count_of("bins", bins or (has.shells if has else _BINS), least=2)
         stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
         if stored < 2:
             raise SceneError("count", stored, "a pair needs two particles")
-        diameter, half = 2.0 * run.scene.largest_radius, 0.499 * min(lengths)
+        diameter, half = 2.0 * run.scene.largest_radius, FURTHEST * min(lengths)
         rule = f"must be positive and below half of the shortest side, {half:.4g}"
-        end = min(5.0 * diameter, half) if furthest is None else furthest
+        end = min(5.0 * diameter, half) if has is None else has.furthest
+        end = end if furthest is None else furthest
         end = number("furthest", end, rule, above=0.0, most=half)
-        frames = chosen_frames(run, run.positions)
-        found = [radial_distribution(part, lengths, bins, end) for part in np.array_split(frames, STRETCHES)]
-        values, errors = means_of(stored / (stored - 1.0) * np.array([g for _, g in found], dtype=float))
+        stretches = np.array_split(chosen_frames(run, np.arange(len(run.time))), STRETCHES)
+        found = [radial_distribution(run.positions[part], lengths, bins, end) for part in stretches]
+        each = stored / (stored - 1.0) * np.array([g for _, g in found], dtype=float)
+        parts = g_by_impulses(run, np.array([part[0] for part in stretches]), bins, end)
+        if parts is not None:
+            each = mixed_g(each, parts, shell_volumes(bins, run.dimension))
+        values, errors = means_of(each)
         distance = np.asarray(found[0][0], dtype=float)
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
         about = described("rdf", run, distance, end / bins)
-        return observable("rdf", along, values, errors, **about)
+        result = observable("rdf", along, values, errors, **about)
+        result.attrs |= estimator(run, end, parts is not None)
+        return result
 
 
 def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:

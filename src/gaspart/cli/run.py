@@ -126,6 +126,9 @@ def _add_contents(group: argparse._ArgumentGroup) -> None:
     text = "keep impulses along x, y or z in so many bins: `gaspart measure FILE density` along this axis is "
     text += "then several times as accurate, in equilibrium"
     add("--impulses", metavar="AXIS:BINS", help=text)
+    text = "keep impulses of pairs up to a distance in so many shells, at a share of contacts (default: "
+    text += "all): `gaspart measure FILE rdf` is then more accurate, in equilibrium"
+    add("--pair-impulses", metavar="DISTANCE:SHELLS[:SHARE]", help=text)
 
 
 def add_resume(parser: Parser) -> None:
@@ -182,6 +185,7 @@ def _run(given: argparse.Namespace) -> None:
             correlations=correlations,
             pairs=given.pairs,
             impulses=given.impulses,
+            pair_impulses=given.pair_impulses,
             initial=given.initial,
             checkpoint_seconds=given.checkpoint_seconds,
             progress=progress(given.quiet, started, status.remark),

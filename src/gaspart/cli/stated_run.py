@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.cli.engine_options import joined, stated
 from gaspart.engines import engine_to_dict
-from gaspart.state.optional_tallies import ImpulseTally
+from gaspart.state.optional_tallies import ImpulseTally, PairImpulseTally
 
 if TYPE_CHECKING:
     from gaspart.trajectory.recipe import Recipe
@@ -69,8 +69,8 @@ def run_options(path: Path, recipe: Recipe) -> list[str]:
     if recipe.pairs:
         options.append("--pairs")
     for tally in recipe.tallies:
-        if isinstance(tally, ImpulseTally):
-            options += ["--impulses", tally.to_text()]
+        if isinstance(tally, ImpulseTally | PairImpulseTally):
+            options += [f"--{tally.name.replace('_', '-')}", tally.to_text()]
     if recipe.follow is not None:
         options += ["--follow", str(recipe.follow)]
     if recipe.correlations is not None:

@@ -22,6 +22,8 @@ _DISTURBING = (
     "sliding",
 )
 """Features with which there is no equilibrium at one temperature, or fixed particles in the way."""
+FURTHEST = 0.499
+"""The largest distance of a pair, in the shortest side of a periodic container."""
 
 
 def require_impulses(scene: Scene) -> None:
@@ -43,6 +45,19 @@ def require_impulses(scene: Scene) -> None:
     if len(temperatures) > 1:
         rule = "impulses give a density in equilibrium: heat flows between faces"
         raise SceneError("faces.temperature", temperatures, rule)
+
+
+def require_pair_impulses(scene: Scene, furthest: float) -> None:
+    """Raise SceneError, with the reason, if the impulses in a scene give no g(r) up to a distance."""
+    if not all(scene.container.periodic):
+        raise SceneError("pair_impulses", furthest, "g(r) needs a periodic container")
+    diameter, half = 2.0 * scene.largest_radius, FURTHEST * min(scene.container.lengths)
+    if not diameter < furthest <= half:
+        rule = f"must be from the largest diameter, {diameter:g}, to half of the shortest side, {half:.4g}"
+        raise SceneError("pair_impulses.furthest", furthest, rule)
+    if scene.count < 2:
+        raise SceneError("count", scene.count, "a pair needs two particles")
+    require_impulses(scene)
 
 
 def row_count(scene: Scene) -> int:

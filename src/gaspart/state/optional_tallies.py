@@ -11,9 +11,9 @@ from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.errors import SceneError
-from gaspart.keys.values import count_of, one_of
+from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.driving import has_dragged_faces
-from gaspart.scene.impulses import require_impulses, row_count
+from gaspart.scene.impulses import require_impulses, require_pair_impulses, row_count
 from gaspart.scene.stress import require_tallied
 
 if TYPE_CHECKING:
@@ -87,6 +87,52 @@ class ImpulseTally(OptionalTally):
         return {"species": row_count(scene), "bin": self.bins}
 
 
+@dataclass(frozen=True)
+class PairImpulseTally(OptionalTally):
+    """The momentum that pairs of particles gain along their separation, in so many shells of equal thickness
+    up to the `furthest` distance, from which g(r) follows (`analysis.pair_impulses`). share: of contacts, at
+    which the pairs with the others are searched for. Raises SceneError for a distance that is not positive,
+    fewer than 2 shells and more than 100000, and a share that is not in (0, 1]."""
+
+    furthest: float
+    shells: int
+    share: float = 1.0
+
+    name: ClassVar[str] = "pair_impulses"
+
+    def __post_init__(self) -> None:
+        number("pair_impulses.furthest", self.furthest, "must be positive", above=0.0)
+        count_of("pair_impulses.shells", self.shells, least=2, most=ImpulseTally.most)
+        number("pair_impulses.share", self.share, "must be above 0 and at most 1", above=0.0, most=1.0)
+
+    @classmethod
+    def from_text(cls, text: str) -> PairImpulseTally:
+        """From its distance, number of shells and share, such as "3:300:0.5". Raises SceneError."""
+        parts = str(text).split(":")
+        try:
+            furthest, shells = float(parts[0]), int(parts[1])
+            share = float(parts[2]) if parts[2:] else 1.0
+        except (ValueError, IndexError):
+            parts = []
+        if len(parts) not in (2, 3):
+            rule = "must be a distance, a number of shells and a share of contacts, such as 3:300:0.5"
+            raise SceneError("pair_impulses", text, rule)
+        return cls(furthest, shells, share)
+
+    def to_text(self) -> str:
+        """The form that `from_text` accepts."""
+        return f"{self.furthest!r}:{self.shells}:{self.share!r}"
+
+    def check(self, scene: Scene) -> None:
+        """Raise SceneError unless the scene is periodic, in equilibrium at one temperature, and longer than
+        twice the distance."""
+        require_pair_impulses(scene, self.furthest)
+
+    def axes(self, scene: Scene) -> dict[str, int]:
+        """Shells."""
+        return {"shell": self.shells}
+
+
 def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int) -> tuple[ImpulseTally, ...]:
     """Those along an axis, if a run of a scene can keep them and the density follows from them; tallies: the
     names of those that its engine can make."""
@@ -106,6 +152,11 @@ def impulse_tallies(text: str | None) -> tuple[OptionalTally, ...]:
     return () if text is None else (ImpulseTally.from_text(text),)
 
 
+def pair_impulse_tallies(text: str | None) -> tuple[OptionalTally, ...]:
+    """The same of those of pairs. Raises SceneError as `PairImpulseTally.from_text`."""
+    return () if text is None else (PairImpulseTally.from_text(text),)
+
+
 @dataclass(frozen=True)
 class WallShearTally(OptionalTally):
     """The momentum that faces are given along themselves."""
@@ -117,7 +168,9 @@ class WallShearTally(OptionalTally):
         return {"axis": scene.dimension}
 
 
-ASKED: dict[str, type[OptionalTally]] = {tally.name: tally for tally in (StressTally, ImpulseTally)}
+ASKED: dict[str, type[OptionalTally]] = {
+    tally.name: tally for tally in (StressTally, ImpulseTally, PairImpulseTally)
+}
 """All that a run can ask for, by name."""
 
 

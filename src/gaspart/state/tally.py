@@ -48,6 +48,8 @@ class Tally:
     of all single particles, the momentum along an axis that has flown through planes across it with the
     particles themselves (m v^2 of those that cross, times the time), the mean over the planes of each bin;
     under gravity less the momentum that this has given to the particles below (`analysis.impulses`).
+    contact_impulse_sum, other_impulse_sum (shells,): k_B T g(r) times the time, the mean over each shell, as
+    the pairs that collide give it, and what all other pairs add (`analysis.pair_impulses`).
 
     The time-stepped engine also reports its errors: steps; overlaps_left, pairs that still overlap and
     approach when a step ends; deepest_overlap met, as a fraction of the contact distance;
@@ -90,6 +92,12 @@ class Tally:
     )
     momentum_flux_sum: np.ndarray | None = field(
         default=None, metadata={"along": ("species", "bin"), "units": IMPULSE, "only": "impulses"}
+    )
+    contact_impulse_sum: np.ndarray | None = field(
+        default=None, metadata={"along": ("shell",), "units": ACTION, "only": "pair_impulses"}
+    )
+    other_impulse_sum: np.ndarray | None = field(
+        default=None, metadata={"along": ("shell",), "units": ACTION, "only": "pair_impulses"}
     )
 
 

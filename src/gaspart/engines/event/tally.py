@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.engines.features.impulses import impulses_part
+from gaspart.engines.features.pair_impulses import pair_impulses_part
 from gaspart.engines.features.part import Part, TallyPart
 from gaspart.engines.features.stress import stress_part
 from gaspart.kernels import model as kernels
@@ -17,7 +18,7 @@ from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
-PARTS = {"stress": stress_part, "impulses": impulses_part}
+PARTS = {"stress": stress_part, "impulses": impulses_part, "pair_impulses": pair_impulses_part}
 """Functions that make the part of an optional tally, by its name."""
 _OPTIONAL = kernels.Tally._field_defaults  # entries that a part has
 

@@ -23,6 +23,7 @@ from gaspart.kernels.event.islands import wake_island
 from gaspart.kernels.event.monitors import collapse_detected, is_full, record_event
 from gaspart.kernels.event.neighbour_lists import is_room_lacking, renew
 from gaspart.kernels.event.pair_contact import collide
+from gaspart.kernels.event.pair_impulses import note_velocity, tally_pairs
 from gaspart.kernels.event.prediction import NOT_CROSSED, predict_after, predict_after_piston, predict_island
 from gaspart.kernels.event.prefetch import CACHED, CACHED_LISTS, crossing_of, prefetch, prefetch_lists
 from gaspart.kernels.event.queue import count_event, is_outdated, soonest, time_of
@@ -74,6 +75,15 @@ def _meet(particles, i, face, time, bare, model, tally):
         return -1 - meet_edge(particles.flights, i, face, time, bare, tally, model.faces), True
     end_flight(particles.flights, i, time, bare, tally.stress, model.shear)
     return -1 - face, meet_face(particles, i, face, time, bare, tally, model.faces)
+
+
+@inner_helper
+def meet_particle(particles, i, j, time, queue, boxes, model, tally):
+    """Let two particles collide."""
+    bare = without_obstacles(model)
+    note_velocity(particles.flights, i, tally.pair_impulses)
+    collide(particles.flights, i, j, time, bare, tally)
+    tally_pairs(particles, i, j, queue, boxes, bare, tally, tally.pair_impulses)
 
 
 @inner_helper
@@ -144,7 +154,7 @@ def process(particles, i, time, queue, boxes, model, tally):
     else:
         i, partner = min(i, partner), max(i, partner)
         first, second = i, partner
-        collide(particles.flights, i, partner, time, without_obstacles(model), tally)
+        meet_particle(particles, i, partner, time, queue, boxes, model, tally)
         part_if_held(particles.flights, i, partner, without_obstacles(model), model.faces)
         wake(particles, (i, partner), queue, boxes, model, tally, (time, number), model.law)
     event, free = (time, number, changes), without_contacts(model)
@@ -161,7 +171,7 @@ def process_first(particles, event, boxes, model, tally):
     if partner < 0:
         partner, happens = meet_obstacle(particles, i, face, time, model, tally)
         return i, partner, happens
-    collide(particles.flights, i, partner, time, without_obstacles(model), tally)
+    meet_particle(particles, i, partner, time, None, boxes, model, tally)
     part_if_held(particles.flights, i, partner, without_obstacles(model), model.faces)
     wake(particles, (i, partner), None, boxes, model, tally, (time, NOT_CROSSED[0]), model.law)
     return i, partner, True

@@ -59,13 +59,19 @@ KEYS: dict[str, Kind] = {
         "keep impulses along an axis in so many bins, such as `z:200`, with which densities are measured",
         default=None,
     ),
+    "pair_impulses": described(
+        TEXT,
+        "keep impulses of pairs up to a distance in so many shells, at a share of contacts, such as "
+        "`3:300:0.5`, with which g(r) is measured",
+        default=None,
+    ),
     "follow": count(
         "keep only the first so many particles (single `particles` come first, then `species`); counters and "
         "energies are those of all",
         default=None,
     ),
 }
-_NOT_WITH_UNTIL = ("lags", "frames", "stress", "pairs", "impulses", "follow")
+_NOT_WITH_UNTIL = ("lags", "frames", "stress", "pairs", "impulses", "pair_impulses", "follow")
 EXAMINER = "gaspart.accuracy.reached"
 """The module that examines a run with `until`."""
 
@@ -104,7 +110,7 @@ def arguments(point: Point) -> dict:
         "displacements": settings.get("displacements", False),
         "follow": follow,
         "correlations": correlations,
-        **{key: settings[key] for key in ("pairs", "impulses") if settings.get(key)},
+        **{key: settings[key] for key in ("pairs", "impulses", "pair_impulses") if settings.get(key)},
     }
 
 
@@ -136,14 +142,15 @@ def recipes(
     seeds: Sequence[tuple[int, ...]],
     correlations: dict | None = None,
     impulses: str | None = None,
+    pair_impulses: str | None = None,
     **settings: Any,
 ) -> list[Recipe]:
     """The recipe of each replica; settings: the other fields of `Recipe`. Raises SceneError for settings
     that cannot be run."""
-    from gaspart.state.optional_tallies import impulse_tallies
+    from gaspart.state.optional_tallies import impulse_tallies, pair_impulse_tallies
     from gaspart.trajectory.correlator import Correlations
     from gaspart.trajectory.recipe import Recipe
 
-    tallies = impulse_tallies(impulses)
+    tallies = *impulse_tallies(impulses), *pair_impulse_tallies(pair_impulses)
     stated = None if correlations is None else Correlations(**correlations)
     return [Recipe(seed=seed, correlations=stated, tallies=tallies, **settings) for seed in seeds]
