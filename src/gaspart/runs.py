@@ -94,31 +94,30 @@ def run(
 ) -> Path:
     """Run a scene and write its trajectory to `path`; returns `path`.
 
-    engine: by default event-driven, or by a name as on the command line; of a seed see `Simulation`. A frame at time 0 and at every sample_interval to the duration, an integer multiple of it; with
-    `displacements` also each particle's float64 way since time 0, unwrapped; with rough contacts also spins;
-    with `follow` only so many particles, from the first on (counters are those of all). With `correlations`
-    each frame has the sums so far of the velocities' correlations, and with `displacements` of the
-    mean-squared displacement, over all pairs of samples, much closer than frames if need be, or with
-    `Correlations(stress=True)` those of the stress tensor and the heat flux. With `pairs` each frame
-    counts the collisions of each pair of species so far; `impulses`, such as "z:200", and `pair_impulses`,
-    such as "3:300:0.5" (distance, shells, share of contacts), keep what a more accurate density along z and
-    g(r) need (all event-driven). A run of the same recipe and program that was cut short is continued, a
-    complete one is not changed; another trajectory at `path` is replaced only with `overwrite`, another file
-    never. With `keep_checkpoint` the last state stays in `path.checkpoint.npz`, from which `resume` goes on.
+    engine: event-driven, or as `Simulation` takes it, like the seed. A frame at time 0 and at every
+    sample_interval to the duration, an integer multiple of it; with `displacements` also each particle's
+    float64 way since time 0, unwrapped; with rough contacts also spins; with `follow` only so many particles,
+    from the first on (counters are those of all). With `correlations` each frame has the sums so far of the
+    velocities' correlations, and with `displacements` of the mean-squared displacement, over all pairs of
+    samples, or with `Correlations(stress=True)` those of the stress tensor and the heat flux. With `pairs`
+    each frame counts the collisions of each pair of species so far; `impulses`, such as "z:200", and
+    `pair_impulses`, such as "3:300:0.5" (distance, shells, share of contacts), keep what a more accurate
+    density along z and g(r) need (event-driven). A run of the same recipe and program that was cut short is
+    continued, a complete one is not changed; another trajectory is replaced only with `overwrite`, another
+    file never. With `keep_checkpoint` the last state stays in `path.checkpoint.npz`, for `resume`.
 
-    With `initial`, a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`), the run
-    starts from it (`Simulation`). Particles and container size must be the scene's; the rest may differ, and
-    defaults of engines follow from the scene's `speed` or `temperature` all the same.
-    With `until` the run ends when standard error / |value| of all these observables is as small as required,
-    examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most, by default 16384 frames
-    without a contact. sample_interval: by default the mean time between collisions; D keeps displacements.
-    With `replicas` so many runs are made at a time, a process each: `run-1.nc`, `run-2.nc` ... of `run.nc`
-    (`gaspart.replica_paths`), of the seed with 1, 2 ... behind it. With `until` their mean is as accurate.
+    initial: a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`) to start from.
+    Particles and container size must be the scene's; defaults of engines follow from the scene's `speed` or
+    `temperature` all the same. until: the run ends when standard error / |value| of all these observables is
+    as small as required, examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most,
+    by default 16384 frames without a contact; sample_interval is then the mean time between collisions.
+    replicas: so many runs are made at a time, a process each, `run-1.nc`, `run-2.nc` ... of `run.nc`
+    (`gaspart.replica_paths`), of the seed with 1, 2 ... behind it; until their mean is as accurate.
+
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` then. SIGINT
     and SIGTERM take effect after a checkpoint, before the caller's handlers. Raises SceneError for invalid
-    settings, a file that cannot be written, and what this run cannot measure; SimulationError if it breaks an
-    invariant, with its state kept in `path.failed.npz`.
-    """
+    settings, files that cannot be written, and what cannot be measured; SimulationError for a broken
+    invariant, with the state in `path.failed.npz`."""
     engine = _engine_of(scene, engine)
     wanted = _request(duration, sample_interval, until, at_most)
     displacements |= _needs_paths(wanted, scene, engine, follow, correlations, initial)

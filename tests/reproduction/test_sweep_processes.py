@@ -16,7 +16,7 @@ import gaspart as gp
 
 scene = gp.Scene(gp.Container((30.0, 30.0)), [gp.Species(250, 0.5, temperature=1.0)], gravity=(0.0, -0.1))
 over = {"gravity": [[0.0, -0.1], [0.0, -0.2], [0.0, -0.3]]}
-options = {"folder": "swept", "duration": 800.0, "samples": 400, "workers": int(sys.argv[1])}
+options = {"folder": "swept", "duration": 2400.0, "samples": 400, "workers": int(sys.argv[1])}
 data = gp.sweep(scene, over, ["collision_rate"], **options)
 print(set(data.failure.values))
 """
