@@ -76,7 +76,7 @@ def test_the_longest_duration_ends_a_run_with_a_line_that_says_what_was_reached(
         ),
         (["--at-most", "9"], "--at-most: needs --until"),
         (["--start", "9"], "--start: needs --until"),
-        ([], "required: --duration, --sample-interval, or --until; see `gaspart run --help`"),
+        ([], "required: --duration, --sample-interval, or --until; for this scene"),
     ],
 )
 def test_what_is_refused_in_one_line(folder, capsys, options, complaint):

@@ -15,7 +15,7 @@ const fill = (select, words, chosen) => {
 };
 const power = x => x < 0.005 ? `10${[..."⁰¹²³⁴⁵⁶⁷⁸⁹"].filter((_, n) => n === -Math.round(Math.log10(x))).map(c => "⁻" + c)}` : digits(x, 2);
 
-const LEFT_OF_MAP = 66, FIELD = 30, BELOW = 42;
+const LEFT_OF_MAP = 76, FIELD = 30, BELOW = 42;
 const drawMap = (of, f, a) => {
   const columns = of.fractions.length, rows = known.accuracies.length, across = Math.min(120, 540 / columns);
   const at = (column, row) => [LEFT_OF_MAP + column * across, (rows - 1 - row) * FIELD];

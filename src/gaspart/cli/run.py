@@ -41,7 +41,7 @@ _EXAMPLES = """examples:
   gaspart run scene.yaml -o run.nc --until Z=1e-3 --at-most 1000
   gaspart run scene.yaml -o run.nc --duration 100 --sample-interval 1 \\
     --engine step --time-step 0.01
-  gaspart run scene.yaml -o run.nc --until Z=1e-3 --replicas 2      run-1.nc and run-2.nc, on two cores
+  gaspart run scene.yaml -o run.nc --until Z=1e-3 --replicas 2    on two cores
   gaspart info run.nc"""
 
 _USAGE = """gaspart run SCENE -o FILE --duration T --sample-interval T [options]
@@ -166,8 +166,6 @@ def _run(given: argparse.Namespace) -> None:
         engine = engine_from_dict({"name": given.engine, **settings})
     except SceneError as error:
         raise UsageError(as_option(error, given.engine)) from None
-    if not given.quiet:
-        print_lines(line for line in scales(scene).lines if not line.startswith("suggested"))
     status = _Status()
     with waiting(_PREPARING, given.quiet) as started:
         load_numba(ours=True)
@@ -195,6 +193,8 @@ def _run(given: argparse.Namespace) -> None:
             replicas=given.replicas,
         )
     _report(path)
+    if not given.quiet:
+        print_lines(line for line in scales(scene).lines if not line.startswith("suggested"))
 
 
 def _requests(text: str) -> list[tuple[str, float]]:
