@@ -3,6 +3,7 @@
 import gc
 import os
 import signal
+import sys
 from pathlib import Path
 
 import pytest
@@ -68,6 +69,14 @@ def pytest_sessionfinish(session):
 def compiles(path):
     """Whether tests of a file in `WITHOUT_KERNELS` compile one all the same."""
     return path.stem.removeprefix("test_") in COMPILING or path.parent.name == "pictures"
+
+
+@pytest.fixture(autouse=True)
+def no_figure_stays_open():
+    """Close what a test has drawn: matplotlib warns of more than 20 figures, of the tests before it."""
+    yield
+    if pyplot := sys.modules.get("matplotlib.pyplot"):
+        pyplot.close("all")
 
 
 def pytest_xdist_make_scheduler(config, log):

@@ -87,7 +87,7 @@ def test_a_gas_blown_past_an_obstacle_has_the_temperature_about_the_wind(tmp_pat
     post = gp.Particle((2.0, 2.0), (0.0, 0.0), 0.02, fixed=True)
     species = gp.Species(100, 0.2, temperature=1.0, exact_temperature=True)
     scene = gp.Scene(gp.Container((20.0, 20.0), "periodic"), [species], [post])
-    at_rest = gp.Simulation(scene, gp.EventDriven(), 1).state
+    at_rest = gp.Simulation(scene, gp.EventDriven(), 1).state.copy()
     at_rest.velocities[1:] += (3.0, 0.0)
     path = gp.run(scene, gp.EventDriven(), 1, 40.0, 0.25, tmp_path / "wind.nc", initial=at_rest)
     with gp.open_trajectory(path) as data:  # the wind slows down, and heats the gas

@@ -8,7 +8,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.engines.engine import ENGINES, engine_from_dict, required
-from gaspart.state.optional_tallies import ASKED, ImpulseTally, StressTally
+from gaspart.state.optional_tallies import ASKED, ImpulseTally, PairImpulseTally, StressTally
 
 DISCS = gp.Scene(gp.Container((12.0, 12.0), "periodic"), [gp.Species(20, 0.5, temperature=1.0)])
 MIXED = gp.Scene(
@@ -109,7 +109,11 @@ def test_settings_that_change_results_are_refused(other):
         gp.Simulation(MIXED, gp.TimeStepped(**{"time_step": 0.01, **other}), 1).restore(begun.checkpoint())
 
 
-OPTIONAL = {"stress": StressTally(), "impulses": ImpulseTally("x", 8)}
+OPTIONAL = {
+    "stress": StressTally(),
+    "impulses": ImpulseTally("x", 8),
+    "pair_impulses": PairImpulseTally.from_text("2:20:0.5"),
+}
 
 
 def one_of_each():
@@ -143,8 +147,8 @@ def test_a_checkpoint_that_lacks_anything_is_refused(engine, tally):
     assert bits(sim) == before
 
 
-def test_the_names_of_engines_are_not_engines():
-    for wrong in ("event", gp.EventDriven, None):
+def test_what_is_no_engine_is_refused():
+    for wrong in (1, gp.EventDriven):
         with pytest.raises(
             gp.SceneError, match=r"engine = .*must be an engine: EventDriven\(\), TimeStepped"
         ):

@@ -48,5 +48,7 @@ def test_make_prints_the_verdicts_with_or_without_work(judged):
     command = ["make", "--no-print-directory", "verdicts"]
     done = subprocess.run(command, cwd=judged.path, capture_output=True, text=True)
     assert done.stdout.splitlines()[:4] == [*COUNTS, NAMED], done.stderr
-    recipes = re.findall(r"^(all|smoke): setup\n((?:\t.*\n)+)", (ROOT / "Makefile").read_text(), re.MULTILINE)
-    assert all("$(VERDICTS)" in recipe for _, recipe in recipes) and len(recipes) == 2
+    recipes = re.findall(
+        r"^(all|precise|smoke): setup\n((?:\t.*\n)+)", (ROOT / "Makefile").read_text(), re.MULTILINE
+    )
+    assert all("$(VERDICTS)" in recipe for _, recipe in recipes) and len(recipes) == 3

@@ -41,7 +41,7 @@ def _distribution(axis: Axes, alone: np.ndarray, mean: Estimate) -> None:
             density=True,
             color=style.GREY,
             alpha=0.5,
-            label=f"{alone.size}, rms {rms:.2f}, mean {mean}",
+            label=f"{alone.size}, rms {rms:.2f},\nmean {mean}",
         )
     style.labelled(axis, "deviation / standard deviations", "density", "upper right", ylim=(0.0, 0.6))
 
