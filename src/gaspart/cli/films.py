@@ -1,4 +1,4 @@
-"""`gaspart films`: films of the scenes of `gaspart new`, such as for slides."""
+"""`gaspart films`: films of the scenes of the gallery, such as for slides."""
 
 from __future__ import annotations
 
