@@ -28,7 +28,7 @@ _COMMANDS = {
     "info": ("info", "contents and quality of a trajectory, and how to reproduce it"),
     "measure": ("measure", "observables of a trajectory, with uncertainties and theory"),
     "render": ("render", "a picture (.png) or a film (.mp4, .gif) of a trajectory"),
-    "films": ("films", "films of the scenes of `gaspart new`, such as for slides"),
+    "films": ("films", "films of the scenes of the gallery, such as for slides"),
     "view": ("view", "an interactive page (.html) of a trajectory"),
     "collisions": ("collisions", "run a scene and write a data set of its collisions"),
     "export": ("export", "a frame as a state for other programs (.gsd, .data)"),
