@@ -1,4 +1,4 @@
-"""Work that several processes share: results, what is told meanwhile, and processes that are lost."""
+"""Work that several processes share: results, what is sent meanwhile, and processes that are lost."""
 
 from pathlib import Path
 
@@ -15,11 +15,11 @@ def path(monkeypatch):
 
 
 def test_each_call_is_made_once_and_what_it_tells_arrives():
-    finished, told = {}, []
+    finished, received = {}, []
     calls = [("return", 5), ("leave", 7), ("return", 9)]
-    in_processes(shared, calls, 2, finished.__setitem__, lambda *message: told.append(message))
+    in_processes(shared, calls, 2, finished.__setitem__, lambda *message: received.append(message))
     assert finished == {0: 5, 1: Lost(7), 2: 9} and str(finished[1]) == "its process ended with code 7"
-    assert sorted(told) == [(0, 5), (1, 7), (2, 9)]
+    assert sorted(received) == [(0, 5), (1, 7), (2, 9)]
 
 
 def test_what_a_call_raises_is_raised_here():

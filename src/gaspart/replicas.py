@@ -24,7 +24,7 @@ from gaspart.trajectory.run import WriteOptions, begun
 from gaspart.workers import Lost, in_processes, require_processes
 
 Examined: TypeAlias = "Callable[[list[AccuracyStatus]], None] | None"
-Tell: TypeAlias = Callable[[Any], None]
+Send: TypeAlias = Callable[[Any], None]
 
 
 def record_together(
@@ -65,10 +65,10 @@ def _carry_out(
     options: WriteOptions,
     examined: Examined,
 ) -> None:
-    """Call a function of `tell`, its arguments, options and whether progress is shown, for all replicas."""
+    """Call a function of `send`, its arguments, options and whether progress is shown, for all replicas."""
     reached: dict[int, tuple[float, float, int]] = {}
 
-    def told(number: int, message: Any) -> None:
+    def received(number: int, message: Any) -> None:
         if isinstance(message, list):
             if examined and number == 0:  # the others say the same
                 examined(message)
@@ -86,23 +86,23 @@ def _carry_out(
     require_processes("replicas", len(calls))
     plain = replace(options, progress=None, examiner=None), options.progress is not None
     set_note("the same command continues it")
-    in_processes(function, [(*call, *plain) for call in calls], len(calls), finished, told)
+    in_processes(function, [(*call, *plain) for call in calls], len(calls), finished, received)
     set_note("")
 
 
-def _record(tell: Tell, recipe: Recipe, path: Path, options: WriteOptions, shown: bool) -> None:
+def _record(send: Send, recipe: Recipe, path: Path, options: WriteOptions, shown: bool) -> None:
     """Make one of the replicas."""
     load_numba(ours=True)
-    trajectory.record(recipe, path, _telling(options, tell, shown))
+    trajectory.record(recipe, path, _sending(options, send, shown))
 
 
-def _extend(tell: Tell, duration: float, path: Path, options: WriteOptions, shown: bool) -> None:
+def _extend(send: Send, duration: float, path: Path, options: WriteOptions, shown: bool) -> None:
     """Continue one of the replicas."""
     load_numba(ours=True)
-    trajectory.extend(path, duration, _telling(options, tell, shown))
+    trajectory.extend(path, duration, _sending(options, send, shown))
 
 
-def _telling(options: WriteOptions, tell: Tell, shown: bool) -> WriteOptions:
-    """The options of a process that tells what its examinations give, and its progress."""
-    progress = (lambda *reached: tell(reached)) if shown else None
-    return replace(options, progress=progress, examiner=Examiner(tell))
+def _sending(options: WriteOptions, send: Send, shown: bool) -> WriteOptions:
+    """The options of a process that sends what its examinations give, and its progress."""
+    progress = (lambda *reached: send(reached)) if shown else None
+    return replace(options, progress=progress, examiner=Examiner(send))

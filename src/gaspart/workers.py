@@ -1,7 +1,7 @@
 """Work that several processes share: calls of a function that writes files which can be continued.
 
 Unlike the processes of a pool, these do not run the caller's script again, and signals of the terminal do not
-reach them: each ends when it is told to, or when the process that began it has ended, after a checkpoint.
+reach them: each ends at a signal, or when the process that began it has ended, after a checkpoint.
 """
 
 from __future__ import annotations
@@ -48,13 +48,13 @@ def in_processes(
     calls: Sequence[tuple],
     workers: int,
     finished: Callable[[int, Any], None],
-    told: Callable[[int, Any], None] | None = None,
+    received: Callable[[int, Any], None] | None = None,
 ) -> None:
-    """Call a function of a module, function(tell, *arguments), in processes of which so many run at a time.
+    """Call a function of a module, function(send, *arguments), in processes of which so many run at a time.
 
     calls: the arguments of each call. finished(n, result): is called when a call, number n, has returned, or
-    its process is `Lost`; told(n, message): when it has told something, tell(message). A signal takes effect
-    when all have ended after a checkpoint; where the caller's handler returns, they are begun again. A
+    its process is `Lost`; received(n, message): when it has sent something, send(message). A signal takes
+    effect when all have ended after a checkpoint; where the caller's handler returns, they are begun again. A
     SceneError or SimulationError of a call is raised, after all others have ended.
     """
     waiting = list(reversed(range(len(calls))))
@@ -68,7 +68,7 @@ def in_processes(
                     running.append(_Worker(number, function, calls[number]))
                 ready = connection.wait([worker.connection for worker in running], _LOOK)
                 for worker in [one for one in running if one.connection in ready]:
-                    if worker.receive(told):
+                    if worker.receive(received):
                         continue
                     running.remove(worker)
                     result = worker.result()
@@ -85,7 +85,7 @@ def in_processes(
 
 
 class _Worker:
-    """A process that carries out one call. connection: to it, readable when it has told something or ended"""
+    """A process that carries out one call. connection: to it, readable when it has sent something or ended"""
 
     def __init__(self, number: int, function: Callable[..., Any], arguments: tuple) -> None:
         self.number = number
@@ -99,7 +99,7 @@ class _Worker:
         with suppress(BrokenPipeError):  # it has ended, for a reason that its exit code states
             self.connection.send_bytes(pickle.dumps((function, arguments)))
 
-    def receive(self, told: Callable[[int, Any], None] | None) -> bool:
+    def receive(self, received: Callable[[int, Any], None] | None) -> bool:
         """Take what it has sent; returns whether it goes on."""
         try:
             is_result, content = self.connection.recv()
@@ -107,8 +107,8 @@ class _Worker:
             return False
         if is_result:
             self._results.append(content)
-        elif told:
-            told(self.number, content)
+        elif received:
+            received(self.number, content)
         return True
 
     def result(self) -> Any:

@@ -19,7 +19,7 @@ from gaspart.analysis.profiles import BLOCKS, LEAST_FRAMES, Cells, Means, ratio
 from gaspart.analysis.run import Run
 from gaspart.engines import ENGINES
 from gaspart.scene.impulses import face_temperatures
-from gaspart.state.optional_tallies import ImpulseTally, tally_from_dict, useful_impulses
+from gaspart.state.optional_tallies import ImpulseTally, stored_tally, useful_impulses
 
 USUAL_BINS = 40
 """Of a profile, unless others are asked for or the run has kept impulses."""
@@ -91,8 +91,7 @@ class Carried:
 
 def kept(data: xr.Dataset) -> ImpulseTally | None:
     """What the file of a run has of impulses."""
-    tallies = map(tally_from_dict, json.loads(data.attrs.get("tallies", "[]")))
-    return next((tally for tally in tallies if isinstance(tally, ImpulseTally)), None)
+    return stored_tally(data.attrs.get("tallies", "[]"), ImpulseTally)
 
 
 def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> np.ndarray | None:

@@ -16,7 +16,7 @@ from gaspart.analysis.impulses import mixture
 from gaspart.analysis.run import Run
 from gaspart.engines import ENGINES
 from gaspart.errors import SceneError
-from gaspart.state.optional_tallies import PairImpulseTally, tally_from_dict
+from gaspart.state.optional_tallies import PairImpulseTally, stored_tally
 
 _ALIKE = 1e-9
 """Relative difference of two thicknesses of shells that is rounding."""
@@ -25,9 +25,7 @@ _ALIKE = 1e-9
 def kept(run: Run) -> PairImpulseTally | None:
     """What a run has kept of impulses of pairs; None if that is nothing, or not all particles are in the
     file, from which the temperature follows."""
-    tallies = map(tally_from_dict, json.loads(run.data.attrs.get("tallies", "[]")))
-    found = next((tally for tally in tallies if isinstance(tally, PairImpulseTally)), None)
-    return None if run.is_subset else found
+    return None if run.is_subset else stored_tally(run.data.attrs.get("tallies", "[]"), PairImpulseTally)
 
 
 def shell_volumes(bins: int, dimension: int) -> np.ndarray:

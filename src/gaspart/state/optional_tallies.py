@@ -6,9 +6,10 @@ its name in `Engine.tallies`, and a part (`engines.features.part.TallyPart`) tha
 
 from __future__ import annotations
 
+import json
 from collections.abc import Collection, Iterable
 from dataclasses import asdict, dataclass, fields
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
@@ -18,6 +19,9 @@ from gaspart.scene.stress import require_tallied
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
+
+
+AnyTally = TypeVar("AnyTally", bound="OptionalTally")
 
 
 @dataclass(frozen=True)
@@ -200,3 +204,10 @@ def tally_from_dict(mapping: dict) -> OptionalTally:
     if name not in ASKED:
         raise SceneError("tallies", name, f"must be one of {', '.join(ASKED)}")
     return ASKED[name](**settings)
+
+
+def stored_tally(stored: str, kind: type[AnyTally]) -> AnyTally | None:
+    """The tally of a kind among those that a trajectory states in its attribute `tallies` (JSON); None if it
+    is not there. Raises as `tally_from_dict`."""
+    tallies = map(tally_from_dict, json.loads(stored))
+    return next((tally for tally in tallies if isinstance(tally, kind)), None)
