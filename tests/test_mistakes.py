@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.guidance import MissingName
+from gaspart.errors.guidance import MissingName
 
 BOX = gp.Container((9.0, 9.0), boundary="periodic")
 GAS = gp.Species(20, 0.5, temperature=1.0)

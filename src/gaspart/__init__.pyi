@@ -16,9 +16,9 @@ from gaspart.rendering.films import film as film
 from gaspart.rendering.frames import render as render
 from gaspart.rendering.view import view as view
 from gaspart.reproduction.sweep import sweep as sweep
-from gaspart.runs import Accuracy as Accuracy
-from gaspart.runs import resume as resume
-from gaspart.runs import run as run
+from gaspart.runs.ending import Accuracy as Accuracy
+from gaspart.runs.entry import resume as resume
+from gaspart.runs.entry import run as run
 from gaspart.scene.container import Container as Container
 from gaspart.scene.faces import LeesEdwards as LeesEdwards
 from gaspart.scene.faces import Piston as Piston

@@ -27,13 +27,13 @@ def attach(
     package: str, for_users: bool = False
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """`__getattr__`, `__dir__` and `__all__` of a package that has a stub. for_users: whether its
-    functions and classes answer mistakes in their use (`gaspart.guidance`)."""
+    functions and classes answer mistakes in their use (`gaspart.errors.guidance`)."""
     namespace = vars(sys.modules[package])
     homes = stated(f"{namespace['__file__']}i")
 
     def load(name: str) -> Any:
         if name not in homes:
-            from gaspart.guidance import MissingName  # 2 ms
+            from gaspart.errors.guidance import MissingName  # 2 ms
 
             raise MissingName(sys.modules[package], name)
         home = homes[name]
@@ -42,7 +42,7 @@ def attach(
         module = import_module(home)
         found = getattr(module, name)
         if for_users and name not in namespace:
-            from gaspart.guidance import guided
+            from gaspart.errors.guidance import guided
 
             found = guided(found)
             setattr(module, name, found)  # the same thing under both names, as pickle requires

@@ -12,7 +12,7 @@ from gaspart.accuracy.conditions import even_conditions
 from gaspart.accuracy.target import Target
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES, require_defined
-from gaspart.runs import require_measurable
+from gaspart.runs.ending import require_measurable
 from gaspart.state.initial import initial_state
 from gaspart.yaml_text import dump_yaml
 

@@ -7,7 +7,7 @@ from gaspart.accuracy import pilot, plan
 from gaspart.accuracy.estimates import components
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES
-from gaspart.runs import require_measurable
+from gaspart.runs.ending import require_measurable
 
 SLIT = gp.Container((10.0, 6.0), ("periodic", "wall"))
 COLD = gp.Scene(

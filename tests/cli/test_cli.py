@@ -165,7 +165,7 @@ def test_a_broken_invariant_is_exit_code_1_and_ctrl_c_130(folder, capsys, monkey
         (MemoryError(), 1, "not enough memory"),
         (OSError(5, "Input/output error", "run.nc"), 1, "run.nc: Input/output error"),
     ):
-        monkeypatch.setattr("gaspart.runs.run", lambda *_, error=error, **__: throw(error))
+        monkeypatch.setattr("gaspart.runs.entry.run", lambda *_, error=error, **__: throw(error))
         assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == code
         output = capsys.readouterr().err
         assert text in output and output.count("\n") == 1

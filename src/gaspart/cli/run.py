@@ -27,7 +27,7 @@ from gaspart.engines import ENGINES, engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.interruption import set_note
 from gaspart.kernels.compile.loading import load_numba
-from gaspart.runs import Accuracy
+from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ def _add_checkpoints(group: argparse._ActionsContainer) -> None:
 def _run(given: argparse.Namespace) -> None:
     set_note("no state was saved yet; the same command starts it again")
     from gaspart.accuracy.scales import scales
-    from gaspart.runs import run
+    from gaspart.runs.entry import run
 
     scene = Scene.from_file(given.scene)
     until, correlations = _until(given, scene), _correlations(given.correlations, given.stress)
@@ -270,7 +270,7 @@ def _correlations(given: tuple[float, ...] | None, stress: bool) -> Correlations
 
 def _resume(given: argparse.Namespace) -> None:
     set_note("nothing was changed; the same command starts it again")
-    from gaspart.runs import resume
+    from gaspart.runs.entry import resume
 
     status = _Status()
     with waiting(_PREPARING, given.quiet) as started:

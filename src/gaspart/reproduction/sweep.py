@@ -27,7 +27,7 @@ from gaspart.reproduction.sweep_axes import axes_of, names_of
 from gaspart.reproduction.sweep_plot import SweepTable
 from gaspart.reproduction.sweep_points import make_all
 from gaspart.reproduction.sweep_table import Measured, measured, table
-from gaspart.runs import Accuracy
+from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def ending(point: Point) -> dict[str, Any]:
     """The fields of `Recipe` that follow from `until`. Raises SceneError for what no run can reach."""
     from gaspart.analysis.observables import OBSERVABLES
-    from gaspart.runs import Accuracy, default_sample_interval, require_end, require_measurable
+    from gaspart.runs.ending import Accuracy, default_sample_interval, require_end, require_measurable
     from gaspart.trajectory.until import Until
 
     settings, times = point.settings, point.schedule

@@ -17,7 +17,7 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 from gaspart.errors import OneLine, SceneError, unknown_word
-from gaspart.synonyms import ELSEWHERE
+from gaspart.errors.synonyms import ELSEWHERE
 
 _NAMED = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
 _guided: set[type] = set()

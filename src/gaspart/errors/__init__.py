@@ -50,7 +50,7 @@ def unknown_word(word: object, known: Iterable[str], what: str = "key") -> str:
     similar one, or all of them."""
     from difflib import get_close_matches
 
-    from gaspart.synonyms import meant
+    from gaspart.errors.synonyms import meant
 
     words = list(known)
     renamed = str(word).replace("bodies", "particles").replace("body", "particle")  # names of version 0.2
