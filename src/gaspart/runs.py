@@ -48,7 +48,8 @@ class Accuracy(Requirement):
     as `gaspart measure` names them; accuracy: relative, of one standard error that includes correlations; of
     those with components that vanish, and of a profile, relative to their root mean square; start: the time
     from which frames count, by default a quarter of the run; face: of one of the walls (`x low`), by default
-    each of them. A run until the density is accurate keeps impulses, where its engine can and they serve.
+    each of them. A run until the density, or the pressure on walls across one axis, is accurate keeps
+    impulses, where its engine can and they serve.
     Raises SceneError for other values.
     """
 
@@ -144,7 +145,7 @@ def _tallies(
         return impulse_tallies(impulses)
     from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
 
-    each = (Target(scene, asked.observable).tallies(engine) for asked in wanted.accuracies)
+    each = (Target(scene, asked.observable, asked.face).tallies(engine) for asked in wanted.accuracies)
     return next(filter(None, each), ())
 
 
