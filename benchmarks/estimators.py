@@ -1,11 +1,15 @@
-"""Densities from impulses against counts, in the same runs: whether they agree, their gain and their cost.
+"""Estimators from impulses against others, in the same runs: whether they agree, their gain and their cost.
 
-    python benchmarks/estimators.py scenes [--frames 3201] [--seeds 1]    all kinds of scene that have any
-    python benchmarks/estimators.py coverage [--runs 300]     of intervals of 95 %, of each bin
+    python benchmarks/estimators.py scenes [--frames 3201] [--seeds 1]    densities in all kinds of scene
+    python benchmarks/estimators.py pairs [--seeds 12]        g(r) in periodic ones
+    python benchmarks/estimators.py walls [--seeds 12]        pressures on walls
+    python benchmarks/estimators.py coverage [--runs 300]     of intervals of 95 %, of each
     python benchmarks/estimators.py cost [--rounds 9]         time per event, with over without, alternately
 
 `scenes` prints for each scene the root mean square, over bins, of the difference of both over its error by 32
 blocks, its largest value, and the variance of counts over that of impulses and of the mixture (medians).
+`pairs` does so of impulses without the number of pairs that is counted, over bins and seeds. `walls` prints
+by how many errors pressures with and without what is known differ, and the ratio of their squared errors.
 """
 
 from __future__ import annotations
@@ -24,6 +28,9 @@ from scipy import stats
 
 import gaspart as gp
 from gaspart.analysis.impulses import mixture, numbers_by_impulses
+from gaspart.analysis.order import radial_distribution
+from gaspart.analysis.pair_impulses import g_by_impulses
+from gaspart.analysis.pairs import STRETCHES
 from gaspart.analysis.run import Run, open_run
 from gaspart.state.optional_tallies import ImpulseTally
 
@@ -31,6 +38,8 @@ BLOCKS = 32
 FINE, COARSE = 64, 16
 FILLED = 0.02
 """Of the mean density: bins that are filled more rarely have skewed differences."""
+EXPECTED_OF_STRETCHES = (STRETCHES - 1.0) / (STRETCHES - 3.0)
+"""The mean square of Student's t of an error by stretches."""
 PLANES = ("periodic", "periodic", "wall")
 
 
@@ -141,20 +150,122 @@ def scenes(given: argparse.Namespace) -> None:
         print(f"all {len(squares)} scenes, {bins} bins: rms {math.sqrt(np.mean(squares)):.3f}")
 
 
+def pairs(given: argparse.Namespace) -> None:
+    """Compare g(r) by counts and by impulses, in bins of three widths."""
+    small = gp.Species(20, 0.3, mass=0.3, temperature=1.0)
+    rough = {"restitution": gp.Restitution(1.0, 1.0)}
+    cube = gp.Container((6.0, 6.0, 6.0), "periodic")
+    flat = gp.Container((10.0, 10.0), "periodic")
+    gases = {f"spheres {fraction}": gp.Scene(cube, [spheres(fraction)]) for fraction in (0.05, 0.1, 0.2, 0.4)}
+    gases["mixture"] = gp.Scene(cube, [spheres(0.1), small])
+    gases["rough"] = gp.Scene(cube, [spheres(0.1)], **rough)
+    gases["discs"] = gp.Scene(flat, [gp.Species(30, 0.5, temperature=1.0)])
+    widths, furthest = (1, 10, 25), 2.5
+    squares: dict[int, list[float]] = {width: [] for width in widths}
+    for name, scene in gases.items():
+        found: dict[int, list[np.ndarray]] = {width: [] for width in widths}
+        for seed in range(given.seeds):
+            with TemporaryDirectory() as folder:
+                path, kept = Path(folder) / "run.nc", f"{furthest}:250:0.5"
+                gp.run(scene, gp.EventDriven(), seed, 200.0, 1.0, path, pair_impulses=kept)
+                with open_run(path, 8.0) as run:
+                    for width, rows in found.items():
+                        rows.append(pairs_apart(run, furthest, 250 // width))
+        texts = []
+        for width, rows in found.items():
+            z = np.array(rows)
+            squares[width].append(float((z**2).mean()) / EXPECTED_OF_STRETCHES)
+            texts.append(
+                f"{0.01 * width:g}: rms {math.sqrt(squares[width][-1]):.2f}, largest {abs(z).max():.1f}"
+            )
+        print(f"{name:14} bins of {'; '.join(texts)}", flush=True)
+    for width, each in squares.items():
+        print(f"all {len(each)} scenes, bins of {0.01 * width:g}: rms {math.sqrt(np.mean(each)):.3f}")
+
+
+def pairs_apart(run: Run, furthest: float, bins: int) -> np.ndarray:
+    """(bins that pairs come to,) the difference of g(r) by counts and by impulses alone over its error."""
+    stretches = np.array_split(np.arange(len(run.time)), STRETCHES)
+    lengths = run.scene.container.lengths
+    counted = [radial_distribution(run.positions[part], lengths, bins, furthest)[1] for part in stretches]
+    impulses = g_by_impulses(run, np.array([part[0] for part in stretches]), bins, furthest)
+    assert impulses is not None
+    apart = np.array(counted) * run.count / (run.count - 1.0) - impulses.sum(axis=0)
+    met = np.array(counted).mean(axis=0) > FILLED
+    apart = apart[:, met]
+    return np.asarray(apart.mean(axis=0) / apart.std(axis=0, ddof=1) * math.sqrt(STRETCHES))
+
+
+def walls(given: argparse.Namespace) -> None:
+    """Compare pressures on walls with and without what is known, run by run."""
+    box = gp.Container((5.0, 5.0, 8.0))
+    alike = {f"walls {fraction}": column(spheres(fraction)) for fraction in (0.05, 0.1, 0.2, 0.3, 0.4)}
+    alike["mixture"] = column(spheres(0.1), spheres(0.05, 0.3, mass=0.3))
+    alike["walls on all sides"] = gp.Scene(box, [spheres(0.1)])
+    alike["an interior wall"] = gp.Scene(
+        gp.Container((8.0, 12.0)),
+        [gp.Species(30, 0.5, temperature=1.0)],
+        walls=[gp.Wall((2.0, 3.0), (6.0, 6.0))],
+    )
+    for name, scene in alike.items():
+        rows, along = [], "xyz"[scene.dimension - 1]
+        for seed in range(given.seeds):
+            rows.append(wall_pressures(scene, seed, f"{along}:8", f"{along} low"))
+        values, errors, _ = np.array(rows).transpose(1, 2, 0)
+        apart = values[0] - values[1]
+        z = apart.mean() / apart.std(ddof=1) * math.sqrt(len(apart))
+        gain = np.mean(errors[0] ** 2) / np.mean(errors[1] ** 2)
+        print(f"{name:20} apart by {z:.1f} errors; ratio of squared errors {gain:.1f}", flush=True)
+
+
+def wall_pressures(scene: gp.Scene, seed: int, kept: str, face: str) -> np.ndarray:
+    """(3, 2) the pressure on a face, its error and the degrees of freedom of that, by impulses alone and with
+    what is known."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "run.nc"
+        gp.run(scene, gp.EventDriven(), seed, 300.0, 0.5, path, impulses=kept)
+        return pressures_of(path, face)
+
+
+def pressures_of(path: Path, face: str) -> np.ndarray:
+    """The same of a file."""
+    found = []
+    with gp.open_trajectory(path) as data:
+        for one in (data.assign_attrs(tallies="[]"), data):
+            part = gp.analysis.wall_pressure(one).sel(face=face)
+            freedom = part.get("wall_pressure_freedom", STRETCHES - 1)
+            found.append([float(part.estimate), float(part.error), float(freedom)])
+    return np.transpose(found)
+
+
 def coverage(given: argparse.Namespace) -> None:
-    """How often intervals of 95 % of the density have the mean of all runs in them."""
-    scene, found = column(spheres(0.1), pull=-0.5), []
+    """How often intervals of 95 % have the mean of all runs in them: of a density, of a pressure on a wall
+    by impulses alone and with what is known, and of g(r)."""
+    exact = {"temperature": 1.0, "exact_temperature": True}
+    slit = column(gp.Species(38, 0.5, **exact))
+    fluid = gp.Scene(gp.Container((6.0, 6.0, 6.0), "periodic"), [gp.Species(41, 0.5, **exact)])
+    density, pressure, pair = [], [], []
     for seed in range(given.runs):
         with TemporaryDirectory() as folder:
             path = Path(folder) / "run.nc"
-            gp.run(scene, gp.EventDriven(), seed, 400.0, 0.5, path, impulses=f"z:{COARSE}")
-            found.append(gp.analysis.profile(path))
-    values = np.array([one.estimate.values for one in found])
-    errors = np.array([one.error.values for one in found])
-    reach = errors * stats.t.ppf(0.975, np.array([one["density_freedom"].values for one in found]))
-    inside = (abs(values - values.mean(axis=0)) <= reach)[:, 1:-1]
+            gp.run(slit, gp.EventDriven(), seed, 300.0, 0.5, path, impulses=f"z:{COARSE}")
+            found = gp.analysis.profile(path).isel(position=slice(1, -1))
+            density.append([found.estimate, found.error, found["density_freedom"]])
+            pressure.append(pressures_of(path, "z low"))
+            gp.run(
+                fluid, gp.EventDriven(), seed, 200.0, 1.0, path, pair_impulses="2.5:25:0.2", overwrite=True
+            )
+            found = gp.analysis.rdf(path).isel(distance=slice(10, None))
+            pair.append([found.estimate, found.error, np.full(15, STRETCHES - 1.0)])
     own = 1.96 * math.sqrt(0.05 * 0.95 / given.runs)
-    print(f"covered: {inside.mean(axis=0).round(3)} (0.95 +- {own:.3f} each); all: {inside.mean():.4f}")
+    for name, rows in (("density", density), ("pressure, plain and better", pressure), ("g(r)", pair)):
+        value, error, freedom = np.array(rows, dtype=float).swapaxes(0, 1)
+        reach = error * stats.t.ppf(0.975, freedom)
+        inside = abs(value - value.mean(axis=0)) <= reach * math.sqrt(1.0 + 1.0 / given.runs)
+        each = inside.mean(axis=0).round(3)
+        print(f"{name}: covered {each} (0.95 +- {own:.3f} each); all: {inside.mean():.4f}", flush=True)
+        errors = np.sqrt((error**2).mean(axis=0)) / value.std(axis=0, ddof=1)
+        print(f"  errors over the scatter of runs: {errors.round(2)}", flush=True)
 
 
 def cost(given: argparse.Namespace) -> None:
@@ -177,14 +288,17 @@ def cost(given: argparse.Namespace) -> None:
         print(f"{fraction}: {middle:.3f} ({low:.3f} to {high:.3f})")
 
 
+COMMANDS = {"scenes": scenes, "pairs": pairs, "walls": walls, "coverage": coverage, "cost": cost}
+
+
 def main() -> None:
     """Do what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("what", choices=("scenes", "coverage", "cost"))
+    parser.add_argument("what", choices=tuple(COMMANDS))
     for name, default in (("frames", 3201), ("seeds", 1), ("runs", 300), ("rounds", 9)):
         parser.add_argument(f"--{name}", type=int, default=default)
     given = parser.parse_args()
-    {"scenes": scenes, "coverage": coverage, "cost": cost}[given.what](given)
+    COMMANDS[given.what](given)
 
 
 if __name__ == "__main__":

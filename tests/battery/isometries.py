@@ -113,7 +113,7 @@ def state_seen(scene, view, state):
     )
 
 
-_INVARIANT = {(), ("lag",)}
+_INVARIANT = {(), ("lag",), ("shell",)}
 """What all dimensions but that of frames may be of a number that is the same from every view."""
 
 

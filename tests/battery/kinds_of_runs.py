@@ -11,7 +11,7 @@ import gaspart as gp
 from gaspart.analysis.run import repeated
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.state.optional_tallies import ImpulseTally, StressTally
+from gaspart.state.optional_tallies import ImpulseTally, PairImpulseTally, StressTally
 from gaspart.state.state import State
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.reading import open_trajectory
@@ -27,6 +27,8 @@ STEPS = 4
 """Of a time step, in an interval between frames."""
 BINS = 8
 """Of impulses."""
+REACH, SHELLS = 0.4375, 7
+"""Of impulses of pairs: the furthest distance, in the shortest side of the container, and the shells."""
 
 
 @dataclass(frozen=True)
@@ -158,10 +160,15 @@ class Start:
 
     @property
     def tallies(self):
-        """The impulses that one of its files has, where the engine makes them."""
-        if self.along is None or ImpulseTally.name not in self.engine.tallies:
-            return []
-        return [ImpulseTally("xyz"[self.along], BINS)]
+        """Form of the file -> the impulses that it has, where the scene and the engine have them."""
+        if self.along is None:
+            return {}
+        furthest = REACH * min(self.scene.container.lengths)
+        asked = ImpulseTally("xyz"[self.along], BINS), PairImpulseTally(furthest, SHELLS, 0.5)
+        walled = not all(self.scene.container.periodic)
+        return {
+            tally.name: tally for tally in asked[: 1 if walled else 2] if tally.name in self.engine.tallies
+        }
 
     @property
     def forms(self):
@@ -173,8 +180,8 @@ class Start:
             "correlations": {"displacements": True, "correlations": Correlations(half, LAGS)},
             "fluxes": {"correlations": Correlations(half, LAGS, stress=True)},
         }
-        for tally in self.tallies:
-            found["impulses"] = {"impulses": tally.to_text()}
+        for form, tally in self.tallies.items():
+            found[form] = {form: tally.to_text()}
         if self.scene.shear_rate is not None:  # correlations of the motion have no meaning
             del found["correlations"]
         try:
@@ -216,10 +223,11 @@ def recorded(engine, name):
 
 
 @cache
-def repeated_simulation(engine, name, impulses=False):
-    """The frames of the same run as a simulation, which gives them by being run again."""
+def repeated_simulation(engine, name, form="frames"):
+    """The frames of the same run as a simulation, which gives them by being run again, with the impulses of a
+    form."""
     start = start_of(engine, name)
-    tallies = start.tallies if impulses else []
+    tallies = [tally for key, tally in start.tallies.items() if key == form]
     simulation = gp.Simulation(start.scene, start.engine, start.seed, initial=start.initial, tallies=tallies)
     quantum = start.engine.quantum or 0.0
     simulation.advance(until=FRAMES * start.interval + 0.5 * quantum)

@@ -27,6 +27,8 @@ AT_LAGS = ("D",)
 """Observables of which the lag is a form of their own, here that of `LAG` frames."""
 LAG = 4
 BY_IMPULSES = " by impulses"
+BY_PAIRS = ("rdf",)
+"""Observables that impulses of pairs make more accurate."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,7 @@ def names():
     found += [f"{name} per axis" for name in selecting("per_axis")]
     found += [f"{name} at a lag" for name in AT_LAGS]
     found += [f"accumulated {name}" for name in ACCUMULATED]
-    found.append(f"density{BY_IMPULSES}")
+    found += [f"{name}{BY_IMPULSES}" for name in (*having(by_impulses=True), *BY_PAIRS)]
     return [*found, "by_species", *(f"field {of}" for of in QUANTITIES)]
 
 
@@ -97,7 +99,7 @@ def form_of(name):
     if name.startswith("accumulated"):
         return "correlations"
     if name.endswith(BY_IMPULSES):
-        return "impulses"
+        return "pair_impulses" if plain_name(name) in BY_PAIRS else "impulses"
     return "fluxes" if name in having(needs="fluxes") else "frames"
 
 

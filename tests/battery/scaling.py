@@ -26,9 +26,22 @@ KEYS = {
     "pressure": Powers(1, -1, -2),
     "power": Powers(1, 2, -3),
     "interval": Powers(time=1),
+    "furthest": Powers(length=1),
     "time_step": Powers(time=1),
     **dict.fromkeys(
-        ("count", "normal", "tangential", "polydispersity", "cells_per_side", "passes", "threads"), _NUMBER
+        (
+            "count",
+            "normal",
+            "tangential",
+            "polydispersity",
+            "cells_per_side",
+            "passes",
+            "threads",
+            "bins",
+            "shells",
+            "share",
+        ),
+        _NUMBER,
     ),
 }
 """Key of a scene or an engine -> its units. Another number in a scene of the battery is a KeyError."""
@@ -94,6 +107,8 @@ def data_in_units(data):
     if "engine" in data.attrs:
         engine = engine_from_dict(json.loads(data.attrs["engine"]))
         attributes["engine"] = json.dumps(engine_to_dict(engine_in_units(engine)))
+    if "tallies" in data.attrs:
+        attributes["tallies"] = json.dumps(_scaled(json.loads(data.attrs["tallies"])))
     if "correlations" in data.attrs:
         attributes["correlations"] = json.dumps(_correlations(json.loads(data.attrs["correlations"])))
     return result.assign_attrs(attributes)

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from battery.isometries import View, data_seen, result_seen
 from battery.kinds_of_runs import FRAMES, KINDS, recorded, repeated_simulation
-from battery.observed import MEANS, SAMPLED, apart, deviation, form_of, outcome, traits_of
+from battery.observed import MEANS, SAMPLED, apart, deviation, form_of, outcome, plain_name, traits_of
 from battery.observed import SINGLE as IN_SINGLE
 from battery.scaling import data_in_units, result_in_units
 
@@ -23,6 +23,8 @@ VELOCITY = 0.75
 """Of the moving frame: exact in binary numbers."""
 
 
+IMPULSES = ("impulses", "pair_impulses")
+"""Forms of files with impulses."""
 NO_SUMS = "such a run has no such sums"
 SINGLE = 2e-5
 """Likewise where velocities in single precision meet the energy in double precision: from a moving frame,
@@ -152,7 +154,7 @@ def judged(place, expected, after, limit=ROUNDING):
     if sampled:
         good = found.errors <= SURPRISING
         return Cell(*place, "tested" if good else "broken", "", found.errors, "errors")
-    good = found.rounding <= max(limit, IN_SINGLE.get(observable, 0.0))
+    good = found.rounding <= max(limit, IN_SINGLE.get(plain_name(observable), 0.0))
     return Cell(*place, "tested" if good else "broken", "", found.rounding, "rounding")
 
 
@@ -217,12 +219,11 @@ def of_simulation(engine, name, observables):
     """The cells of a file against the simulation that it is of."""
     kind, run = KINDS[name], recorded(engine, name)
     again = {"frames": repeated_simulation(engine, name)}
-    if "impulses" in run:
-        again["impulses"] = repeated_simulation(engine, name, impulses=True)
+    again |= {form: repeated_simulation(engine, name, form) for form in IMPULSES if form in run}
     for observable in observables:
         place, form = (observable, "simulation", engine, name), form_of(observable)
         if form not in again:
-            rule = NO_SUMS if form == "impulses" else "a simulation keeps no correlations"
+            rule = NO_SUMS if form in IMPULSES else "a simulation keeps no correlations"
             yield Cell(*place, "not defined", rule)
             continue
         after = outcome(observable, again[form], axes_of(kind))

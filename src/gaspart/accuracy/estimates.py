@@ -145,29 +145,34 @@ def _norm(values: np.ndarray) -> float:
 
 def _pressures(run: Run) -> dict[str, Component]:
     """The pressures on walls, each from a series over intervals of frames."""
-    from gaspart.analysis.pressure import pressures_on_walls
+    from gaspart.analysis.controls import stores
+    from gaspart.analysis.pressure import controlled_pressures, pressures_on_walls
 
     faces, series = pressures_on_walls(run, np.arange(len(run.time)))
     if np.isnan(series).any():
         raise SceneError("particles at rest", "NaN", "their thrust on walls is not known")
     if len(series) < LEAST_FREEDOM + 1:
         raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_FREEDOM + 2:g} or more")
-    stores = _stores(run)
-    return {
-        str(face): with_stores(one, stores["xyz".index(str(face)[0])], float(np.diff(run.time).mean()))
-        for face, one in zip(faces, series.T, strict=True)
-    }
+    improved, stored = controlled_pressures(run), stores(run)
+    interval = float(np.diff(run.time).mean())
+    found = {}
+    for place, (face, one) in enumerate(zip(map(str, faces), series.T, strict=True)):
+        if place in improved:
+            _, controls, one = improved[place]
+            found[face] = without_stores(one, interval, controls)
+        else:
+            found[face] = with_stores(one, stored["xyz".index(face[0])], interval)
+    return found
 
 
-def _stores(run: Run) -> np.ndarray:
-    """(d, T, 2) of each axis the total momentum and sum m x v of the moving particles at each frame;
-    (d, T, 0) of a file that lacks some."""
-    if run.is_subset:
-        return np.zeros((run.dimension, len(run.time), 0))
-    velocities, masses = run.velocities[:, run.moving], run.masses[run.moving]
-    centred = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
-    momentum = np.einsum("tnd,n->dt", velocities, masses)
-    return np.stack([momentum, np.einsum("tnd,tnd,n->dt", centred, velocities, masses)], axis=2)
+def without_stores(series: np.ndarray, interval: float, controls: int) -> Component:
+    """The mean of a series (K,) over intervals of one length, from which so many controls were taken, all
+    that is stored among them."""
+    from gaspart.analysis.statistics import correlated_mean
+
+    found, time = correlated_mean(series).estimate, len(series) * interval
+    freedom = max(1.0, found.freedom - controls)
+    return Component(found.value, abs(found.value), time, found.error**2 * time, freedom=freedom)
 
 
 def with_stores(series: np.ndarray, stores: np.ndarray, interval: float) -> Component:

@@ -25,6 +25,7 @@ from gaspart.engines import Engine, reference_engine
 from gaspart.engines.dsmc.rates import rates
 from gaspart.errors import SceneError
 from gaspart.scene.faces import wall_of
+from gaspart.scene.impulses import shares_energy_evenly
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
@@ -149,10 +150,17 @@ class Target:
         return self.declared.lags > 0
 
     def tallies(self, engine: Engine) -> tuple[ImpulseTally, ...]:
-        """The optional tallies that make the observable more accurate in a run by an engine."""
+        """The optional tallies that make the observable more accurate in a run by an engine: impulses along
+        the last axis, or of pressures along the only one that they are asked for across."""
         if not self.declared.by_impulses:
             return ()
-        return useful_impulses(self.scene, engine.tallies, self.scene.dimension - 1, USUAL_BINS)
+        axes = {self.scene.dimension - 1}
+        if "face" in self.declared.along:
+            asked = [self.face] if self.face else walls_of(self.observable, self.scene)
+            axes = {"xyz".index(face[0]) for face in asked} if shares_energy_evenly(self.scene) else set()
+        if len(axes) != 1:
+            return ()
+        return useful_impulses(self.scene, engine.tallies, axes.pop(), USUAL_BINS)
 
     @property
     def span(self) -> tuple[float, float]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.analysis.impulses import estimator, mixed_density
+from gaspart.analysis.impulses import described_density, mixed_density
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.profiles import Cells, with_freedom
 from gaspart.analysis.run import Run, Source, open_run, selected
@@ -48,7 +48,7 @@ def field(
         found, attributes = None, dict[str, str]()
         if of == "density" and len(along) == 1:
             found = mixed_density(run, along[0], numbers[0], species)
-            attributes = estimator(run, along[0], numbers[0], found is not None)
+            attributes = described_density(run, along[0], numbers[0], found is not None)
         if found is None:
             found = cells.temperature(local=True) if of == "temperature" else getattr(cells, of)()
         coordinates: dict[str, Any] = {}

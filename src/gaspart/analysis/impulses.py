@@ -9,15 +9,14 @@ half of the run than that in which it is used, so that it depends on no noise th
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.estimators import engine_tallies, estimator
 from gaspart.analysis.profiles import BLOCKS, LEAST_FRAMES, Cells, Means, ratio
 from gaspart.analysis.run import Run
-from gaspart.engines import ENGINES
 from gaspart.scene.impulses import face_temperatures
 from gaspart.state.optional_tallies import ImpulseTally, stored_tally, useful_impulses
 
@@ -242,17 +241,11 @@ def default_bins(run: Run, axis: int, of: str) -> int:
     return has.bins if of == "density" and has is not None and has.axis == "xyz"[axis] else USUAL_BINS
 
 
-def estimator(run: Run, axis: int, bins: int, by_impulses: bool) -> dict[str, str]:
-    """Attributes of a density: of what it was estimated; and if that was counts alone, where impulses would
-    have served, which bins do or how a run keeps them."""
-    if by_impulses:
-        return {"estimator": "counts and impulses"}
-    found, has = {"estimator": "counts"}, kept(run.data)
-    engine = json.loads(run.data.attrs.get("engine", "{}")).get("name")
-    tallies = ENGINES[engine].tallies if engine in ENGINES else ()
-    for asked in useful_impulses(run.scene, tallies, axis, 200):
-        if has is None or has.axis != asked.axis:
-            found["note"] = f"by counts; a run with --impulses {asked.to_text()} makes it more accurate"
-        elif has.bins % bins:
-            found["note"] = f"by counts; impulses are kept in {has.bins} bins, which {bins} do not divide"
-    return found
+def described_density(run: Run, axis: int, bins: int, by_impulses: bool) -> dict[str, str]:
+    """Attributes of a density: see `estimators.estimator`; of a run whose bins do not serve it says so."""
+    has, asked = kept(run.data), useful_impulses(run.scene, engine_tallies(run), axis, 200)
+    lacks = ""
+    if has is not None and has.axis == "xyz"[axis] and has.bins % bins:
+        lacks = f"impulses are kept in {has.bins} bins, which {bins} do not divide"
+    of = "counts", "counts and impulses"
+    return estimator(run, *of, by_impulses, asked[0] if asked else None, lacks)

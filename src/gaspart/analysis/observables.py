@@ -63,6 +63,7 @@ OBSERVABLES: dict[str, Named] = {
         conditions=(where.walled, where.unsheared),
         theory="equilibrium.wall_pressure",
         power=1.0,
+        by_impulses=True,
         ends_runs=True,
     ),
     "heat_flux": Named(

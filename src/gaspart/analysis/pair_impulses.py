@@ -8,14 +8,10 @@ both are mixed, as densities are (`gaspart.analysis.impulses`).
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 
 from gaspart.analysis.impulses import mixture
 from gaspart.analysis.run import Run
-from gaspart.engines import ENGINES
-from gaspart.errors import SceneError
 from gaspart.state.optional_tallies import PairImpulseTally, stored_tally
 
 _ALIKE = 1e-9
@@ -59,20 +55,3 @@ def mixed_g(counted: np.ndarray, parts: np.ndarray, volumes: np.ndarray) -> np.n
     missing = ((counted - found) @ volumes) / (contacts @ volumes)
     impulses = found + missing[:, None] * contacts
     return counted + mixture(counted, impulses, periodic=False) * (impulses - counted)
-
-
-def estimator(run: Run, furthest: float, by_impulses: bool) -> dict[str, str]:
-    """Attributes of g(r): of what it was estimated; and if that was counts alone, where impulses would have
-    served, how a run keeps them."""
-    if by_impulses:
-        return {"estimator": "counts and impulses"}
-    found = {"estimator": "counts"}
-    engine = json.loads(run.data.attrs.get("engine", "{}")).get("name")
-    if engine in ENGINES and PairImpulseTally.name in ENGINES[engine].tallies:
-        asked = PairImpulseTally(float(furthest), 200, 0.1)
-        try:
-            asked.check(run.scene)
-        except SceneError:
-            return found
-        found["note"] = f"by counts; a run with --pair-impulses {asked.to_text()} makes it more accurate"
-    return found

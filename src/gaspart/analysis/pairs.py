@@ -7,15 +7,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from gaspart.analysis.estimators import estimator
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
-from gaspart.analysis.pair_impulses import estimator, g_by_impulses, kept, mixed_g, shell_volumes
+from gaspart.analysis.pair_impulses import g_by_impulses, kept, mixed_g, shell_volumes
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
 from gaspart.scene.impulses import FURTHEST
+from gaspart.state.optional_tallies import PairImpulseTally
 
 STRETCHES = 16
 _BINS = 100
@@ -63,7 +65,8 @@ def rdf(
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
         about = described("rdf", run, distance, end / bins)
         result = observable("rdf", along, values, errors, **about)
-        result.attrs |= estimator(run, end, parts is not None)
+        asked = PairImpulseTally(float(end), 200, 0.1)
+        result.attrs |= estimator(run, "counts", "counts and impulses", parts is not None, asked)
         return result
 
 

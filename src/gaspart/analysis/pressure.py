@@ -5,13 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from gaspart.analysis import series
+from gaspart.analysis.controls import controlled, group_count, wall_controls
+from gaspart.analysis.estimators import estimator
 from gaspart.analysis.expected.described import described
+from gaspart.analysis.impulses import USUAL_BINS
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.observables import require_defined
+from gaspart.analysis.profiles import Means, with_freedom
 from gaspart.analysis.room import mean_areas, touched
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
+from gaspart.scene.impulses import shares_energy_evenly
+from gaspart.state.optional_tallies import ImpulseTally
 from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 16
@@ -42,6 +48,9 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     Contacts of particles at rest are no events: they press a floor with what gravity gives the particles and
     no event takes (`_rest_on_floors`). Their thrust on side walls is not known: NaN while particles rest.
 
+    With impulses that the run has kept along an axis, the pressures across it are freed from what fluctuates
+    with them and is known exactly (`gaspart.analysis.controls`); the attribute `estimator` says so.
+
     source, start: as in `compressibility_factor`. Theory: that of equal particles between hard walls of one
     distance (`gaspart.theory.wall_pressure`). Raises SceneError without walls, for too few frames, and where
     particles rest in a scene with obstacles, which may carry them.
@@ -53,14 +62,38 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
             raise SceneError("frames", len(run.time), "an error needs 5 or more")
         ends = np.linspace(0, len(run.time) - 1, blocks + 1).astype(int)
         faces, found = pressures_on_walls(run, ends)
+        freedoms = np.full(len(faces), blocks - 1.0)
+        improved = controlled_pressures(run)
+        for place, (_, regressors, each) in improved.items():
+            time = np.diff(run.time)
+            found[:, place] = series.over(each * time, ends) / series.over(time, ends)
+            freedoms[place] -= regressors
         values, errors = means_of(found - found[0])  # no error of rounding at rest
-        return observable(
+        result = observable(
             "wall_pressure",
             {"face": (faces, {"long_name": "face of the container"})},
             values + found[0],
             errors,
             **described("pressure", run, touched(run, run.time[:1])[0]),
         )
+        serves = shares_energy_evenly(run.scene)
+        asked = ImpulseTally(str(faces[-1])[0], USUAL_BINS) if serves else None
+        of = "wall impulses", "wall impulses, with the known mean of the energy along an axis"
+        result.attrs |= estimator(run, *of, bool(improved), asked)
+        return with_freedom(result, Means(values, errors, freedoms)) if improved else result
+
+
+def controlled_pressures(run: Run) -> dict[int, tuple[str, int, np.ndarray]]:
+    """The pressures on the walls of which the run has kept enough, by their place among all walls: the name
+    of each, the number of controls, and the pressure in each interval (T - 1,)."""
+    faces, each = pressures_on_walls(run, np.arange(len(run.time)))
+    groups, found = group_count(run), {}
+    for place, face in enumerate(map(str, faces)) if groups else ():
+        controls = wall_controls(run, "xyz".index(face[0]))
+        if controls is not None:
+            improved = controlled(each[:, place], controls, groups)
+            found[place] = face, controls.shape[1], improved
+    return found
 
 
 def pressures_on_walls(run: Run, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from gaspart.analysis.bins import Grid
 from gaspart.analysis.expected.described import described
-from gaspart.analysis.impulses import default_bins, estimator, mixed_density
+from gaspart.analysis.impulses import default_bins, described_density, mixed_density
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.observables import having, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
@@ -109,7 +109,7 @@ def profile(
         along = {"position": (middle, {"units": "length", "long_name": names[k]})}
         result = observable(of, along, found.values, found.errors, **about)
         if of == "density":
-            result.attrs |= estimator(run, k, bins, by_impulses is not None)
+            result.attrs |= described_density(run, k, bins, by_impulses is not None)
         return with_freedom(result, found)
 
 

@@ -123,8 +123,8 @@ def _add_contents(group: argparse._ArgumentGroup) -> None:
     add("--stress", action="store_true", help=text)
     text = "count the collisions of each pair of species, for `gaspart measure FILE contact_values`"
     add("--pairs", action="store_true", help=text)
-    text = "keep impulses along x, y or z in so many bins: `gaspart measure FILE density` along this axis is "
-    text += "then several times as accurate, in equilibrium"
+    text = "keep impulses along x, y or z in so many bins: `gaspart measure FILE density` along this axis, "
+    text += "and `pressure` across it, are then several times as accurate, in equilibrium"
     add("--impulses", metavar="AXIS:BINS", help=text)
     text = "keep impulses of pairs up to a distance in so many shells, at a share of contacts (default: "
     text += "all): `gaspart measure FILE rdf` is then more accurate, in equilibrium"

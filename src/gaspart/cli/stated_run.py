@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.cli.engine_options import joined, stated
 from gaspart.engines import engine_to_dict
-from gaspart.state.optional_tallies import ImpulseTally, PairImpulseTally
+from gaspart.state.optional_tallies import option_of
 
 if TYPE_CHECKING:
     from gaspart.trajectory.recipe import Recipe
@@ -69,8 +69,7 @@ def run_options(path: Path, recipe: Recipe) -> list[str]:
     if recipe.pairs:
         options.append("--pairs")
     for tally in recipe.tallies:
-        if isinstance(tally, ImpulseTally | PairImpulseTally):
-            options += [f"--{tally.name.replace('_', '-')}", tally.to_text()]
+        options += option_of(tally)
     if recipe.follow is not None:
         options += ["--follow", str(recipe.follow)]
     if recipe.correlations is not None:

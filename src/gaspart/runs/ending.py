@@ -31,8 +31,8 @@ class Accuracy(Requirement):
     as `gaspart measure` names them; accuracy: relative, of one standard error that includes correlations; of
     those with components that vanish, and of a profile, relative to their root mean square; start: the time
     from which frames count, by default a quarter of the run; face: of one of the walls (`x low`), by default
-    each of them. A run until the density is accurate keeps impulses, where its engine can and they serve.
-    Raises SceneError for other values.
+    each of them. A run until the density, or the pressure on walls across one axis, is accurate keeps
+    impulses, where its engine can and they serve. Raises SceneError for other values.
     """
 
     def __post_init__(self) -> None:

@@ -105,7 +105,7 @@ def _tallies(
         return impulse_tallies(impulses)
     from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
 
-    each = (Target(scene, asked.observable).tallies(engine) for asked in wanted.accuracies)
+    each = (Target(scene, asked.observable, asked.face).tallies(engine) for asked in wanted.accuracies)
     return next(filter(None, each), ())
 
 

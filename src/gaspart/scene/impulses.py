@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from gaspart.errors import SceneError
 from gaspart.scene.driving import driven_axes
 from gaspart.scene.faces import Thermal, Well
-from gaspart.scene.features import FEATURES
+from gaspart.scene.features import FEATURES, features
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -22,6 +22,8 @@ _DISTURBING = (
     "sliding",
 )
 """Features with which there is no equilibrium at one temperature, or fixed particles in the way."""
+_STEADY = frozenset(("walls", "polydispersity", "centres_to_walls"))
+"""Features with which the kinetic energy of flight is still that of the start."""
 FURTHEST = 0.499
 """The largest distance of a pair, in the shortest side of a periodic container."""
 
@@ -58,6 +60,12 @@ def require_pair_impulses(scene: Scene, furthest: float) -> None:
     if scene.count < 2:
         raise SceneError("count", scene.count, "a pair needs two particles")
     require_impulses(scene)
+
+
+def shares_energy_evenly(scene: Scene) -> bool:
+    """Whether the kinetic energy of flight is constant, and in equilibrium each direction has its part: of
+    smooth, elastic particles without a potential, that nothing heats."""
+    return features(scene) <= _STEADY
 
 
 def row_count(scene: Scene) -> int:

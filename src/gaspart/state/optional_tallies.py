@@ -37,6 +37,10 @@ class OptionalTally:
         """The lengths of the axes `along` which its fields are, but for `face`."""
         return {}
 
+    def to_text(self) -> str:
+        """Its settings, in the form of an option of `gaspart run`; "" of one that has no such option."""
+        return ""
+
 
 @dataclass(frozen=True)
 class StressTally(OptionalTally):
@@ -149,6 +153,12 @@ def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int
     pulled = bool(scene.gravity and scene.gravity[axis])
     by_mass = pulled or scene.container.periodic[axis]
     return (asked,) if asked.name in tallies and (one_mass or not by_mass) else ()
+
+
+def option_of(tally: OptionalTally) -> list[str]:
+    """The option of `gaspart run` by which a run keeps a tally; none of one that has no such option."""
+    text = tally.to_text()
+    return [f"--{tally.name.replace('_', '-')}", text] if text else []
 
 
 def impulse_tallies(text: str | None) -> tuple[OptionalTally, ...]:

@@ -14,9 +14,20 @@ def measured(**changed):
         "at_walls": [70.0, 20.0, 6.0, 1.5],
         "mean_square": [1.05, 0.9, 1.1, 0.95],
         "additions": [0.03, 0.03, 0.07, 0.07],
+        "pressure": [15.0, 15.0, 1.3, 1.3],
+        "pressures_apart": [0.002, 0.002, -0.001, -0.001],
     } | changed
     ds = xr.Dataset({name: ("case", np.array(values)) for name, values in columns.items()})
-    for name in ("mixture", "impulses", "at_walls", "mean_square", "additions"):
+    for name in (
+        "mixture",
+        "impulses",
+        "at_walls",
+        "mean_square",
+        "additions",
+        "pressure",
+        "pressures_apart",
+    ):
         ds[f"{name}_error"] = 0.02 * ds[name]
         ds[f"{name}_freedom"] = "case", np.full(4, 7.0)
+    ds["pressures_apart_error"] = "case", np.full(4, 0.002)
     return ds

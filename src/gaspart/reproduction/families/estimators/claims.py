@@ -1,4 +1,4 @@
-"""Claims about estimators of the density."""
+"""Claims about estimators of the density, and of the pressure on walls."""
 
 from __future__ import annotations
 
@@ -11,10 +11,38 @@ _DILUTE, _NARROW = 0.1, 0.15
 
 
 def estimators(dataset: xr.Dataset) -> list[Claim]:
-    """Counts and impulses agree; the mixture has the smaller variance, by far in a dilute gas."""
+    """Counts and impulses agree; the mixture has the smaller variance, by far in a dilute gas. So have
+    pressures with what is known."""
     cases = Table(dataset, "case")
     narrow = cases[cases.width < _NARROW]
     dilute, dense = narrow[narrow.packing_fraction < _DILUTE], narrow[narrow.packing_fraction >= _DILUTE]
+    once = narrow[narrow.width == narrow.width.min()]
+    return [
+        *_densities(cases, dilute, dense),
+        *each(
+            once,
+            "pressure by impulses over that with what is known, less 1, at {packing_fraction:.2g}",
+            measured=once.pressures_apart,
+            expected=0.0,
+            required=0.01,
+            source="what is taken off has the mean 0 in equilibrium",
+            fails_if="directions have unequal parts of the energy, or coefficients follow from the noise",
+        ),
+        *each(
+            once[once.packing_fraction < _DILUTE],
+            "squared error of the pressure over that with what is known, at {packing_fraction:.2g}",
+            Claim.at_least,
+            measured=once[once.packing_fraction < _DILUTE].pressure,
+            bound=8.0,
+            required=4.0,
+            source="without contacts nothing else fluctuates (requirement)",
+            fails_if="the energy along the axis is not what the wall is given",
+        ),
+    ]
+
+
+def _densities(cases: Table, dilute: Table, dense: Table) -> list[Claim]:
+    """Those of densities."""
     return [
         *each(
             cases,

@@ -10,18 +10,21 @@ from gaspart.reproduction.table import Table
 
 
 def estimators(dataset: xr.Dataset) -> Figure:
-    """How many times counts must be as long a run, against the packing fraction: in all bins and at walls."""
-    figure, axes = style.new((2.4,), (2.4,))
+    """How many times other estimators must have as long a run, against the packing fraction: counts in all
+    bins and at walls, and impulses of walls alone."""
+    figure, axes = style.new((2.0, 2.0), (2.0,))
+    everywhere, at_walls, pressure = axes
     cases = Table(dataset, "case")
     for kind, (width, rows) in enumerate(cases.by("width")):
         rows = rows.sorted_by("packing_fraction")
         name = f"bins of {width:g} diameters"
-        for axis, found in zip(axes, (rows.mixture, rows.at_walls), strict=True):
+        for axis, found in ((everywhere, rows.mixture), (at_walls, rows.at_walls)):
             style.points(axis, rows.packing_fraction, found, kind=kind, label=name)
-    for axis, where in zip(axes, ("all bins", "bins at the walls"), strict=True):
+    once = cases[cases.width == cases.width.min()].sorted_by("packing_fraction")
+    style.points(pressure, once.packing_fraction, once.pressure, kind=0, label="both walls")
+    for axis, where in zip(axes, ("all bins", "bins at the walls", "pressure"), strict=True):
         style.level(axis, 1.0)
         axis.set_yscale("log")
-        label = f"variance ratio, {where}"
-        style.labelled(axis, "packing fraction", label, legend="upper right")
+        style.labelled(axis, "packing fraction", f"variance ratio, {where}", legend="upper right")
     style.letters(*axes)
     return figure

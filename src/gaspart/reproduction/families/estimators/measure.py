@@ -1,4 +1,5 @@
-"""The density between two walls by counts, by impulses and by their mixture, of the same runs."""
+"""The density between two walls by counts, by impulses and by their mixture, and the pressure on them, of the
+same runs."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gaspart.accuracy.estimates import components
 from gaspart.analysis.bins import Grid
 from gaspart.analysis.impulses import kept, mixture, numbers_by_impulses
 from gaspart.analysis.run import Run
@@ -28,8 +30,9 @@ def estimators(points: list[Point], settings: dict) -> xr.Dataset:
     Returns over `case`, each point with each width of bins: packing_fraction; width, in diameters; mixture
     and impulses, the variance of counts over that of these, the median of all bins; at_walls, the first in
     the two bins at the walls, each the mean over replicas, by blocks of time; mean_square, of the difference
-    of counts and impulses over its error, over that of Student's distribution; and additions, of the tally
-    for each pair of particles that the engine has tested.
+    of counts and impulses over its error, over that of Student's distribution; additions, of the tally for
+    each pair of particles that the engine has tested; pressure, the squared error of the pressure on a wall
+    by its impulses over that with what is known, and pressures_apart, the difference of both over the latter.
     """
     cases = [(point, width) for point in points for width in settings["widths"]]
     return table("case", cases, _row)
@@ -37,7 +40,8 @@ def estimators(points: list[Point], settings: dict) -> xr.Dataset:
 
 def _row(case: tuple[Point, float]) -> dict[str, Any]:
     point, width = case
-    found = [_compared(run, width * 2.0 * point.scene.largest_radius) for run in runs(point)]
+    diameter = 2.0 * point.scene.largest_radius
+    found = [_compared(run, width * diameter) | pressures_of(run) for run in runs(point)]
     rows = {name: mean_of([one[name] for one in found]) for name in found[0]}
     return {"packing_fraction": point.scene.packing_fraction, "width": width, **rows}
 
@@ -58,6 +62,18 @@ def _compared(run: Run, width: float) -> dict[str, float]:
         "at_walls": float((own / both)[[0, -1]].mean()),
         "mean_square": float(square.mean() * (_BLOCKS - 3.0) / (_BLOCKS - 1.0)),
         "additions": float((4 * tally["collisions"] + 2 * tally["wall_hits"].sum()) / tally["pair_tests"]),
+    }
+
+
+def pressures_of(run: Run) -> dict[str, float]:
+    """One run: of both walls, which with what is known have the same pressure but for rounding, the means."""
+    start = float(run.time[0])
+    both = (components(data, "pressure", start) for data in (run.data.assign_attrs(tallies="[]"), run.data))
+    plain, better = ([one.estimate for one in found.values()] for found in both)
+    pairs = list(zip(plain, better, strict=True))
+    return {
+        "pressure": float(np.mean([(one.error / other.error) ** 2 for one, other in pairs])),
+        "pressures_apart": float(np.mean([one.value / other.value - 1.0 for one, other in pairs])),
     }
 
 
