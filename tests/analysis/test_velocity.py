@@ -103,6 +103,44 @@ def test_between_sliding_plates(knudsen):
     assert error < 0.015
 
 
+CHANNELS = {  # (lengths, number, force, engine, duration), at Knudsen numbers of 0.06 and 0.05
+    "event": ((101.0, 10.0, 10.0), 380, 1e-3, gp.EventDriven(), 8000.0),
+    "dsmc": ((2.0, 2.0, 2.0), 500, 0.05, gp.DSMC(0.01, (40, 1, 1), "boltzmann"), 200.0),
+}
+
+
+@pytest.mark.filterwarnings("ignore:gaspart. cells_per_side")  # they are long along the flow
+@pytest.mark.parametrize("name", CHANNELS)
+def test_a_force_drives_poiseuilles_flow_between_plates(name):
+    """0.21 of the velocity in the middle is slip: in proportion to theory, by 6 seeds."""
+    lengths, count, force, engine, duration = CHANNELS[name]
+    radius = 0.5 if name == "event" else 0.5 * (math.sqrt(2.0) * math.pi * count / 4.0 * 0.05) ** -0.5
+    container = gp.Container(lengths, ("wall", "periodic", "periodic"))
+    gas = [gp.Species(count, radius, temperature=1.0)]
+    faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(1.0))
+    scene = gp.Scene(container, gas, faces=faces, gravity=(0.0, force, 0.0))
+    runs = [gp.Simulation(scene, engine, seed) for seed in range(6)]
+    for run in runs:
+        run.advance(duration=duration)
+    found = A.replicas("velocity", runs, start=duration / 6.0, axis="x")
+    for component in "xz":
+        across = found.sel(component=component)
+        means = across["velocity_replicas"].values[:, 8:-8].mean(axis=1)
+        assert not across.theory.values[8:-8].any()
+        assert abs(means.mean()) < 4.9 * means.std(ddof=1) / math.sqrt(6.0)
+    along = found.sel(component="y")
+    shape = along.theory.values
+    known = np.isfinite(shape)
+    shares = [
+        one[known] @ shape[known] / (shape[known] @ shape[known]) for one in along["velocity_replicas"].values
+    ]
+    mean, error = np.mean(shares), np.std(shares, ddof=1) / math.sqrt(6.0)
+    wrong = float(along["velocity_theory_error"].max()) / shape[known].max()
+    assert shape[known].max() == pytest.approx(0.34, abs=0.01) and 20 <= known.sum() < 36
+    assert error < 0.035 and wrong < 0.06
+    assert abs(mean - 1.0) < 4.9 * error + wrong  # Student's, as rare as 3 sigma
+
+
 def test_profiles_of_a_species():
     """Two species under gravity, of one temperature: their densities add up to that of all."""
     species = [gp.Species(60, 0.4, temperature=1.0), gp.Species(30, 0.3, mass=4.0, temperature=1.0)]

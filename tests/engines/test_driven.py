@@ -94,6 +94,21 @@ def test_plates_take_the_momentum_that_the_force_gives(engine):
     assert not sim.tally.wall_shear[2:].any()
 
 
+@pytest.mark.parametrize("engine", [gp.EventDriven(), gp.DSMC(0.125, 2)], ids=["event", "dsmc"])
+def test_in_free_flight_particles_drift_as_their_time_since_a_plate(engine):
+    """Contacts are 1 in 500 crossings, and however large the drift: at last 2.2 thermal speeds."""
+    points = [gp.Species(4000, 1e-5, temperature=1.0)]
+    scene = channel((0.0, 1.0), container=gp.Container((3.0, 3.0), ("wall", "periodic")), species=points)
+    sims = [gp.Simulation(scene, engine, seed) for seed in (1, 2)]
+    for time in (0.5, 2.0, 4.0):
+        for sim in sims:
+            sim.advance(until=time)
+        along = np.concatenate([sim.state.velocities[:, 1] for sim in sims])
+        error = along.std() / math.sqrt(len(along))
+        assert error < 0.03
+        assert abs(along.mean() - theory.free_flight_drift(time, 3.0)) < 3.0 * error
+
+
 def flow_in_blocks(sim, edges, blocks, samples, interval):
     """Of discs in a channel (blocks, bins): their number, mean velocity along it, and temperature about
     it."""

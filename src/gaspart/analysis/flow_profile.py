@@ -26,7 +26,8 @@ def velocity_profile(
     Uncertainties are as of `field`.
 
     Theory: the flow of sheared images; between sliding plates free flight above a Knudsen number of 100, and
-    a linear flow with slip below 0.1; otherwise, in equilibrium, that of the centre of mass everywhere.
+    a linear flow with slip below 0.1, and likewise the parabola of dilute spheres that a force drives along
+    plates; otherwise, in equilibrium, that of the centre of mass everywhere.
     Raises SceneError for an unknown axis, a species that does not move, a file without all particles, and too
     few frames.
     """

@@ -24,7 +24,7 @@ _CHAPTERS = {
     "Gravity": ("atmosphere", "separation"),
     "Heat and flow": ("heat", "metal", "shear", "channel"),
     "Crystals and packings": ("crystal", "melting", "packing"),
-    "Grains": ("cooling", "hourglass", "shaken", "sheared"),
+    "Grains": ("cooling", "hourglass", "shaken", "sheared", "incline"),
 }
 """All templates, in each chapter from the simple to the special."""
 _EXAMPLES = """examples:

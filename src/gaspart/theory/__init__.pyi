@@ -105,6 +105,8 @@ from gaspart.theory.potential import excess_free_energy as excess_free_energy
 from gaspart.theory.potential import insertion_finite_size_correction as insertion_finite_size_correction
 from gaspart.theory.potential import packing_fraction_at as packing_fraction_at
 from gaspart.theory.shear import VELOCITY_SLIP as VELOCITY_SLIP
+from gaspart.theory.shear import channel_velocity as channel_velocity
+from gaspart.theory.shear import free_flight_drift as free_flight_drift
 from gaspart.theory.shear import free_molecular_stress as free_molecular_stress
 from gaspart.theory.shear import interpolated_stress as interpolated_stress
 from gaspart.theory.shear import slip_flow_stress as slip_flow_stress

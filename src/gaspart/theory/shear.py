@@ -1,4 +1,5 @@
-"""A gas between two walls that slide past each other: slip, free flight, heating and normal stresses.
+"""A gas between two walls that slide past each other, or along which a force drives it: slip, free flight,
+heating and normal stresses.
 
 The walls are diffuse with full accommodation, a distance `length` apart, and their velocities differ by
 `velocity`; k_B = 1.
@@ -40,6 +41,43 @@ def slip_flow_stress(length: Numbers, density: Numbers, velocity: Numbers, diame
     (length + 2 `VELOCITY_SLIP` l_0), mu the viscosity. To first order in `velocity` and l_0 / length."""
     path = 1.0 / (np.sqrt(2.0) * np.pi * np.asarray(density, dtype=float) * diameter**2)
     return enskog_viscosity(0.0, 3, diameter) * velocity / (length + 2.0 * VELOCITY_SLIP * path)
+
+
+@checked
+def channel_velocity(
+    height: Numbers, length: Numbers, density: Numbers, force: Numbers, diameter: float = 1.0
+) -> Values:
+    """Velocity of dilute spheres of mass 1 at temperature 1 that a force on each drives along two walls at
+    rest, at a height above one of them: Poiseuille's parabola with slip, density force / (2 mu) [height
+    (length - height) + `VELOCITY_SLIP` l_0 length], mu the viscosity.
+
+    To first order in `force` and l_0 / length. The next order in l_0 adds 0.6 density force l_0^2 / mu
+    (Hadjiconstantinou, Phys. Fluids 15, 2352 (2003)).
+    """
+    height, length, density, force = (np.asarray(a, dtype=float) for a in (height, length, density, force))
+    path = 1.0 / (np.sqrt(2.0) * np.pi * density * diameter**2)
+    shape = height * (length - height) + VELOCITY_SLIP * path * length
+    return 0.5 * density * force / enskog_viscosity(0.0, 3, diameter) * shape
+
+
+@checked
+def free_flight_drift(
+    time: Numbers, length: float, force: float = 1.0, temperature: float = 1.0, mass: float = 1.0
+) -> Values:
+    """Mean velocity along two walls of particles that collide with these only, a time after a force on each
+    was switched on in equilibrium. Exact (closed form).
+
+    It is force / mass times the mean of the time since a particle was at a wall, `time` at most: the integral
+    over t of the share that was at none for t, the average of 1 - |v| t / length, if positive, over Maxwell's
+    distribution. It grows with the logarithm of time, without limit: so many particles cross slowly.
+    """
+    from scipy.special import erf, exp1
+
+    crossing = length / np.sqrt(temperature / mass)
+    s = np.asarray(time, dtype=float) / crossing
+    w = 0.5 / np.maximum(s, 1e-9) ** 2
+    age = s * erf(np.sqrt(w)) + (0.5 * exp1(w) + s**2 * np.expm1(-w)) / np.sqrt(2.0 * np.pi)
+    return force / mass * crossing * age
 
 
 @checked

@@ -32,7 +32,7 @@ _PLAIN = {"thermal", "sliding", "centres_to_walls"}
 
 @dataclass(frozen=True)
 class Plates:
-    """Equal smooth and elastic particles between two thermal plates, without a force.
+    """Equal smooth and elastic particles between two thermal plates, with a force along these at most.
 
     axis: across them; length: of the gap, where centres can be; density: the mean number density there;
     temperatures: of the low and the high plate; slide (d,): the velocity of the high one relative to the low
@@ -96,11 +96,14 @@ def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None
     return np.multiply.outer(signs, direction) * value, error * np.abs(direction), source
 
 
-def plates_of(run: Run) -> Plates | None:
-    """The plates of a run, None for any other scene."""
+def plates_of(run: Run, driven: bool = False) -> Plates | None:
+    """The plates of a run, None for any other scene. driven: of one whose gas a force drives along them."""
     scene, thermal = run.scene, faces_of(run.scene, Thermal)
     numbers = [number for number, _ in thermal]
-    if not scene.alike or features(scene) - _PLAIN or not run.moving.all():
+    if not scene.alike or features(scene) - _PLAIN - {"gravity"} or not run.moving.all():
+        return None
+    pulled = {axis for axis, pull in enumerate(scene.gravity or ()) if pull != 0.0}
+    if bool(pulled) != driven or pulled != set(driven_axes(scene)):
         return None
     if len(numbers) != 2 or numbers[0] // 2 != numbers[1] // 2 or len(scene.faces) != 2:
         return None
