@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.analysis.insertion import insertions
+from gaspart.analysis.insertion import _covered, insertions
 from gaspart.analysis.waves import admitted, factors, shells_of
 
 A = gp.analysis
@@ -48,6 +48,24 @@ def test_the_sums_are_those_of_the_definition(lengths):
     waves, _ = admitted(lengths, 6.0)
     exact = abs(np.exp(2j * np.pi * (waves / np.array(lengths)) @ positions.T).sum(axis=1)) ** 2 / 40
     assert factors(positions, lengths, waves) == pytest.approx(exact, abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "number"), [((5.0, 9.0), (7, 40)), ((9.0, 1.3), (30, 9)), ((4.0, 5.0, 3.0), (9, 12, 10))]
+)
+def test_the_cells_that_particles_cover_are_those_whose_corners_all_are_near_one(lengths, number):
+    """Of two groups of particles, between periodic faces, one of which is nearer than twice the distance."""
+    size, number = np.array(lengths), np.array(number)
+    positions, sides = np.random.default_rng(5).random((8, len(size))) * size, size / number
+    groups = [(positions[:3], 1.2), (positions[3:], 0.8)]
+    distances = np.repeat([distance for _, distance in groups], [3, 5])
+    centres = (np.argwhere(np.ones(number)) + 0.5) * sides
+    images = np.stack(np.meshgrid(*[(-1, 0, 1)] * len(size)), axis=-1).reshape(-1, len(size)) * size
+    apart = np.abs(centres[:, None, None] - positions[:, None] - images)
+    furthest = np.sqrt(((apart + 0.5 * sides) ** 2).sum(axis=-1)).min(axis=2)
+    expected = (furthest <= distances).any(axis=1)
+    assert 0.1 < expected.mean() < 0.9
+    assert np.array_equal(_covered(groups, sides, number), expected)
 
 
 def test_the_structure_factor_is_that_of_the_distribution_and_of_theory(fluid):

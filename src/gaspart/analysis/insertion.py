@@ -6,9 +6,9 @@ The chance that a particle at a random place in a fluid of N overlaps none is
 
 In a dense fluid hardly any place is free, and of random places nearly all fail. Most of the container is
 known to be covered: a cell all of which is nearer than a diameter to one particle, in a mixture than the sum
-of their radii. Cells are divided while they are few, those that are covered are left out, and places are
-drawn in what remains. With the share of the container that it has as their weight, this is the same average,
-exactly.
+of their radii. The covered cells of a grid are left out, the others are divided while they are few, and
+places are drawn in what remains. With the share of the container that it has as their weight, this is the
+same average, exactly.
 """
 
 from __future__ import annotations
@@ -34,11 +34,13 @@ PLACES = 512
 """Places that are tried in each frame, by default."""
 MOST_FRAMES = 2048
 """Frames, evenly spaced, in which they are tried."""
-_CELLS = 4096  # at first
-_MOST_CELLS = 25000  # after a division
+_CELLS = 65536
+"""Of the grid at first, at most."""
+_PER_DISTANCE = 8
+"""Cells of that grid in the distance within which a particle covers, at most."""
+_MOST_CELLS = 2048  # after a division
 _WORTH = 0.6
-"""Of the cells that a division leaves: it is the last one if it leaves more."""
-_DIVISIONS = 7  # at most: cells are then a hundredth of the first ones' side
+"""Of the cells that a division makes: it is the last one if more are left."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ def _try(
     from scipy.spatial import cKDTree
 
     trees = [(cKDTree(positions, boxsize=lengths), distance) for positions, distance in groups]
-    cells, sides = _remaining(trees, lengths)
+    cells, sides = _remaining(groups, trees, lengths)
     if not len(cells):
         return 0.0, 0
     chosen = cells[generator.integers(0, len(cells), size=places)]
@@ -111,24 +113,55 @@ def _apart(trees: list[tuple[Any, float]], places: np.ndarray, less: float) -> n
     return found
 
 
-def _remaining(trees: list[tuple[Any, float]], lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _remaining(
+    groups: list[tuple[np.ndarray, float]], trees: list[tuple[Any, float]], lengths: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Centres (M, d) and sides (d,) of the cells that no one particle covers."""
     dimension = len(lengths)
-    width = (np.prod(lengths) / _CELLS) ** (1.0 / dimension)
-    number = np.maximum(1, np.round(lengths / width).astype(int))
+    narrowest = max(distance for _, distance in groups) / _PER_DISTANCE
+    width = max(narrowest, (np.prod(lengths) / _CELLS) ** (1.0 / dimension))
+    number = np.maximum(1, np.round(lengths / width)).astype(int)
     sides = lengths / number
-    axes = (side * (np.arange(n) + 0.5) for side, n in zip(sides, number, strict=True))
-    cells = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
+    open_ones = np.unravel_index(np.flatnonzero(~_covered(groups, sides, number)), number)
+    cells = (np.stack(open_ones, axis=1) + 0.5) * sides
     corners = np.array(list(product((-0.25, 0.25), repeat=dimension)))
-    for division in range(_DIVISIONS + 1):
-        before = len(cells)
+    while 0 < len(cells) * len(corners) <= _MOST_CELLS:
+        cells = (cells[:, None] + corners * sides).reshape(-1, dimension)
+        sides, before = 0.5 * sides, len(cells)
         cells = cells[_apart(trees, cells, 0.5 * float(np.linalg.norm(sides)))]  # covered to its corners
-        gained = division == 0 or len(cells) < _WORTH * before
-        if division == _DIVISIONS or not gained or len(cells) * len(corners) > _MOST_CELLS:
+        if len(cells) > _WORTH * before:
             break
-        cells = (cells[:, None] + corners * sides).reshape(-1, dimension) % lengths
-        sides = 0.5 * sides
     return cells, sides
+
+
+def _covered(groups: list[tuple[np.ndarray, float]], sides: np.ndarray, number: np.ndarray) -> np.ndarray:
+    """(cells,) which cells of a grid, (*number), lie within the distance of one particle as a whole.
+
+    The cells that differ in the last axis only are a strip. A particle covers those between two ends of each
+    strip that is near: at the ends 1 is added and subtracted, and the sum along the strip is how many cover a
+    cell. What passes the last cell goes on at the first.
+    """
+    last, strips = int(number[-1]), int(np.prod(number[:-1]))
+    ends = np.zeros(strips * last, dtype=int)
+    for positions, distance in groups:
+        left, strip = np.full(len(positions), distance**2), np.zeros(len(positions), dtype=int)
+        for place, side, count in zip(positions.T, sides[:-1], number, strict=False):
+            reach = int(distance / side)
+            near = np.floor(place / side).astype(int)[:, None] + np.arange(-reach, reach + 1)
+            furthest = np.abs(place[:, None] - side * (near + 0.5)) + 0.5 * side
+            around = (len(place), *[1] * (left.ndim - 1), -1)
+            left = left[..., None] - (furthest**2).reshape(around)
+            strip = strip[..., None] * count + (near % count).reshape(around)
+        chosen = np.nonzero(left > 0.0)
+        half, centre = np.sqrt(left[chosen]), positions[chosen[0], -1]
+        first = np.ceil((centre - half) / sides[-1]).astype(int)
+        end = np.maximum(first, np.floor((centre + half) / sides[-1]).astype(int))
+        start = last * strip[chosen]
+        ends += np.bincount(start + first % last, minlength=len(ends))
+        ends -= np.bincount(start + end % last, minlength=len(ends))
+        passed = end // last - first // last
+        ends[::last] += np.bincount(np.repeat(start // last, passed), minlength=strips)
+    return ends.reshape(strips, last).cumsum(axis=1).ravel() > 0
 
 
 def chemical_potential(source: Source, places: int = PLACES, start: float | None = None) -> Observable:

@@ -9,6 +9,8 @@ import numpy as np
 _FEW = 24
 """Waves along the longest side, up to which all wave vectors of a shell are candidates; up to twice as many
 every second one along each axis, and so on."""
+_DEAR = 8
+"""Elements of a product of matrices for each that is used, up to which it is cheaper than single sums."""
 
 
 def admitted(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.ndarray, np.ndarray]:
@@ -67,25 +69,31 @@ def factors(positions: np.ndarray, lengths: Sequence[float] | np.ndarray, waves:
 def amplitudes(positions: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray) -> np.ndarray:
     """(M,) sum exp(i k.r), complex, at the wave vectors k = 2 pi n / L, n being `waves` (M, d).
 
-    positions (N, d). The exponential is a product of one factor an axis, from tables over the integers; that
-    of the axes after the first is made once for all vectors that share it.
+    positions (N, d). The exponential is a product of one factor an axis, from tables over the integers. Those
+    of the axes after the first are multiplied once for all vectors that share them; the sum over particles is
+    a product of matrices where the vectors are a good part of its elements, and otherwise made for each.
     """
     first, *others = (
         _phases(positions[:, axis], float(length), int(np.abs(waves[:, axis]).max()))
         for axis, length in enumerate(lengths)
     )
-    shared, place = np.unique(waves[:, 1:], axis=0, return_inverse=True)
-    inner = others[0][shared[:, 0]]
-    for axis, table in enumerate(others[1:], start=1):
-        inner *= table[shared[:, axis]]
+    number, strides = waves[:, 0], np.cumprod([1, *(len(table) for table in others[:0:-1])])[::-1]
+    rows = np.array([len(table) for table in others])
+    keys, place = np.unique((waves[:, 1:] % rows) @ strides, return_inverse=True)
+    inner = others[0][keys // strides[0]]
+    for table, stride in zip(others[1:], strides[1:], strict=True):
+        inner *= table[keys // stride % len(table)]
+    first = first[: int(number.max()) + 1] if number.min() >= 0 else first
+    if len(first) * len(keys) < _DEAR * len(waves):
+        return np.asarray((inner @ first.T)[place, number])
     total = np.empty(len(waves), dtype=complex)
-    for number in np.unique(waves[:, 0]):
-        here = np.flatnonzero(waves[:, 0] == number)
-        total[here] = inner[place.ravel()[here]] @ first[number]
+    for each in np.unique(number):
+        here = np.flatnonzero(number == each)
+        total[here] = inner[place[here]] @ first[each]
     return total
 
 
 def _phases(places: np.ndarray, length: float, most: int) -> np.ndarray:
     """(2 most + 1, N) exp(2 pi i n x / L) of the integers n, the negative ones after the others."""
-    numbers = np.concatenate([np.arange(most + 1), np.arange(-most, 0)])
-    return np.exp(2j * np.pi / length * np.outer(numbers, places))
+    ahead = np.exp(2j * np.pi / length * np.outer(np.arange(most + 1), places))
+    return np.concatenate([ahead, ahead[:0:-1].conj()])
