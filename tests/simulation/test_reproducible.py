@@ -90,6 +90,23 @@ def test_restored_again_and_again_to_the_same_counts(engine):
     check_restored(scene, ends, "state.positions", *WHOLE_TALLY, engine=engine)
 
 
+def test_restored_lists_have_their_room():
+    """When it does not suffice all lists are made anew, and crossings begin from there: what has happened to
+    a simulation before a checkpoint must not happen after that again."""
+    simulation, restored = (
+        gp.Simulation(gas(3, 500, 0.3), gp.EventDriven("lists"), (4, 2)) for _ in range(2)
+    )
+    at_first = simulation.checkpoint()["room"]
+    simulation.advance(until=80.0)
+    checkpoint = simulation.checkpoint()
+    assert checkpoint["room"].tolist() != at_first.tolist()
+    restored.restore(checkpoint)
+    for one in (simulation, restored):
+        one.advance(until=80.5)
+    for counter in ("collisions", "crossings", "pair_tests"):
+        assert getattr(restored.tally, counter) == getattr(simulation.tally, counter)
+
+
 @every_engine
 @pytest.mark.parametrize("cut_after", [1, 2, 5, 9])
 def test_cut_short_after_any_checkpoint_and_resumed(tmp_path, monkeypatch, engine, cut_after):

@@ -89,7 +89,7 @@ def _recipe(run: Any, name: str) -> _Recipe:
         raise SceneError("sources", type(run).__name__, "must be trajectories, their paths or simulations")
     settings = {"scene": parse_yaml(run.attrs["scene"]), "engine": json.loads(run.attrs["engine"])}
     draws = engine_from_dict(settings["engine"]).draws(Scene.from_dict(settings["scene"]))
-    frames = {one: run[one].values for one in ("time", "coordinates", "velocities")}
+    frames = {one: run[one].values for one in ("time", "coordinates", "velocities") if one in run}
     stored = partial(_stored, frames)
     seed, impulses = str(run.attrs["seed"]), _named(kept(run))
     return _Recipe(name, settings, seed, draws, frames["time"], False, stored, impulses)
@@ -103,7 +103,7 @@ def _named(tally: ImpulseTally | None) -> str:
 def _stored(frames: dict[str, np.ndarray], time: float) -> bytes:
     """The state of a trajectory in the frame at a time."""
     number = int(np.searchsorted(frames["time"], time))
-    return _bits(frames["coordinates"][number], frames["velocities"][number])
+    return _bits(*(frames[one][number] for one in ("coordinates", "velocities") if one in frames))
 
 
 def _simulated(simulation: Simulation, time: float) -> bytes:
@@ -114,9 +114,9 @@ def _simulated(simulation: Simulation, time: float) -> bytes:
     return _bits(simulation.state.positions, simulation.state.velocities)
 
 
-def _bits(positions: np.ndarray, velocities: np.ndarray) -> bytes:
+def _bits(*vectors: np.ndarray) -> bytes:
     """Of positions and velocities (N, d), in single precision."""
-    return np.stack([positions, velocities]).astype(np.float32).tobytes()
+    return np.stack(vectors).astype(np.float32).tobytes()
 
 
 def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:

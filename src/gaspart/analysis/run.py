@@ -44,12 +44,15 @@ _MOST = 20_000_000  # numbers that such frames hold
 class Run:
     """T frames of N particles in d dimensions: the measured part of a run.
 
-    time (T,); data: the frames, with cumulative counters (T,) or (T, walls).
+    time (T,); data: the frames, with cumulative counters (T,) or (T, walls). centred: along the axes on which
+    the total momentum is conserved it is known to be zero, so that a file that lacks particles, or their
+    velocities, has a temperature too.
     """
 
     scene: Scene
     time: np.ndarray
     data: xr.Dataset
+    centred: bool = False
 
     @property
     def count(self) -> int:
@@ -91,12 +94,19 @@ class Run:
     @cached_property
     def positions(self) -> np.ndarray:
         """(T, N, d)."""
-        return self.data["coordinates"].values.astype(float)
+        return self._vectors("coordinates").values.astype(float)
 
     @cached_property
     def velocities(self) -> np.ndarray:
         """(T, N, d)."""
-        return self.data["velocities"].values.astype(float)
+        return self._vectors("velocities").values.astype(float)
+
+    def _vectors(self, name: str) -> xr.DataArray:
+        """Those of all frames. Raises SceneError if the file does not keep them."""
+        if name not in self.data:
+            rule = f"of each particle the file has nothing else, and {name} are needed"
+            raise SceneError("keep", self.data.attrs.get("keep"), rule)
+        return self.data[name]
 
     @cached_property
     def masses(self) -> np.ndarray:
@@ -117,8 +127,10 @@ class Run:
 
     @cached_property
     def moving(self) -> np.ndarray:
-        """(N,) which particles are not fixed. Raises SceneError if the file lacks some particles."""
-        self.require_all()
+        """(N,) which particles are not fixed. Raises SceneError if the file lacks some particles, unless the
+        run is centred."""
+        if not self.centred:
+            self.require_all()
         return np.isfinite(self.masses)
 
     @property
@@ -164,7 +176,8 @@ class Run:
         """(T,) k_B T of each frame: twice the kinetic energy of flight about the mean motion (see `motion`)
         per degree of freedom; 0 if it is only rounding of the velocity of the centre of mass. Of a file that
         lacks particles, see `_of_all`. Raises SceneError as `freedoms`."""
-        if self.is_subset and "stress_sum" in self.data:
+        lacking = self.is_subset or "velocities" not in self.data
+        if lacking and (self.centred or "stress_sum" in self.data):
             return self._of_all
         freedoms, masses, scene = self.freedoms, self.masses[self.moving], self.scene
         if self.flow_axes or scene.rough or scene.thermostat or scene.shear_rate is not None:
@@ -172,7 +185,7 @@ class Run:
             whole = np.einsum("tnd,tnd,n->t", *[self.velocities[:, self.moving]] * 2, masses)
         else:  # the energy is in double precision, and the momentum that of any frame
             whole = 2.0 * self.data["kinetic_energy"].values
-            first = self.data["velocities"][0].values[self.moving].astype(float)
+            first = self._vectors("velocities")[0].values[self.moving].astype(float)
             momentum = np.where(self.conserved, masses @ first, 0.0)
             energies = whole - (momentum @ momentum) / (masses.sum() or 1.0)
         moves = energies.mean() > _AT_REST * whole.mean()
@@ -180,10 +193,10 @@ class Run:
 
     @property
     def _of_all(self) -> np.ndarray:
-        """(T,) k_B T of each frame of a run with the tally of the stress, whichever particles are in the
-        file: from the energy of all, of flight and spin, about the centre of mass."""
+        """(T,) k_B T of each frame of a run that is centred or has the tally of the stress, whatever of its
+        particles is in the file: from the energy of all, of flight and spin, about the centre of mass."""
         d, count = self.dimension, self.count
-        freedom = d * (count - 1) + self.scene.rough * count * (d * (d - 1) // 2)
+        freedom = d * count - int(self.conserved.sum()) + self.scene.rough * count * (d * (d - 1) // 2)
         if freedom < 1:
             raise SceneError("count", count, "too few moving particles for a temperature")
         drift = self.data["flux_velocity"].values[-1] if "flux_velocity" in self.data else np.zeros(d)
@@ -294,7 +307,7 @@ def open_run(
     else:
         opened = open_trajectory(source)
     with opened as data:
-        if "scene" not in data.attrs or "coordinates" not in data:
+        if "scene" not in data.attrs or "kinetic_energy" not in data:
             raise SceneError(
                 "source", type(source).__name__, "must be a trajectory, its path or a simulation"
             )

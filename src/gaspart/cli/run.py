@@ -113,6 +113,7 @@ def _add_contents(group: argparse._ArgumentGroup) -> None:
         help="also write unwrapped displacements since time 0, in float64",
     )
     add("--follow", type=int, metavar="N", help="write only the first N particles")
+    add("--keep", metavar="WHAT", help="write of each particle only its `positions`, or `velocities`")
     add(
         "--correlations",
         type=several(float),
@@ -180,6 +181,7 @@ def _run(given: argparse.Namespace) -> None:
             at_most=given.at_most,
             displacements=given.displacements,
             follow=given.follow,
+            keep=given.keep,
             correlations=correlations,
             pairs=given.pairs,
             impulses=given.impulses,

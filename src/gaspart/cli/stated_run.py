@@ -72,6 +72,8 @@ def run_options(path: Path, recipe: Recipe) -> list[str]:
         options += option_of(tally)
     if recipe.follow is not None:
         options += ["--follow", str(recipe.follow)]
+    if recipe.keep is not None:
+        options += ["--keep", recipe.keep]
     if recipe.correlations is not None:
         asked = recipe.correlations
         options += ["--correlations", f"{asked.interval!r},{asked.lags},{asked.start!r}"]

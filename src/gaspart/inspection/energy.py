@@ -41,6 +41,8 @@ def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
         return energy
     if data.sizes["atom"] < scene.count:
         raise SceneError("follow", data.sizes["atom"], "the file has not all particles")
+    if "coordinates" not in data:
+        raise SceneError("keep", data.attrs["keep"], "the file has no positions")
     if any(isinstance(face, Sticky) for face in scene.faces.values()):
         raise SceneError("faces", "sticky", "the file does not say which particles stick")
     frames = len(energy)

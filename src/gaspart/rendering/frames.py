@@ -103,6 +103,8 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
     names = ("coordinates", "velocities", "cell_lengths", "time", "piston_position")
     # Of these alone: xarray takes milliseconds for a frame of the whole.
     shown = {name: source.variables[name][frame].values for name in names if name in source.variables}
+    if "keep" in source.attrs:
+        raise SceneError("keep", source.attrs["keep"], "a picture needs positions and velocities")
     positions, velocities = shown["coordinates"].astype(float), shown["velocities"].astype(float)
     scene = _scene(source.attrs["scene"])
     return DrawnParticles(

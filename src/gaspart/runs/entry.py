@@ -41,6 +41,7 @@ def run(
     at_most: float | None = None,
     displacements: bool = False,
     follow: int | None = None,
+    keep: str | None = None,
     correlations: Correlations | None = None,
     pairs: bool = False,
     impulses: str | None = None,
@@ -58,14 +59,15 @@ def run(
     engine: event-driven, or as `Simulation` takes it, like the seed. A frame at time 0 and at every
     sample_interval to the duration, an integer multiple of it; with `displacements` also each particle's
     float64 way since time 0, unwrapped; with rough contacts also spins; with `follow` only so many particles,
-    from the first on (counters are those of all). With `correlations` each frame has the sums so far of the
-    velocities' correlations, and with `displacements` of the mean-squared displacement, over all pairs of
-    samples, or with `Correlations(stress=True)` those of the stress tensor and the heat flux. With `pairs`
-    each frame counts the collisions of each pair of species so far; `impulses`, such as "z:200", and
-    `pair_impulses`, such as "3:300:0.5" (distance, shells, share of contacts), keep what a more accurate
-    density along z and g(r) need (event-driven). A run of the same recipe and program that was cut short is
-    continued, a complete one is not changed; another trajectory is replaced only with `overwrite`, another
-    file never. With `keep_checkpoint` the last state stays in `path.checkpoint.npz`, for `resume`.
+    from the first on (counters are those of all), with `keep` only their "positions" or "velocities". With
+    `correlations` each frame has the sums so far of the velocities' correlations, and with `displacements` of
+    the mean-squared displacement, over all pairs of samples, or with `Correlations(stress=True)` those of the
+    stress tensor and the heat flux. With `pairs` each frame counts the collisions of each pair of species so
+    far; `impulses`, such as "z:200", and `pair_impulses`, such as "3:300:0.5" (distance, shells, share of
+    contacts), keep what a more accurate density along z and g(r) need (event-driven). A run of the same
+    recipe and program that was cut short is continued, a complete one is not changed; another trajectory is
+    replaced only with `overwrite`, another file never. With `keep_checkpoint` the last state stays in
+    `path.checkpoint.npz`, for `resume`.
 
     initial: a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`) to start from.
     Particles and container size must be the scene's; defaults of engines follow from the scene's `speed` or
@@ -86,7 +88,7 @@ def run(
         sample_interval = default_sample_interval(scene, engine, correlations)
     settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
     tallies = *_tallies(impulses, wanted, scene, engine), *pair_impulse_tallies(pair_impulses)
-    recipe = Recipe(*settings, pairs, _start(initial, scene, path, replicas), tallies)
+    recipe = Recipe(*settings, pairs, _start(initial, scene, path, replicas), tallies, keep=keep)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return _record(in_replicas(recipe, replicas), _required(path), options, examined)
 

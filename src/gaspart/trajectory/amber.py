@@ -24,6 +24,8 @@ NOTE = (
     "Reduced units: lengths and times are in the scene's own units, masses relative to the reference "
     "species, k_B = 1. Picosecond and angstrom stand for these, because readers of AMBER files insist on it."
 )
+KEPT = {"positions": "coordinates", "velocities": "velocities"}
+"""What a frame may keep of each particle alone (`keep`), and its variable."""
 _ALONG = {field.name: field.metadata.get("along", ()) for field in fields(Tally)}
 MAGIC = b"CDF\x02"
 """The first bytes of a netCDF-3 file of 64-bit offsets."""
@@ -77,7 +79,7 @@ class Layout:
 
     count: particles in the file; extra: which variables of `_EXTRA` the file has; walls: the number of
     interior walls; counters: names of those that the file has; sums: of the correlations; axes: the lengths
-    of the axes that not every file has, those of optional tallies, `lag` and `pair`.
+    of the axes that not every file has, those of optional tallies, `lag` and `pair`; keep: of `KEPT`.
     """
 
     def __init__(
@@ -89,6 +91,7 @@ class Layout:
         counters: Collection[str],
         sums: Collection[str],
         axes: Mapping[str, int],
+        keep: str | None = None,
     ) -> None:
         self.sizes = {
             "spatial": 3,
@@ -107,9 +110,10 @@ class Layout:
             "cell_angles": (">f8", ("cell_angular",), {"units": "degree"}),
             "kinetic_energy": (">f8", (), {"long_name": "kinetic energy of all particles"}),
             **{name: (">f8", _ALONG[name], faces if "face" in _ALONG[name] else {}) for name in counters},
-            "coordinates": (">f4", _VECTORS, {"units": "angstrom"}),
-            "velocities": (">f4", _VECTORS, {"units": "angstrom/picosecond"}),
         }
+        vectors = {"coordinates": "angstrom", "velocities": "angstrom/picosecond"}
+        for name in vectors if keep is None else [KEPT[keep]]:
+            self.variables[name] = (">f4", _VECTORS, {"units": vectors[name]})
         self.variables |= {name: _EXTRA[name] for name in extra}
         if sums:
             meaning = "samples that are correlated, so far"

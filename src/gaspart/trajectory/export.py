@@ -56,7 +56,9 @@ def export(trajectory: str | Path, path: str | Path, frame: int = -1, overwrite:
 
 
 def _snapshot(path: Path, frame: int) -> Snapshot:
-    scene = read_recipe(path).scene
+    recipe = read_recipe(path)
+    recipe.require_all(path)
+    scene = recipe.scene
     with opened(path) as file:
         there = len(file.dimensions["frame"])
         if not -there <= frame < there:

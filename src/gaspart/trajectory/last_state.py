@@ -28,8 +28,8 @@ def last_state(path: str | Path) -> State:
     It is exact if the run had `keep_checkpoint`; otherwise positions, velocities and spins are those of the
     last frame, in single precision; the motion of a piston and the displacement of sheared images are exact.
     Raises SceneError for a file that `open_trajectory` refuses, for a kept checkpoint that is damaged or of
-    another run, and, of a last frame, one that lacks particles (`follow`) or does not hold the state: of a
-    scene with sticky faces.
+    another run, and, of a last frame, one that lacks particles (`follow`), holds only a part of what they are
+    (`keep`), or does not hold the state: of a scene with sticky faces.
     """
     path = run_path(path)
     recipe = read_recipe(path)
@@ -42,6 +42,7 @@ def last_state(path: str | Path) -> State:
     if recipe.stored_count < recipe.scene.count:
         rule = f"has {recipe.stored_count} of {recipe.scene.count} particles, and no checkpoint"
         raise SceneError("file", str(path), rule)
+    recipe.require_all(path)
     with open_trajectory(path) as data:
         if data.sizes["frame"] == 0:
             raise SceneError("frame", 0, "the trajectory has no frame yet")

@@ -12,7 +12,7 @@ import numpy as np
 from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.keys.values import count_of, number
+from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
@@ -54,7 +54,8 @@ class Recipe:
     ends the run in place of a duration, which is then None. pairs: count the collisions of each pair of
     species. initial: the state at time 0, if it is not that of the scene and the seed; the file holds it.
     tallies: the optional tallies that frames have, beside those that the correlations need. replica: its
-    number, from 1, and that of all replicas of the run, if there are several.
+    number, from 1, and that of all replicas of the run, if there are several. keep: all that frames hold of
+    each particle, "positions" or "velocities", beside displacements; None: both, and spins.
     """
 
     scene: Scene
@@ -70,6 +71,7 @@ class Recipe:
     initial: State | None = field(default=None, compare=False, repr=False)
     tallies: tuple[OptionalTally, ...] = ()
     replica: tuple[int, int] | None = None
+    keep: str | None = None
 
     def __post_init__(self) -> None:
         stream(self.seed)  # raises SceneError for an invalid seed
@@ -83,6 +85,10 @@ class Recipe:
         if self.follow is not None:
             if count_of("follow", self.follow, least=1) > self.scene.count:
                 raise SceneError("follow", self.follow, f"there are {self.scene.count} particles")
+        if self.keep is not None:
+            one_of("keep", self.keep, tuple(amber.KEPT))
+            if self.until:
+                raise SceneError("keep", self.keep, "has no meaning with until, which measures what is there")
         finest = self.correlations.interval if self.correlations else self.sample_interval
         object.__setattr__(self, "engine", self.engine.resolved(self.scene, finest))
         if self.engine.quantum:
@@ -160,8 +166,8 @@ class Recipe:
         """The variables of a frame."""
         scene, walls = self.scene, len(self.scene.walls)
         names = {
-            "spins": scene.rough,
-            "vibrations": scene.vibrates,
+            "spins": scene.rough and not self.keep,
+            "vibrations": scene.vibrates and not self.keep,
             "displacements": self.displacements,
             "piston": bool(pistons(scene)),
             "pair_collisions": self.pairs,
@@ -177,7 +183,13 @@ class Recipe:
         if self.pairs:
             axes["pair"] = len(pair_names(scene))
         counters = amber.counters(self.engine, self.tallied)
-        return amber.Layout(self.stored_count, scene.dimension, extra, walls, counters, sums, axes)
+        count, dimension = self.stored_count, scene.dimension
+        return amber.Layout(count, dimension, extra, walls, counters, sums, axes, self.keep)
+
+    def require_all(self, path: Path) -> None:
+        """Raise SceneError if its trajectory, at `path`, does not hold both positions and velocities."""
+        if self.keep is not None:
+            raise SceneError("keep", self.keep, f"{path} holds nothing else of its particles")
 
     def attributes(self) -> dict:
         """The recipe as the file's attributes, from which `read_recipe` restores it."""
@@ -191,6 +203,7 @@ class Recipe:
             "sample_interval": self.sample_interval,
             "displacements": np.int32(self.displacements),
             **({} if self.follow is None else {"follow": np.int32(self.follow)}),
+            **({} if self.keep is None else {"keep": self.keep}),
             **({} if self.correlations is None else {"correlations": self.correlations.to_json()}),
             **({"pairs": np.int32(1)} if self.pairs else {}),
             **({"tallies": json.dumps([*map(tally_to_dict, self.tallies)])} if self.tallies else {}),
@@ -268,6 +281,7 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
             initial=_stored_initial(file, scene),
             tallies=tuple(tally_from_dict(tally) for tally in json.loads(stored.get("tallies", "[]"))),
             replica=(int(stored["replica"]), int(stored["replicas"])) if "replica" in stored else None,
+            keep=stored.get("keep"),
         )
     except SceneError:
         raise

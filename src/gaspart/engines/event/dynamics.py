@@ -285,8 +285,11 @@ class EventDynamics(Dynamics):
         return arrays
 
     def _kept(self) -> dict[str, Any]:
-        """Particles at their own clocks, predictions and counts, and of which search they are."""
-        return {**super()._kept(), **self._searched()}
+        """Particles at their own clocks, predictions and counts, and of which search they are. Of lists the
+        `room`: when it does not suffice all are made anew, which work counters tell."""
+        made = self._boxes.lists
+        room = {"room": (made.room, made.per_cell)} if made else {}
+        return {**super()._kept(), **self._searched(), **room}
 
     def _searched(self) -> dict[str, Any]:
         """The search of which predictions and centres of lists are."""
@@ -297,7 +300,7 @@ class EventDynamics(Dynamics):
 
     def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """All but the search; nor the centres of other neighbour lists, or of none."""
-        spared = {*self._searched(), *(() if self._is_of_this_search(checkpoint) else ("centres",))}
+        spared = {*self._searched(), *(() if self._is_of_this_search(checkpoint) else ("centres", "room"))}
         return {key: array for key, array in self.checkpoint().items() if key not in spared}
 
     def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
@@ -308,5 +311,9 @@ class EventDynamics(Dynamics):
             self._predict()
             return
         if self._boxes.lists:
+            room = np.clip(checkpoint["room"], 1, 2 * (len(self._flights) + self._boxes.lists.room))
+            made = neighbour_lists(self._scene, *room.tolist())
+            made.listed["centre"] = self._boxes.lists.listed["centre"]
+            self._boxes = self._boxes._replace(lists=made)
             self._make_lists()
         self._begin(anew=False)

@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaspart.keys import TEXT, Kind, count, described, flag, positive
+from gaspart.keys import TEXT, Kind, choice, count, described, flag, positive
 from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY
 from gaspart.reproduction.jobs.replicas import write_replicas
 
@@ -70,8 +70,13 @@ KEYS: dict[str, Kind] = {
         "energies are those of all",
         default=None,
     ),
+    "keep": choice(
+        "all that frames hold of each particle; by default positions, velocities and spins",
+        *("positions", "velocities"),
+        default=None,
+    ),
 }
-_NOT_WITH_UNTIL = ("lags", "frames", "stress", "pairs", "impulses", "pair_impulses", "follow")
+_NOT_WITH_UNTIL = ("lags", "frames", "stress", "pairs", "impulses", "pair_impulses", "follow", "keep")
 EXAMINER = "gaspart.accuracy.reached"
 """The module that examines a run with `until`."""
 
@@ -110,7 +115,7 @@ def arguments(point: Point) -> dict:
         "displacements": settings.get("displacements", False),
         "follow": follow,
         "correlations": correlations,
-        **{key: settings[key] for key in ("pairs", "impulses", "pair_impulses") if settings.get(key)},
+        **{key: settings[key] for key in ("pairs", "impulses", "pair_impulses", "keep") if settings.get(key)},
     }
 
 

@@ -17,6 +17,8 @@ _ENOUGH = 64  # particles of a kind: observables do not distinguish more
 def require_observable(name: str, point: Point) -> None:
     """Raise SceneError for an observable that no trajectory of a point has, however long it is."""
     arguments, scene = point.arguments, point.scene
+    if "keep" in arguments:
+        raise point.refused("keep", "observables need all that frames may hold")
     stated = arguments.get("correlations")
     kept = {"fluxes": stated and stated.get("stress"), "pairs": arguments.get("pairs")}
     require_run(name, scene, [key for key, value in kept.items() if value], arguments.get("follow"))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from gaspart import run, theory
+from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.pressure import (
     COUNTED,
     Series,
@@ -29,7 +30,8 @@ def simulate(point):
         path = point.replica_path(k)
         Path(path).parent.mkdir(parents=True, exist_ok=True)
         times = schedule.duration, schedule.sample_interval
-        run(point.scene, point.engine, point.seed(k), *times, path)
+        kept = {key: point.settings.get(key) for key in ("follow", "keep")}
+        run(point.scene, point.engine, point.seed(k), *times, path, **kept)
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +39,22 @@ def measured(tmp_path_factory):
     point = small_point(tmp_path_factory.mktemp("points"))
     simulate(point)
     return point, pressure(point)
+
+
+@pytest.mark.parametrize("kept", [{"follow": 1}, {"keep": "positions"}])
+def test_of_an_exact_temperature_neither_all_particles_nor_velocities_are_needed(tmp_path, kept):
+    """Sums and energies are of all, and the centre of mass is at rest."""
+    settings = {"exact_temperature": True, "collisions_per_particle": 20, "replicas": 1}
+    whole, part = small_point(tmp_path / "a", **settings), small_point(tmp_path / "b", **settings, **kept)
+    for point in (whole, part):
+        simulate(point)
+    (expected,), (found,) = ([series_of(run) for run in runs(point)] for point in (whole, part))
+    assert found.z == pytest.approx(expected.z, rel=1e-9)
+    assert found.rate == pytest.approx(expected.rate, rel=1e-9)
+    drawn = small_point(tmp_path / "c", **settings | {"exact_temperature": False}, **kept)
+    simulate(drawn)
+    with pytest.raises(SceneError, match=next(iter(kept))):
+        [series_of(run) for run in runs(drawn)]
 
 
 def test_z_of_a_small_gas_is_the_canonical_one(measured):

@@ -26,9 +26,10 @@ class Temperatures:
 def temperatures(run: Run, first: int) -> Temperatures:
     """Temperatures in all frames of a run of like particles from number `first` on."""
     count, dimension, mass = run.count, run.dimension, run.scene.species[0].mass
-    total, translation = mass * (run.velocities**2).sum(axis=(1, 2)), run.temperatures
-    spins = {2: 1, 3: 3}[dimension]
-    rotation = (2.0 * run.data["kinetic_energy"].values - total) / (spins * count)
+    translation, rotation = run.temperatures, np.zeros(len(run.time))
+    if run.scene.rough:  # of smooth particles the file may lack all but one
+        total = mass * (run.velocities**2).sum(axis=(1, 2))
+        rotation = (2.0 * run.data["kinetic_energy"].values - total) / ({2: 1, 3: 3}[dimension] * count)
     return Temperatures(
         time=run.time[first:],
         collisions=2.0 * run.data["collisions"].values[first:] / count,

@@ -17,9 +17,11 @@ def runs(point: Point, first: int | None = None) -> Iterator[Run]:
     """
     scene, schedule = point.scene, point.schedule
     before = schedule.equilibration_frames
+    more = scene.gravity, scene.faces, scene.walls, scene.particles, scene.thermostat, scene.rough
+    centred = not any(more) and all(kind.exact_temperature for kind in scene.species)
     kept = slice(before if first is None else first, None)
     for path in point.replica_paths:
         with open_trajectory(path) as trajectory:
             if trajectory.sizes["frame"] != before + schedule.samples + 1:
                 raise ValueError(f"{path}: {trajectory.sizes['frame']} frames are not those of {point.path}")
-            yield Run(scene, trajectory["time"].values[kept], trajectory.isel(frame=kept))
+            yield Run(scene, trajectory["time"].values[kept], trajectory.isel(frame=kept), centred)
