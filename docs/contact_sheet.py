@@ -1,7 +1,8 @@
 """What the program can show, in pictures: python docs/contact_sheet.py
 
-Writes docs/gallery.md, a page with the picture of every template of `gaspart new`, and docs/scenes.png, the
-picture of the README: some of them in one. Both follow from docs/scenes (`scene_pictures.py`).
+Writes docs/gallery.md, a page with the picture, or the film, of every template of `gaspart new`, and
+docs/scenes.png, the picture of the README: some of them in one. Both follow from docs/scenes
+(`scene_pictures.py`).
 """
 
 from itertools import groupby
@@ -49,7 +50,8 @@ def page() -> str:
 
 
 def _cell(template: Template) -> str:
-    picture = f"![{template.title}](scenes/{template.name}.png)"
+    filmed = (DOCS / f"scenes/{template.name}.webp").exists()
+    picture = f"![{template.title}](scenes/{template.name}.{'webp' if filmed else 'png'})"
     file = f"[`{template.name}`](../src/gaspart/cli/templates/{template.name}.yaml)"
     return f"{picture}<br>{file}: **{template.title}.** {template.description}"
 

@@ -107,16 +107,17 @@ def helped(parser):
 
 
 def gallery(folder):
-    """The page of the templates, whose pictures are copied."""
+    """The page of the templates, whose pictures, or films, are copied."""
     text = heading("Scenes of the gallery")
     text += "``gaspart new NAME.yaml --template NAME`` writes a scene file; the command below it runs it.\n\n"
     for name, template in templates().items():
-        shutil.copyfile(ROOT / f"docs/scenes/{name}.png", folder / f"{name}.png")
+        films = list(ROOT.glob(f"docs/scenes/{name}.webp"))
+        (picture,) = films or [ROOT / f"docs/scenes/{name}.png"]
+        shutil.copyfile(picture, folder / picture.name)
         scene = "".join(line for line in template.text.splitlines(True) if not line.startswith("#"))
         text += f".. _scene-{name}:\n\n" + heading(template.title, "-")
-        text += (
-            f".. image:: {name}.png\n   :alt: {template.title}\n   :width: 420\n\n{template.description}\n\n"
-        )
+        text += f".. image:: {picture.name}\n   :alt: {template.title}\n   :width: 420\n\n"
+        text += f"{template.description}\n\n"
         if template.figure:
             text += f"Measured in the figure :ref:`{template.figure} <figure-{template.figure}>`.\n\n"
         text += f".. code-block:: yaml\n   :caption: {name}.yaml\n\n{indented(scene)}\n"

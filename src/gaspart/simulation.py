@@ -15,6 +15,7 @@ from gaspart.engines.checkpoint_identity import check_identity, checkpoint_ident
 from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys.values import count_of, number
+from gaspart.scene.face_checks import check_piston_end, piston_end
 from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene, require_scene
 from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.given import check_apart, state_at_time_zero
@@ -186,6 +187,10 @@ class Simulation:
             if max_events is None:
                 raise SceneError("duration", None, "give duration, until or max_events")
             until = math.inf
+        place = None if self._initial.piston is None else float(self._initial.piston[0])
+        if max_events is None:
+            check_piston_end(self.scene, "until", until, place)
+        until = min(until, piston_end(self.scene, place))
         before, self._advanced = self._advanced, True
         try:
             self._dynamics.advance(until, max_events, self._log, max_work)

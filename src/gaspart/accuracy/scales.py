@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from gaspart import theory
 from gaspart.engines.dsmc.rates import moving_kinds, rates, square_of
+from gaspart.scene.face_checks import piston_end
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
 
@@ -27,13 +28,15 @@ _REDUCED = 1e5
 class Scales:
     """thermal_speed: sqrt(k_B T / m), 0 if nothing moves at the start; mean_free_path and collision_time, of
     a particle between two collisions, infinite if there are none; crossing_time: in which a particle crosses
-    the shortest side of the container, as fast as it is or as it falls; packing_fraction."""
+    the shortest side of the container, as fast as it is or as it falls; packing_fraction; end: the latest of
+    a run, as of a piston at a stated speed."""
 
     thermal_speed: float
     mean_free_path: float
     collision_time: float
     crossing_time: float
     packing_fraction: float
+    end: float = math.inf
 
     @property
     def event_time(self) -> float:
@@ -47,14 +50,17 @@ class Scales:
         duration has 1000 frames at most; None if nothing moves."""
         if not math.isfinite(self.event_time):
             return None
-        return two_digits(max(self.event_time, self._longest / _FRAMES))
+        return two_digits(min(max(self.event_time, self._longest / _FRAMES), 0.1 * self.end))
 
     @property
     def duration(self) -> float | None:
         """A duration, a multiple of the interval: 200 collisions of a particle and ten crossings."""
         if self.interval is None:
             return None
-        return float(f"{math.ceil(self._longest / self.interval) * self.interval:.12g}")
+        number = min(
+            math.ceil(self._longest / self.interval), math.floor(min(self.end / self.interval, 1e15))
+        )
+        return float(f"{max(1, number) * self.interval:.12g}")
 
     @property
     def _longest(self) -> float:
@@ -100,6 +106,7 @@ def scales(scene: Scene) -> Scales:
         collision_time=1.0 / frequency if frequency else math.inf,
         crossing_time=side / fastest if fastest else math.inf,
         packing_fraction=scene.packing_fraction,
+        end=piston_end(scene),
     )
 
 

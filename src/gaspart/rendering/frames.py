@@ -141,7 +141,8 @@ def parameters_of(scene: Scene) -> tuple[str, ...]:
         if isinstance(face, Vibrating):
             texts.append(f"{name} vibrates: amplitude {face.amplitude:.3g}, period {face.period:.3g}")
         if isinstance(face, Piston):
-            texts.append(f"{name} a piston: mass {face.mass:.3g}, pressure {face.pressure:.3g}")
+            stated = {key: value for key, value in vars(face).items() if value is not None}
+            texts.append(f"{name} a piston: {', '.join(f'{key} {stated[key]:.3g}' for key in stated)}")
     return tuple(texts)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
@@ -78,10 +79,34 @@ def _check_velocity(scene: Scene, name: str, velocity: tuple[float, ...]) -> Non
 
 
 def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
-    """Raise SceneError for a second piston, and one so light that its load moves it too fast."""
+    """Raise SceneError for a second piston, and one so light that its load moves it too fast, or so fast."""
     if len(pistons(scene)) > 1:
         raise SceneError("faces", [FACES[n] for n, _ in pistons(scene)], "only one may be a piston")
     size(f"faces.{name}.mass", surface.acceleration(scene, FACES.index(name) // 2))
+    size(f"faces.{name}.speed", surface.speed or 0.0)
+
+
+def piston_end(scene: Scene, place: float | None = None) -> float:
+    """The time at which a piston at a stated speed leaves the particles no room in closest packing; without
+    one it is infinite. place: where it is along its axis at time 0, by default at its side.
+    """
+    for number, face in pistons(scene):
+        if face.speed is not None:
+            axis, length = number // 2, scene.container.lengths[number // 2]
+            low, high = scene.reach(scene.largest_radius)
+            packed = length * scene.packing_fraction / closest_packing(scene)
+            least = max(length - (high[axis] - low[axis]), packed)
+            begin = 0.0 if place is None else length - place if number % 2 else place
+            return max(0.0, length - begin - least) / face.speed
+    return math.inf
+
+
+def check_piston_end(scene: Scene, key: str, until: float, place: float | None = None) -> None:
+    """Raise SceneError, with the key of an end of a run, if it is after `piston_end`."""
+    end = piston_end(scene, place)
+    if end < until:
+        rule = f"the piston leaves no room for the particles at {end:.6g}: end before"
+        raise SceneError(key, until, rule)
 
 
 def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:

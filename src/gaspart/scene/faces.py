@@ -202,27 +202,49 @@ class Vibrating(Surface):
 
 @dataclass(frozen=True)
 class Piston(Surface):
-    """A smooth wall of finite mass, pushed inwards by a constant external pressure and outwards by particles.
+    """A smooth wall of finite mass, pushed inwards by a constant external pressure and outwards by particles;
+    or one that moves inwards at a `speed`, whatever hits it.
 
-    It starts at rest at the side of the container, which is as far outwards as it comes: it bounces off there
-    without loss. Its kinetic energy and `pressure` times the volume, together with the energy of the
-    particles, are conserved: with a light piston this is the ensemble of constant pressure and enthalpy
-    (Andersen, J. Chem. Phys. 72, 2384 (1980)), and a heavy one compresses a gas adiabatically. Particles are
-    smooth and elastic, and nothing else is in the container.
+    With a mass and a pressure it starts at rest at the side of the container, which is as far outwards as it
+    comes: it bounces off there without loss. Its kinetic energy and `pressure` times the volume, together
+    with the energy of the particles, are conserved: with a light piston this is the ensemble of constant
+    pressure and enthalpy (Andersen, J. Chem. Phys. 72, 2384 (1980)), and a heavy one compresses a gas
+    adiabatically. One at a speed starts there too: slowly it compresses a gas, fast it drives a shock, and
+    its work is what particles gain. Particles are smooth and elastic, and nothing else is in the container.
     """
 
-    mass: float = field(metadata=declared(positive("mass of the piston")))
-    pressure: float = field(
-        metadata=declared(not_negative("external pressure: the force on the piston over its area"))
+    mass: float | None = field(
+        default=None, metadata=declared(positive("mass of the piston, with a pressure"))
+    )
+    pressure: float | None = field(
+        default=None,
+        metadata=declared(not_negative("external pressure: the force on the piston over its area")),
+    )
+    speed: float | None = field(
+        default=None,
+        metadata=declared(positive("speed at which it moves inwards, instead of a mass and a pressure")),
     )
 
     kind: ClassVar[str] = "piston"
     moves: ClassVar[bool] = True
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        loaded = [value is not None for value in (self.mass, self.pressure)]
+        if any(loaded) if self.speed is not None else not all(loaded):
+            stated = {key: value for key, value in vars(self).items() if value is not None}
+            raise SceneError("speed", stated, "a piston has a mass and a pressure, or a speed alone")
+
     def acceleration(self, scene: Scene, axis: int) -> float:
-        """That by which its load pushes it inwards."""
+        """That by which its load pushes it inwards; 0 at a stated speed."""
+        if self.mass is None or self.pressure is None:
+            return 0.0
         container = scene.container
         return self.pressure / self.mass * (container.volume / container.lengths[axis])
+
+    def velocity(self, number: int) -> float:
+        """That along its axis with which it starts, as the face of this number."""
+        return (-1.0 if number % 2 else 1.0) * (self.speed or 0.0)
 
 
 @dataclass(frozen=True)

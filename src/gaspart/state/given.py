@@ -134,11 +134,13 @@ def _displaced(scene: Scene, other: State) -> float | None:
 
 def _taken_piston(scene: Scene, other: State) -> np.ndarray | None:
     """The piston's place and velocity in a state; None if that or the scene has none. Raises SceneError."""
-    for n, _ in pistons(scene) if other.piston is not None else ():
+    if other.piston is None:
+        return None
+    for n, face in pistons(scene):
         if other.piston_face != FACES[n]:
             rule = f"is the face that is the piston, {FACES[n]} in the scene: they must be the same"
             raise SceneError("initial", other.piston_face, rule)
-        return other.piston
+        return other.piston if face.speed is None else np.array([other.piston[0], face.velocity(n)])
     return None
 
 

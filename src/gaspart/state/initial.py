@@ -65,14 +65,17 @@ def masses_of(scene: Scene) -> np.ndarray:
 
 def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins: np.ndarray) -> State:
     """The state at time 0 with these positions and velocities (N, d), and spins (N,) or (N, 3); with a piston
-    at rest at its side, and images of a sheared gas that are not displaced yet."""
+    at its side, at rest or at its speed, and images of a sheared gas that are not displaced yet."""
     radii, masses = per_particle(scene, "radius").astype(float), per_particle(scene, "mass").astype(float)
     shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # of a uniform disc or sphere
     inertia = per_particle(scene, "moment_of_inertia").astype(float)  # None becomes nan
     inertia = np.where(np.isnan(inertia), shape * masses * radii**2, inertia)
     groups = [len(scene.species), *range(len(scene.species))]
     counts = [len(scene.particles), *(kind.count for kind in scene.species)]
-    sides = [(FACES[n], scene.container.lengths[n // 2] if n % 2 else 0.0) for n, _ in pistons(scene)]
+    sides = [
+        (FACES[n], [scene.container.lengths[n // 2] if n % 2 else 0.0, face.velocity(n)])
+        for n, face in pistons(scene)
+    ]
     return State(
         time=0.0,
         positions=positions,
@@ -86,7 +89,7 @@ def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins
         moments_of_inertia=np.where(per_particle(scene, "fixed").astype(bool), np.inf, inertia),
         gravity=None if scene.gravity is None else np.array(scene.gravity),
         well_energies=well_energies(scene, places_in_wells(scene, positions, radii)) if scene.faces else None,
-        piston=np.array([sides[0][1], 0.0]) if sides else None,
+        piston=np.array(sides[0][1]) if sides else None,
         piston_face=sides[0][0] if sides else None,
         displaced=None if scene.shear_rate is None else 0.0,
         shear_rate=scene.shear_rate,

@@ -111,6 +111,8 @@ from gaspart.theory.shear import free_molecular_stress as free_molecular_stress
 from gaspart.theory.shear import interpolated_stress as interpolated_stress
 from gaspart.theory.shear import slip_flow_stress as slip_flow_stress
 from gaspart.theory.shear import viscous_heating as viscous_heating
+from gaspart.theory.shock import Shock as Shock
+from gaspart.theory.shock import shock_before_piston as shock_before_piston
 from gaspart.theory.speeds import KURTOSIS_RELAXATION_RATE as KURTOSIS_RELAXATION_RATE
 from gaspart.theory.speeds import RELAXATION_UNCERTAINTY as RELAXATION_UNCERTAINTY
 from gaspart.theory.speeds import Relaxation as Relaxation

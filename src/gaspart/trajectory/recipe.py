@@ -13,6 +13,7 @@ from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import count_of, number, one_of
+from gaspart.scene.face_checks import check_piston_end
 from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
@@ -98,6 +99,9 @@ class Recipe:
             raise SceneError("sample_interval", self.sample_interval, rule)
         if self.initial is not None:
             object.__setattr__(self, "initial", state_at_time_zero(self.scene, self.initial))
+        if self.duration is not None:
+            piston = self.initial.piston if self.initial else None
+            check_piston_end(self.scene, "duration", self.duration, None if piston is None else piston[0])
         for tally in self.asked:
             self.engine.check_tally(tally, self.scene)
         if self.correlations:

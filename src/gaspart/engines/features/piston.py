@@ -11,6 +11,7 @@ from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
+_UNMOVED = 2.0**1000  # the mass of one at a stated speed: contacts change no bit of its velocity
 _OF_EPOCH = 2.0**-24  # a particle at rest on which the piston lies meets it again after this part of an epoch
 
 
@@ -22,18 +23,20 @@ def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | 
     x, velocity = state.piston
     inwards = (scene.container.lengths[n // 2] - x, -velocity) if n % 2 else (x, velocity)
     push = face.acceleration(scene, n // 2)
-    return kernels.Piston(n, face.mass / unit_mass, push, np.array([*inwards, 0.0]), np.zeros(1))
+    mass = _UNMOVED if face.mass is None else face.mass / unit_mass
+    return kernels.Piston(n, mass, push, np.array([*inwards, 0.0]), np.zeros(1))
 
 
 class PistonPart(Part):
-    """The piston of a container with these `lengths`: twice the speed that its load gives it is what it can
-    give a particle."""
+    """The piston of a scene: twice its speed, stated or that which its load gives it, is what it can give a
+    particle."""
 
     def __init__(self, piston: kernels.Piston, scene: Scene) -> None:
         super().__init__({"piston": piston.motion})
         self._piston, self._lengths = piston, scene.container.lengths
-        ((_, face),) = pistons(scene)
-        self.gained = 8.0 * face.pressure * scene.container.volume / face.mass
+        ((number, face),) = pistons(scene)
+        fallen = 2.0 * face.acceleration(scene, number // 2) * self._lengths[number // 2]
+        self.gained = 4.0 * (fallen if face.speed is None else face.speed**2)
 
     def set_clock(self, clock: float) -> None:
         """Let the present motion be that at this time."""
