@@ -28,7 +28,17 @@ KEYS = {
     "interval": Powers(time=1),
     "time_step": Powers(time=1),
     **dict.fromkeys(
-        ("count", "normal", "tangential", "polydispersity", "cells_per_side", "passes", "threads"), _NUMBER
+        (
+            "accommodation",
+            "count",
+            "normal",
+            "tangential",
+            "polydispersity",
+            "cells_per_side",
+            "passes",
+            "threads",
+        ),
+        _NUMBER,
     ),
 }
 """Key of a scene or an engine -> its units. Another number in a scene of the battery is a KeyError."""
