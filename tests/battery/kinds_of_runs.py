@@ -61,7 +61,8 @@ def _gas(count=32, **properties):
 _SLIT = (PERIODIC, PERIODIC, "wall")
 _CUBE = (4.0, 4.0, 4.0)
 _PLATES = {
-    f"x_{side}": gp.Thermal(1.0, velocity=(0.0, sign * 1.5, 0.0)) for side, sign in (("low", -1), ("high", 1))
+    f"x_{side}": gp.Thermal(1.0, velocity=(0.0, sign * 1.5, 0.0), accommodation=fraction)
+    for side, sign, fraction in (("low", -1, 1.0), ("high", 1, 0.75))
 }
 _AT_REST = "the walls are at rest"
 KINDS = {

@@ -30,6 +30,7 @@ KEYS = {
     "time_step": Powers(time=1),
     **dict.fromkeys(
         (
+            "accommodation",
             "count",
             "normal",
             "tangential",

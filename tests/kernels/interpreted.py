@@ -7,6 +7,7 @@ writes how they end. Python tests every index, and a coverage tool can record wh
 
 import sys
 import warnings
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numba
@@ -36,11 +37,14 @@ def event_scenes():
     two = [gp.Species(6, 0.3, temperature=1.0), gp.Species(3, 0.4, 3.0, temperature=1.0)]
     fixed = gp.Species(2, 0.3, fixed=True)
     cross = [gp.Wall((1.0, 1.0), (4.0, 3.0)), gp.Wall((4.0, 1.5), (2.0, 4.0))]
+    warm_wall = replace(cross[1], temperature=2.0)
     plates = [
         gp.Plate((2.5, 2.5, 1.5), ((1.0, 0.5, 0.0), (0.0, 0.0, 2.0))),
         gp.Plate((3.0, 2.5, 2.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))),
     ]
     warm = {"x_low": gp.Thermal(2.0), "x_high": gp.Thermal(0.5, "normal"), "y_low": gp.Thermal(1.0)}
+    ramp = gp.Thermal({"y_low": 2.0, "y_high": 1.0})
+    partial = {"x_low": ramp, "x_high": gp.Thermal(0.5, accommodation=0.5)}
     low = {"x_low": gp.Well(1.0, 0.5), "z_low": gp.Well(0.5, 0.3, 1.0)}
     high = {"x_high": gp.Sticky(1.0), "z_high": gp.Thermal(1.5)}
     shaking = {"y_low": gp.Vibrating(0.2, 1.3), "y_high": gp.Vibrating(0.1, 0.5, "sawtooth")}
@@ -61,6 +65,8 @@ def event_scenes():
         "walls": gp.Scene(box, two[:1], walls=cross),
         "plates": gp.Scene(room, two[:1], gravity=(0.0, 0.0, -1.0), walls=plates),
         "thermal": gp.Scene(box, two, gravity=(0.0, -0.5), restitution=ROUGH, faces=warm),
+        "partial": gp.Scene(box, two, restitution=ROUGH, faces=partial),
+        "warm walls": gp.Scene(box, two, gravity=down, restitution=ROUGH, walls=[cross[0], warm_wall]),
         "holding": gp.Scene(room, two, faces=low | high),
         "vibrating": gp.Scene(box, two, gravity=down, restitution=ROUGH, faces=shaking),
         "piston": gp.Scene(room, two, faces={"x_low": gp.Piston(5.0, 0.1)}),

@@ -7,7 +7,6 @@ touch) or the discretisation (time step, cells).
 from __future__ import annotations
 
 from gaspart.accuracy.conditions import Conditions
-from gaspart.accuracy.steady import face_temperatures
 from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import OBSERVABLES, require_modelled
 from gaspart.engines import Engine, offered
@@ -15,6 +14,7 @@ from gaspart.engines.asked import Asked, Candidate
 from gaspart.errors import SceneError
 from gaspart.scene.faces import sliding_faces
 from gaspart.scene.scene import Scene
+from gaspart.scene.thermal_faces import face_temperatures
 
 
 def suited(target: Target) -> tuple[list[Engine], dict[str, str]]:

@@ -13,10 +13,10 @@ from functools import cached_property
 import numpy as np
 
 from gaspart import theory
-from gaspart.accuracy.steady import face_temperatures
 from gaspart.engines.dsmc.rates import accessible
 from gaspart.scene.faces import Thermal
 from gaspart.scene.scene import Scene
+from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.state.state import State
 
 _POINTS = 1200

@@ -15,12 +15,12 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.accuracy.column import Column, Pulled, between, pulled
-from gaspart.accuracy.steady import face_temperatures
 from gaspart.analysis.run import open_run
 from gaspart.engines.dsmc.rates import accessible, contact_values
 from gaspart.scene.faces import Thermal
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.state.state import State
 
 _LAYERS = 12

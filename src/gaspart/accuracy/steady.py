@@ -5,6 +5,7 @@ from __future__ import annotations
 from gaspart.errors import SceneError
 from gaspart.scene.faces import LeesEdwards, Vibrating
 from gaspart.scene.scene import Scene
+from gaspart.scene.thermal_faces import face_temperatures
 
 
 def require_steady(scene: Scene) -> None:
@@ -31,14 +32,8 @@ def is_driven(scene: Scene) -> bool:
 
 
 def at_temperature(scene: Scene) -> bool:
-    """Whether a face gives particles the velocities of a temperature."""
+    """Whether a face or an interior wall gives particles the velocities of a temperature."""
     return bool(face_temperatures(scene))
-
-
-def face_temperatures(scene: Scene) -> set[float]:
-    """Those that faces have."""
-    found = {getattr(face, "temperature", None) for face in scene.faces.values()}
-    return {float(one) for one in found if one}
 
 
 def keeps_energy(scene: Scene) -> bool:

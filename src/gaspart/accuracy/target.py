@@ -27,6 +27,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.faces import wall_of
 from gaspart.scene.impulses import shares_energy_evenly
 from gaspart.scene.scene import Scene
+from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import ImpulseTally, useful_impulses
@@ -121,7 +122,7 @@ class Target:
             for kind in scene.species
         ]
         squares += [sum(v * v for v in particle.velocity) for particle in scene.particles]
-        squares += [getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()]
+        squares += face_temperatures(scene)
         if scene.gravity:
             squares.append(max(map(abs, scene.gravity)) * min(scene.container.lengths))
         fastest = math.sqrt(max(squares))

@@ -17,6 +17,7 @@ from gaspart.scene.gas import plain_mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.stress import require_tallied
+from gaspart.scene.thermal_faces import face_temperatures
 
 Selection = Mapping[str, Any]
 GROUPS = 16
@@ -248,11 +249,14 @@ def shears(scene: Scene, selection: Selection) -> None:
 
 
 def heat_flows(scene: Scene, selection: Selection) -> None:
-    """Faces at two temperatures, or something that heats the gas or takes its energy."""
-    temperatures = {getattr(face, "temperature", None) for face in scene.faces.values()} - {None}
+    """Faces or interior walls at two temperatures, or something that heats the gas or takes its energy."""
     law = scene.restitution
     heated = (law is not None and law.dissipative) or scene.thermostat is not None or _flows(scene)
-    if len(temperatures) < 2 and not heated and not any(face.moves for face in scene.faces.values()):
+    if (
+        len(face_temperatures(scene)) < 2
+        and not heated
+        and not any(face.moves for face in scene.faces.values())
+    ):
         raise SceneError("faces", list(scene.faces), "have one temperature: the heat flux is 0 on average")
 
 

@@ -17,7 +17,7 @@ import xarray as xr
 from gaspart.analysis.estimators import engine_tallies, estimator
 from gaspart.analysis.profiles import BLOCKS, LEAST_FRAMES, Cells, Means, ratio
 from gaspart.analysis.run import Run
-from gaspart.scene.impulses import face_temperatures
+from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.state.optional_tallies import ImpulseTally, stored_tally, useful_impulses
 
 USUAL_BINS = 40

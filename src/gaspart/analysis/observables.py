@@ -474,9 +474,7 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
         return ()
     if name == "pressure":
         return scene.container.walls
-    return tuple(
-        key.replace("_", " ") for key, face in scene.faces.items() if getattr(face, "temperature", None)
-    )
+    return tuple(key.replace("_", " ") for key, face in scene.faces.items() if face.temperatures)
 
 
 def require_steady_value(name: str, scene: Scene) -> None:

@@ -31,7 +31,8 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
 
     Theory: 0 in equilibrium; between two plates free flight above a Knudsen number of 100, Fourier's law with
     Enskog's conductivity and temperature jumps below 0.1, and between these an interpolation, good to 8 %
-    (`gaspart.theory.interpolated_flux`); between sliding plates half the work of their stress.
+    (`gaspart.theory.interpolated_flux`); between sliding plates half the work of their stress. With partial
+    accommodation free flight alone.
     Raises SceneError without a face at a temperature, for too few frames, and if nothing hit these faces.
     """
     with open_run(source, start) as run:
@@ -57,7 +58,8 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
 
     Theory: half of the weight of a gas that a force drives along two equal faces, exactly; between plates
     that slide free flight above a Knudsen number of 100, Enskog's viscosity with slip below 0.1, and between
-    these an interpolation, good to 8 % (`gaspart.theory.interpolated_stress`). Raises SceneError where
+    these an interpolation, good to 8 % (`gaspart.theory.interpolated_stress`); with partial accommodation
+    free flight alone. Raises SceneError where
     nothing drags faces along themselves, for too few frames, and if nothing hit these faces.
     """
     with open_run(source, start) as run:

@@ -16,8 +16,8 @@ from gaspart.engines.asked import Asked, Candidate
 from gaspart.errors import SceneError
 from gaspart.keys import from_mapping, validate
 from gaspart.keys.values import one_of
-from gaspart.scene.faces import thermal_numbers
 from gaspart.scene.features import FEATURES, features
+from gaspart.scene.thermal_faces import face_temperatures
 
 if TYPE_CHECKING:
     from gaspart.engines.dynamics import Dynamics
@@ -154,7 +154,7 @@ class Engine:
     def draws(self, scene: Scene) -> bool:
         """Whether random numbers are drawn after the start: by its equation, faces or the thermostat. Where
         none are, runs from one state are one run, whatever their seeds."""
-        return self.equation != "exact" or bool(thermal_numbers(scene)) or scene.thermostat is not None
+        return self.equation != "exact" or bool(face_temperatures(scene)) or scene.thermostat is not None
 
     def variant(self, scene: Scene) -> str:
         """The name of its compiled kernels for a scene, beside the scene's features."""

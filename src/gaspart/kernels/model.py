@@ -173,12 +173,22 @@ class Sliding(NamedTuple):
     shear: np.ndarray
 
 
+class Ramp(NamedTuple):
+    """Thermal faces whose temperature varies along them. Of the container's faces (2d,): axis, that along
+    which it does, NONE if it does not; high, the temperature at its high end."""
+
+    axis: np.ndarray
+    high: np.ndarray
+
+
 class Faces(NamedTuple):
-    """Faces with a kind. Of the container's faces (2d,): kind; level, the temperature, or the momentum that
-    sticks; depth and width of the well, 0 if there is none. Of the particles: place (N, d), -1 or 1 in the
-    well of an axis' low or high face, or stuck to it; held (N, d), the energy kept there as vibration; draws
-    (N,), how often random numbers were taken for it, under `key` (2,). sticky (2d,), which faces are, motion,
-    piston, sliding: None if no face is sticky, none vibrates, none is a piston, and none slides."""
+    """Faces with a kind. Of the container's faces (2d,): kind; level, the temperature, of one that varies
+    that at the low end, or the momentum that sticks; depth and width of the well, 0 if there is none. Of the
+    particles: place (N, d), -1 or 1 in the well of an axis' low or high face, or stuck to it; held (N, d),
+    the energy kept there as vibration; draws (N,), how often random numbers were taken for it, under `key`
+    (2,). sticky (2d,), which faces are, motion, piston, sliding, accommodation (2d,), the fraction of hits
+    after which velocities are drawn, ramp: None if no face is sticky, none vibrates, none is a piston, none
+    slides, all draw after every hit, and none varies along itself."""
 
     kind: np.ndarray
     level: np.ndarray
@@ -192,18 +202,30 @@ class Faces(NamedTuple):
     motion: Motion | None
     piston: Piston | None
     sliding: Sliding | None
+    accommodation: np.ndarray | None
+    ramp: Ramp | None
+
+
+class WarmWalls(NamedTuple):
+    """Interior walls at a temperature: level (walls,), 0 of hard ones; draws (N,), how often random numbers
+    were taken for a particle, under `key` (2,)."""
+
+    level: np.ndarray
+    draws: np.ndarray
+    key: np.ndarray
 
 
 class InteriorWalls(NamedTuple):
     """rows (M, 5) or (M, 11) and wall (M,), see `obstacles.distance`; listed[first[b] :
     first[b + 1]] are those near box b, for particles of a radius up to `largest_radius`; those for larger
-    ones, all, follow the last box."""
+    ones, all, follow the last box. warm: None if no wall is at a temperature."""
 
     rows: np.ndarray
     wall: np.ndarray
     first: np.ndarray
     listed: np.ndarray
     largest_radius: float
+    warm: WarmWalls | None
 
 
 class Oversized(NamedTuple):

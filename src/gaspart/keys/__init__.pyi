@@ -19,6 +19,7 @@ from gaspart.keys.kinds import choice as choice
 from gaspart.keys.kinds import count as count
 from gaspart.keys.kinds import described as described
 from gaspart.keys.kinds import flag as flag
+from gaspart.keys.kinds import fraction as fraction
 from gaspart.keys.kinds import listed as listed
 from gaspart.keys.kinds import names as names
 from gaspart.keys.kinds import not_negative as not_negative

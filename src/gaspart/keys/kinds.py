@@ -72,6 +72,15 @@ def between(meaning: str, least: float, most: float) -> Kind:
     return described({"type": "number"}, meaning, check, minimum=least, maximum=most)
 
 
+def fraction(meaning: str) -> Kind:
+    """A number above 0 and at most 1."""
+
+    def check(key: str, value: Any) -> float:
+        return values.number(key, value, "must be above 0 and at most 1", above=0.0, most=1.0)
+
+    return described({"type": "number"}, meaning, check, exclusiveMinimum=0, maximum=1)
+
+
 def count(meaning: str, minimum: int = 1, **more: Any) -> Kind:
     """A whole number; `maximum` is one of the further rules."""
 

@@ -5,14 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import Thermal, Well, sliding_faces
+from gaspart.scene.faces import sliding_faces
+from gaspart.scene.thermal_faces import face_temperatures
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
     from gaspart.scene.walls import Plate, Wall
 
-_MOMENTUM = "fixed particles, interior walls across it, rough contacts with walls, or faces at a temperature"
-_ENERGY = "inelastic contacts, or faces at a temperature"
+_MOMENTUM = (
+    "fixed particles, interior walls across it, rough contacts with walls, or faces or walls at a temperature"
+)
+_ENERGY = "inelastic contacts, or faces or walls at a temperature"
 
 
 def driven_axes(scene: Scene) -> tuple[int, ...]:
@@ -49,7 +52,7 @@ def _takes_momentum(scene: Scene, axis: int) -> bool:
     if any(kind.fixed and kind.count for kind in scene.kinds):
         return True
     length = scene.container.lengths[axis]
-    if any(not _spans(wall, axis, length) for wall in scene.walls):
+    if any(wall.temperature or not _spans(wall, axis, length) for wall in scene.walls):
         return True
     surfaces = bool(scene.walls) or not all(scene.container.periodic)
     return (scene.rough and surfaces) or not all(face.smooth for face in scene.faces.values())
@@ -59,8 +62,7 @@ def _takes_energy(scene: Scene) -> bool:
     """Whether contacts lose energy, or faces at a temperature exchange it."""
     if scene.restitution is not None and scene.restitution.dissipative:
         return True
-    hot = (face for face in scene.faces.values() if isinstance(face, (Thermal, Well)))
-    return any(face.temperature is not None for face in hot)
+    return bool(face_temperatures(scene))
 
 
 def _spans(wall: Wall | Plate, axis: int, length: float) -> bool:

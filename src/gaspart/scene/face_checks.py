@@ -45,6 +45,8 @@ def check_faces(scene: Scene) -> None:
             raise SceneError(f"faces.{name}", surface.kind, "a periodic axis has no faces")
         if isinstance(surface, Thermal) and surface.velocity is not None:
             _check_velocity(scene, name, surface.velocity)
+        if isinstance(surface, Thermal) and surface.varies_along is not None:
+            _check_ramp(scene, name, surface, surface.varies_along)
         if isinstance(surface, (Well, Sticky)) and scene.gravity is not None and scene.gravity[axis] != 0.0:
             raise SceneError(f"faces.{name}", surface.kind, "needs an axis without gravity")
         if isinstance(surface, Well):
@@ -76,6 +78,15 @@ def _check_velocity(scene: Scene, name: str, velocity: tuple[float, ...]) -> Non
     if velocity[FACES.index(name) // 2] != 0.0:
         rule = "must have no component across the face, which stays in its place"
         raise SceneError(f"faces.{name}.velocity", velocity, rule)
+
+
+def _check_ramp(scene: Scene, name: str, surface: Thermal, axis: int) -> None:
+    """Raise SceneError for a temperature that varies across the face, or along an axis without ends."""
+    key = f"faces.{name}.temperature"
+    if axis == FACES.index(name) // 2:
+        raise SceneError(key, surface.temperature, "must vary along the face, not across it")
+    if axis >= scene.dimension or scene.container.periodic[axis]:
+        raise SceneError(key, surface.temperature, f"needs walls across {'xyz'[axis]}, where it has its ends")
 
 
 def _check_piston(scene: Scene, name: str, surface: Piston) -> None:

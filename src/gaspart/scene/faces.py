@@ -6,6 +6,7 @@ A face without a kind is hard and follows the scene's law of contacts.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
@@ -14,15 +15,18 @@ from gaspart.keys import (
     choice,
     declared,
     described,
+    fraction,
     from_mapping,
     not_negative,
     positive,
     schema_of,
+    set_fields,
     signed,
     validate,
     vector,
 )
-from gaspart.keys.values import one_of, size
+from gaspart.keys.kinds import POSITIVE, Kind
+from gaspart.keys.values import one_of, positive_number, size
 
 if TYPE_CHECKING:
     import numpy as np
@@ -68,6 +72,32 @@ class Surface:
         """Whether it acts on particles along its normal only."""
         return True
 
+    @property
+    def temperatures(self) -> tuple[float, ...]:
+        """Its temperature, of one that varies those of its ends; none of a face without."""
+        return ()
+
+
+def _check_temperature(key: str, value: Any) -> float | dict[str, float]:
+    """A temperature, or those at two opposite faces, the low one first."""
+    if not isinstance(value, Mapping):
+        return positive_number(key, value)
+    ends = {key_of(face): positive_number(f"{key}.{face}", one) for face, one in value.items()}
+    if sorted(ends, reverse=True) not in ([f"{axis}_low", f"{axis}_high"] for axis in "xyz"):
+        rule = "must be of two opposite faces, such as {y_low: 1.0, y_high: 2.0}"
+        raise SceneError(key, value, rule)
+    return {face: ends[face] for face in sorted(ends, reverse=True)}
+
+
+_ENDS = {
+    "type": "object",
+    "propertyNames": {"enum": list(FACES)},
+    "additionalProperties": POSITIVE,
+    "minProperties": 2,
+    "maxProperties": 2,
+}
+_TEMPERATURE = Kind({"anyOf": [POSITIVE, _ENDS]}, _check_temperature)
+
 
 @dataclass(frozen=True)
 class Thermal(Surface):
@@ -76,10 +106,18 @@ class Thermal(Surface):
     The normal velocity is drawn weighted by the flux, v = sqrt(-2 kT/m ln U); with components "all" the
     tangential ones and, in a scene of rough particles, the spins are Maxwellian (a diffuse wall with full
     accommodation); with "normal" they are kept (the rule of Frederickx & Meerts 2010, section 4.4).
-    A wall with a `velocity` moves along itself, and the distribution is that about its velocity.
+    A wall with a `velocity` moves along itself, and the distribution is that about its velocity. With an
+    `accommodation` below 1 this happens after that fraction of hits, and after the others the particle leaves
+    as from a mirror (Maxwell, Phil. Trans. R. Soc. 170, 231 (1879)). A temperature that is given at two
+    opposite faces, as {"y_low": 1.0, "y_high": 2.0}, is linear between them: that where a particle hits.
     """
 
-    temperature: float = field(metadata=declared(positive("temperature of the wall")))
+    temperature: float | dict[str, float] = field(
+        hash=False,
+        metadata=declared(
+            described(_TEMPERATURE, "temperature of the wall, or those where it ends, at two opposite faces")
+        ),
+    )
     components: str = field(
         default="all",
         metadata=declared(choice("velocity components that are drawn", *COMPONENTS)),
@@ -88,6 +126,12 @@ class Thermal(Surface):
         default=None,
         metadata=declared(vector("velocity of the wall, along itself; without it the wall is at rest")),
     )
+    accommodation: float | None = field(
+        default=None,
+        metadata=declared(
+            fraction("fraction of hits after which velocities are drawn, of mirrored others; 1 without it")
+        ),
+    )
 
     kind: ClassVar[str] = "thermal"
 
@@ -95,6 +139,8 @@ class Thermal(Surface):
         super().__post_init__()
         if self.components == "normal" and self.slides:
             raise SceneError("velocity", self.velocity, 'needs components "all": no other drags particles')
+        if self.accommodation == 1.0:  # absent everywhere, so that no other place has to ask
+            set_fields(self, accommodation=None)
 
     @property
     def slides(self) -> bool:
@@ -103,8 +149,18 @@ class Thermal(Surface):
 
     @property
     def rule(self) -> tuple[str, float]:
-        """With its temperature."""
-        return "thermal" if self.components == "all" else "thermal_normal", self.temperature
+        """With its temperature, of one that varies that at its low end."""
+        return "thermal" if self.components == "all" else "thermal_normal", self.temperatures[0]
+
+    @property
+    def varies_along(self) -> int | None:
+        """The axis along which its temperature varies, None of one temperature."""
+        return FACES.index(next(iter(self.temperature))) // 2 if isinstance(self.temperature, dict) else None
+
+    @property
+    def temperatures(self) -> tuple[float, ...]:
+        """The temperature, or those of the low and the high end."""
+        return tuple(self.temperature.values()) if isinstance(self.temperature, dict) else (self.temperature,)
 
     @property
     def smooth(self) -> bool:
@@ -137,6 +193,11 @@ class Well(Surface):
     def smooth(self) -> bool:
         """Unless the wall behind the well is thermal."""
         return self.temperature is None
+
+    @property
+    def temperatures(self) -> tuple[float, ...]:
+        """That of the wall behind the well, if it has one."""
+        return () if self.temperature is None else (self.temperature,)
 
 
 @dataclass(frozen=True)
@@ -339,8 +400,8 @@ def thermal_numbers(scene: Scene, drawn: bool = False) -> list[int]:
 
 
 def thermal_face(scene: Scene, name: str) -> Thermal:
-    """The face of this name, which must be at a temperature. Raises SceneError."""
+    """The face of this name, which must be at one temperature. Raises SceneError."""
     face = scene.faces.get(name)
-    if not isinstance(face, Thermal):
-        raise SceneError(f"faces.{name}", face, "must be thermal")
+    if not isinstance(face, Thermal) or face.varies_along is not None:
+        raise SceneError(f"faces.{name}", face, "must be thermal, at one temperature")
     return face

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gaspart.errors import SceneError
 from gaspart.scene.faces import FACE_KINDS, FACES, sliding_faces
+from gaspart.scene.thermal_faces import partial_faces, ramps
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -66,6 +67,11 @@ FEATURES: dict[str, Feature] = {
     ),
     "thermostat": Feature("random kicks", "thermostat", lambda scene: scene.thermostat),
     "walls": Feature("interior walls", "walls", lambda scene: scene.walls or None),
+    "thermal_walls": Feature(
+        "interior walls at a temperature",
+        "walls.temperature",
+        lambda scene: next((wall.temperature for wall in scene.walls if wall.temperature), None),
+    ),
     "fixed": Feature(
         "fixed particles",
         "fixed",
@@ -86,6 +92,16 @@ FEATURES: dict[str, Feature] = {
         "thermal faces that move along themselves",
         "faces",
         lambda scene: [FACES[n] for n, _ in sliding_faces(scene)] or None,
+    ),
+    "accommodation": Feature(
+        "thermal faces with partial accommodation",
+        "faces",
+        lambda scene: [FACES[n] for n, _ in partial_faces(scene)] or None,
+    ),
+    "ramp": Feature(
+        "thermal faces whose temperature varies along them",
+        "faces",
+        lambda scene: [FACES[n] for n, _ in ramps(scene)] or None,
     ),
     "vibrations": Feature(
         "particles that store energy in a vibration",

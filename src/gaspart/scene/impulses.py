@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
 from gaspart.scene.driving import driven_axes
-from gaspart.scene.faces import Thermal, Well
 from gaspart.scene.features import FEATURES, features
+from gaspart.scene.thermal_faces import face_temperatures
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -71,9 +71,3 @@ def shares_energy_evenly(scene: Scene) -> bool:
 def row_count(scene: Scene) -> int:
     """In how many rows impulses are summed: one for each species, and one for all single particles."""
     return len(scene.species) + bool(scene.particles)
-
-
-def face_temperatures(scene: Scene) -> set[float]:
-    """The temperatures of all faces that have one."""
-    hot = (face for face in scene.faces.values() if isinstance(face, (Thermal, Well)))
-    return {float(face.temperature) for face in hot if face.temperature is not None}

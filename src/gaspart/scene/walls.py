@@ -7,23 +7,25 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.keys import declared, two_vectors, validate, vector
+from gaspart.keys import declared, positive, two_vectors, validate, vector
 from gaspart.keys.values import finite_vector, positive_number
 
 if TYPE_CHECKING:
     from gaspart.scene.container import Container
     from gaspart.scene.scene import Scene
 
+_TEMPERATURE = positive("temperature of the wall, from which velocities are drawn; without it it is hard")
 WALL_RULE = "a Wall needs a container of two dimensions, a Plate one of three"
 
 
 @dataclass(frozen=True)
 class Wall:
     """A straight wall inside a container of two dimensions, from `start` (2,) to `end` (2,): hit from both
-    sides, and at its ends, which are solid."""
+    sides, and at its ends, which are solid. With a `temperature` particles leave it as a `Thermal` face."""
 
     start: tuple[float, ...] = field(metadata=declared(vector("one end", 2, sized=False)))
     end: tuple[float, ...] = field(metadata=declared(vector("the other end", 2, sized=False)))
+    temperature: float | None = field(default=None, metadata=declared(_TEMPERATURE))
 
     def __post_init__(self) -> None:
         validate(self)
@@ -47,12 +49,14 @@ class Wall:
 @dataclass(frozen=True)
 class Plate:
     """A flat rectangular wall inside a container of three dimensions: a `corner` (3,), and the `edges` (2, 3)
-    that lead from it, at right angles. Hit from both sides, at its edges and its corners, which are solid."""
+    that lead from it, at right angles. Hit from both sides, at its edges and its corners, which are solid.
+    With a `temperature` particles leave it as a `Thermal` face."""
 
     corner: tuple[float, ...] = field(metadata=declared(vector("one corner", 3, sized=False)))
     edges: tuple[tuple[float, ...], ...] = field(
         metadata=declared(two_vectors("the vectors from it to the two neighbouring corners", 3))
     )
+    temperature: float | None = field(default=None, metadata=declared(_TEMPERATURE))
 
     def __post_init__(self) -> None:
         validate(self)

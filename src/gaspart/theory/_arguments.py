@@ -30,6 +30,7 @@ _RANGES = {
     **dict.fromkeys(("time", "diffusion", "collisions", "radius", "size_ratio", "jump"), _NOT_NEGATIVE),
     **dict.fromkeys(("distance", "wave_number"), _NOT_NEGATIVE),
     **dict.fromkeys(("speed", "depth", "weight", "force", "ratio", "x", "z"), _FINITE),
+    "accommodation": (1e-6, 1.0, "must be above 0 and at most 1"),
     "side_over_diameter": (1.0, math.inf, "must be finite and at least 1"),
     "count": (1.0, math.inf, "must be finite and at least 1"),
 }

@@ -32,19 +32,36 @@ standard error. Computed by the program `electrons`: 10 metals of 20 000 electro
 times. A linear T^0.85 would have 0.037, T^(3/2) of a gas -0.12."""
 
 
+FULL = (1.0, 1.0)
+"""Accommodation of two walls that draw the velocities of all particles."""
+
+
 @checked
 def free_molecular_flux(
-    density: Numbers, hot: float, cold: float, dimension: int, mass: float = 1.0, components: str = "all"
+    density: Numbers,
+    hot: float,
+    cold: float,
+    dimension: int,
+    mass: float = 1.0,
+    components: str = "all",
+    accommodation: tuple[float, float] = FULL,
 ) -> Values:
     """Flux through a gas whose particles collide with the walls only, (d + 1) n sqrt(T_1 T_2 / (2 pi m))
     (sqrt T_1 - sqrt T_2).
 
     A particle brings (d + 1) T / 2 from a wall; where a wall changes the normal component alone ("normal",
-    Frederickx & Meerts 2010), T: 2 / (d + 1) of the flux, 1/2 in 3D and 2/3 in 2D. Exact (closed form).
+    Frederickx & Meerts 2010), T: 2 / (d + 1) of the flux, 1/2 in 3D and 2/3 in 2D. With the `accommodation`
+    a_1 of the hot and a_2 of the cold wall, which mirror other particles (Maxwell 1879), the flux at the
+    same rate of hits is a_1 a_2 / (a_1 + a_2 - a_1 a_2) of it. At the same density it is a_1 a_2 (sqrt T_1 +
+    sqrt T_2) / (a_1 (2 - a_2) sqrt T_2 + a_2 (2 - a_1) sqrt T_1) of it, which is returned: most particles
+    have the temperature of the wall that accommodates better. Exact (closed form).
     """
     carried = {"all": checked_dimension(dimension) + 1, "normal": 2}[components]
     roots = np.sqrt(hot * cold) * (np.sqrt(hot) - np.sqrt(cold))
-    return carried * density * roots / np.sqrt(2.0 * np.pi * mass)
+    at_hot, at_cold = accommodation
+    streams = at_hot * (2.0 - at_cold) * np.sqrt(cold) + at_cold * (2.0 - at_hot) * np.sqrt(hot)
+    part = at_hot * at_cold * (np.sqrt(cold) + np.sqrt(hot)) / streams
+    return carried * density * roots / np.sqrt(2.0 * np.pi * mass) * part
 
 
 @checked

@@ -9,6 +9,7 @@ import numpy as np
 
 from gaspart.theory._arguments import Numbers, Values, checked
 from gaspart.theory.enskog import enskog_conductivity, enskog_viscosity
+from gaspart.theory.heat import FULL
 
 VELOCITY_SLIP = 1.1113
 """u_gas - u_wall over l_0 du/dn at a diffuse wall, hard spheres, l_0 = 1 / (sqrt 2 pi n sigma^2): 1.2540
@@ -28,11 +29,18 @@ products of stresses are neglected, and Sonine polynomials beyond the first."""
 
 @checked
 def free_molecular_stress(
-    density: Numbers, velocity: Numbers, temperature: float = 1.0, mass: float = 1.0
+    density: Numbers,
+    velocity: Numbers,
+    temperature: float = 1.0,
+    mass: float = 1.0,
+    accommodation: tuple[float, float] = FULL,
 ) -> Values:
     """Shear stress on the walls of a gas whose particles collide with the walls only, n velocity sqrt(m T / 2
-    pi). Exact (closed form)."""
-    return density * np.asarray(velocity, dtype=float) * np.sqrt(mass * temperature / (2.0 * np.pi))
+    pi); with the `accommodation` a_1 and a_2 of the walls a_1 a_2 / (a_1 + a_2 - a_1 a_2) of it. Exact
+    (closed form)."""
+    one, other = accommodation
+    part = one * other / (one + other - one * other)
+    return density * np.asarray(velocity, dtype=float) * np.sqrt(mass * temperature / (2.0 * np.pi)) * part
 
 
 @checked

@@ -24,7 +24,10 @@ def scenes():
     flat, cube = gp.Container((6.0, 5.0), ("periodic", "wall")), gp.Container((3.0,) * 3, "periodic")
     room = gp.Container((3.0, 3.0, 2.0), ("wall", "periodic", "wall"))
     rough, viscous = gp.Restitution(0.8, 0.5), gp.Restitution(0.8, reference_speed=1.0)
-    heated, normal = {"y_low": gp.Thermal(2.0)}, {"x_low": gp.Thermal(2.0, "normal")}
+    heated, normal = (
+        {"y_low": gp.Thermal(2.0)},
+        {"x_low": gp.Thermal({"z_low": 2.0, "z_high": 1.0}, "normal", accommodation=0.75)},
+    )
     falling = gp.Scene(flat, two, gravity=(0.0, -0.3), restitution=rough, faces=heated)
     kicked = gp.Scene(cube, two, restitution=viscous, thermostat=gp.Thermostat(1.0, 0.03))
     dense = {"model": "enskog", "cells_per_side": (3, 4, 2)}

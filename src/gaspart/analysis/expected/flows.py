@@ -17,6 +17,7 @@ from gaspart.scene.driving import driven_axes
 from gaspart.scene.faces import sliding_faces
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
+from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.scene.walls import Plate
 from gaspart.theory.heat import TEMPERATURE_JUMP
 
@@ -63,14 +64,15 @@ def _between(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expecte
     mean = np.repeat(0.5 * (low + high)[:, None], len(places), axis=1)
     if not plates.slide.any():
         return mean, 0.0, "the gas is at rest between the plates"
-    if not plates.equal:
+    if not plates.equal or len(set(plates.accommodation)) > 1:
         return None
     if axis != plates.axis:
         return mean, 0.0, "the mean of both plates, by symmetry"
-    if plates.knudsen > FREE:
-        error = np.abs(plates.slide)[:, None] / plates.knudsen
+    if plates.freedom > FREE:
+        error = np.abs(plates.slide)[:, None] / plates.freedom
         return mean, error, "free flight between plates: half of the particles come from each"
-    if plates.dimension == 2 or plates.knudsen > FLUID or not dilute(plates, run):
+    fluid = plates.accommodating and plates.knudsen <= FLUID and dilute(plates, run)
+    if plates.dimension == 2 or not fluid:
         return None
     path = plates.knudsen * plates.length
     gap = plates.length + 2.0 * theory.VELOCITY_SLIP * path
@@ -114,7 +116,9 @@ def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndar
         return _closed(run)
     masses, radii = run.masses[members], run.radii[members]
     area = opening(scene, axis, place, float(radii.max()))
-    plain = not (scene.faces or scene.thermostat or run.dissipates or run.has_gravity)
+    plain = not (
+        scene.faces or face_temperatures(scene) or scene.thermostat or run.dissipates or run.has_gravity
+    )
     alike = np.ptp(masses) == 0.0 and np.ptp(radii) == 0.0 and run.moving.all()
     if area is None or not alike or not plain or _path(run) < area ** (1.0 / (run.dimension - 1)):
         return None

@@ -14,6 +14,7 @@ from gaspart.analysis.run import Run
 from gaspart.scene.driving import driven_axes
 from gaspart.scene.faces import Thermal, faces_of
 from gaspart.scene.features import features
+from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.theory.heat import INTERPOLATED
 
 FREE, FLUID = 100.0, 0.1
@@ -26,7 +27,7 @@ _DILUTE = 0.02
 _POINTS = 1e-4
 """Scale of the diameter at which the free path stays and the packing fraction vanishes."""
 _EQUAL = 1e-12
-_PLAIN = {"thermal", "sliding", "centres_to_walls"}
+_PLAIN = {"thermal", "sliding", "accommodation", "centres_to_walls"}
 """Features of a scene of equal smooth and elastic particles between plates."""
 
 
@@ -36,7 +37,8 @@ class Plates:
 
     axis: across them; length: of the gap, where centres can be; density: the mean number density there;
     temperatures: of the low and the high plate; slide (d,): the velocity of the high one relative to the low
-    one; components: that they draw; knudsen: the mean free path over the gap.
+    one; components: that they draw; accommodation: of the low and the high one; knudsen: the mean free path
+    over the gap.
     """
 
     axis: int
@@ -48,7 +50,19 @@ class Plates:
     temperatures: tuple[float, float]
     slide: np.ndarray
     components: str
+    accommodation: tuple[float, float]
     knudsen: float
+
+    @property
+    def accommodating(self) -> bool:
+        """Whether both draw velocities after every hit, as theory of a fluid has it."""
+        return min(self.accommodation) == 1.0
+
+    @property
+    def freedom(self) -> float:
+        """The mean free path over the way that a particle flies between two hits after which its velocity is
+        drawn, at the plate that does so more rarely: the Knudsen number where both always do."""
+        return self.knudsen * min(self.accommodation)
 
     @property
     def equal(self) -> bool:
@@ -121,9 +135,10 @@ def plates_of(run: Run, driven: bool = False) -> Plates | None:
         dimension=run.dimension,
         diameter=diameter,
         mass=float(run.masses[0]),
-        temperatures=(low.temperature, high.temperature),
+        temperatures=(low.temperatures[0], high.temperatures[0]),
         slide=np.subtract(high.velocity or rest, low.velocity or rest),
         components=low.components,
+        accommodation=(low.accommodation or 1.0, high.accommodation or 1.0),
         knudsen=path / float(sides[axis]),
     )
 
@@ -145,7 +160,7 @@ def _in_equilibrium(run: Run) -> bool:
     scene = run.scene
     faces = [face for _, face in faces_of(scene, Thermal)]
     still = len(faces) == len(scene.faces) and not any(face.slides for face in faces)
-    temperatures = [face.temperature for face in faces]
+    temperatures = face_temperatures(scene)
     one = max(temperatures, default=0.0) - min(temperatures, default=0.0) <= _EQUAL * max(
         temperatures, default=0.0
     )
@@ -155,13 +170,15 @@ def _in_equilibrium(run: Run) -> bool:
 def _conducted(plates: Plates, points: bool) -> tuple[float, float, str] | None:
     """The heat flux from the hot to the cold plate."""
     hot, cold = max(plates.temperatures), min(plates.temperatures)
+    fractions = plates.accommodation if plates.temperatures[0] == hot else plates.accommodation[::-1]
     free = theory.free_molecular_flux(
-        plates.density, hot, cold, plates.dimension, plates.mass, plates.components
+        plates.density, hot, cold, plates.dimension, plates.mass, plates.components, fractions
     )
     at = f"Knudsen number {plates.knudsen:.2g}"
-    if plates.knudsen > FREE:
-        return float(free), float(free) * _FIRST / plates.knudsen, f"free flight between plates, {at}"
-    if plates.dimension == 2 or plates.components != "all" or not plates.knudsen > 0.0:
+    if plates.freedom > FREE:
+        return float(free), float(free) * _FIRST / plates.freedom, f"free flight between plates, {at}"
+    whole = plates.components == "all" and plates.accommodating
+    if plates.dimension == 2 or not whole or not plates.knudsen > 0.0:
         return None
     unit, scale = 1.0 / math.sqrt(plates.mass), _POINTS if points else 1.0
     gap = (plates.length, plates.density / scale**2, hot, cold, plates.diameter * scale)
@@ -180,11 +197,12 @@ def _conducted(plates: Plates, points: bool) -> tuple[float, float, str] | None:
 def _sheared(plates: Plates, run: Run) -> tuple[float, float, str] | None:
     """The shear stress on plates of one temperature that slide."""
     speed, temperature = float(np.hypot.reduce(plates.slide)), plates.temperatures[0]
-    free = float(theory.free_molecular_stress(plates.density, speed, temperature, plates.mass))
+    gas = plates.density, speed, temperature, plates.mass, plates.accommodation
+    free = float(theory.free_molecular_stress(*gas))
     at = f"Knudsen number {plates.knudsen:.2g}"
-    if plates.knudsen > FREE:
-        return free, free * 2.0 * _FIRST / plates.knudsen, f"free flight between plates, {at}"
-    if plates.dimension == 2 or not dilute(plates, run):
+    if plates.freedom > FREE:
+        return free, free * 2.0 * _FIRST / plates.freedom, f"free flight between plates, {at}"
+    if plates.dimension == 2 or not plates.accommodating or not dilute(plates, run):
         return None
     unit = math.sqrt(plates.mass * temperature)
     gap = (plates.length, plates.density, speed, plates.diameter)

@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.engines.dsmc.rates import accessible
-from gaspart.engines.features.faces import WALL_DRAWS, kinds_and_levels, sliding_velocities
+from gaspart.engines.features.faces import (
+    WALL_DRAWS,
+    accommodations,
+    kinds_and_levels,
+    ramp_of,
+    sliding_velocities,
+)
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Workspace
 from gaspart.kernels.model import ContactLaw, flight_dtype
@@ -103,7 +109,7 @@ def faces_for(scene: Scene, threads: int) -> Faces | None:
         return None
     velocities = sliding_velocities(scene)
     shear = None if velocities is None else np.zeros((threads, *velocities.shape, WIDTH), np.int64)
-    return Faces(*kinds_and_levels(scene), velocities, shear)
+    return Faces(*kinds_and_levels(scene), velocities, shear, accommodations(scene), ramp_of(scene))
 
 
 def law_for(law: ContactLaw | None) -> Law | None:

@@ -15,6 +15,7 @@ import numpy as np
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
+from gaspart.scene.thermal_faces import face_temperatures
 
 SLOPE, BEND = {2: 0.5625, 3: 1.5}, {2: 0.0, 3: 0.5}
 """Coefficients of the contact value, see `contact_values`, by dimension."""
@@ -62,7 +63,7 @@ def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
     """The rates of a scene at its start, or as hot as its faces; dense: with contact values of a dense gas;
     instead: fewer kinds of particles that stand for those of the scene, each pair of which is evaluated."""
     d, kinds = scene.dimension, moving_kinds(scene) if instead is None else instead
-    heat = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
+    heat = max(face_temperatures(scene), default=0.0)
     if not kinds:
         return Rates(0.0, 0.0, math.inf)
     squares = [max(square_of(kind, d), heat / kind.mass) for kind in kinds]

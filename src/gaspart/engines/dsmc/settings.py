@@ -68,7 +68,7 @@ class DSMC(Engine):
     tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear"))
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
-    ) | {"centres_to_walls", "thermal", "sliding"}
+    ) | {"centres_to_walls", "thermal", "sliding", "accommodation", "ramp"}
     counters: ClassVar[tuple[str, ...]] = ("steps",)
     timed_at: ClassVar[tuple[float, float]] = (0.01, 1.0)
     advised: ClassVar[tuple[str, ...]] = ("model",)

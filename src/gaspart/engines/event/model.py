@@ -15,7 +15,7 @@ from gaspart.engines.features.rest import rest_watch
 from gaspart.engines.features.shear import ShearPart, shear_of
 from gaspart.engines.features.thermostat import kicks
 from gaspart.engines.features.vibrating import VibratingPart
-from gaspart.engines.features.walls import interior_walls
+from gaspart.engines.features.walls import WarmWallsPart, interior_walls, warm_walls
 from gaspart.kernels.memory import aligned
 from gaspart.kernels.model import NONE, PREDICTION, Model, Oversized, Particles, Space, flight_dtype
 from gaspart.scene.scene import Scene
@@ -45,14 +45,14 @@ def event_model(
     law = contact_law(scene, state)
     law = law._replace(duration=contact_duration(scene, law)) if law else None
     unit_mass, masses = (1.0, None) if law else scaled_masses(state.masses)
-    oversized = np.flatnonzero(state.radii > largest)
+    oversized, warm = np.flatnonzero(state.radii > largest), warm_walls(scene, state, seed, unit_mass)
     model = Model(
         space=Space(scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls)),
         masses=masses,
         gravity=gravity_of(scene, state),
         law=law,
         faces=special_faces(scene, state, seed, unit_mass) if has_special_faces(scene) else None,
-        walls=interior_walls(scene, boxes, largest) if scene.walls else None,
+        walls=interior_walls(scene, boxes, largest, warm) if scene.walls else None,
         oversized=Oversized(oversized, largest) if len(oversized) else None,
         shear=shear_of(scene),
     )
@@ -63,10 +63,12 @@ def event_parts(
     scene: Scene, state: State, seed: int | tuple[int, ...], model: Model, unit_mass: float
 ) -> list[Part]:
     """The parts of a run, one for each feature of the scene."""
-    gravity, law, faces = model.gravity, model.law, model.faces
+    gravity, law, faces, walls = model.gravity, model.law, model.faces, model.walls
+    lightest = float(state.masses.min(initial=np.inf))
     parts = (
         GravityPart(gravity, scene.container.lengths) if gravity else None,
-        FacesPart(scene, faces, unit_mass, float(state.masses.min(initial=np.inf))) if faces else None,
+        FacesPart(scene, faces, unit_mass, lightest) if faces else None,
+        WarmWallsPart(scene, walls.warm, lightest) if walls and walls.warm else None,
         ShearPart(scene, state, model.shear) if model.shear else None,
         VibratingPart(scene, faces.motion) if faces and faces.motion else None,
         PistonPart(faces.piston, scene) if faces and faces.piston else None,

@@ -10,12 +10,13 @@ import numpy as np
 from gaspart.engines.features.part import Part
 from gaspart.engines.features.piston import piston_of
 from gaspart.engines.features.vibrating import motion_of
-from gaspart.kernels.model import STICKY, Faces, Sliding
+from gaspart.kernels.model import NONE, STICKY, Faces, Ramp, Sliding
 from gaspart.kernels.obstacles.face import RULES
 from gaspart.kernels.physics.running_sum import values
 from gaspart.scene.driving import has_dragged_faces
 from gaspart.scene.faces import FACES, sliding_faces
 from gaspart.scene.scene import Scene
+from gaspart.scene.thermal_faces import face_temperatures, partial_faces, ramps
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 from gaspart.state.wells import places_in_wells, well_energies, wells_of
@@ -41,6 +42,27 @@ def sliding_velocities(scene: Scene) -> np.ndarray | None:
     return velocities
 
 
+def accommodations(scene: Scene) -> np.ndarray | None:
+    """(2d,) the fractions of hits of the container's faces after which velocities are drawn, None if all
+    are."""
+    if not partial_faces(scene):
+        return None
+    fractions = np.ones(2 * scene.dimension)
+    for n, face in partial_faces(scene):
+        fractions[n] = face.accommodation
+    return fractions
+
+
+def ramp_of(scene: Scene) -> Ramp | None:
+    """The temperatures that vary along faces, None without any."""
+    if not ramps(scene):
+        return None
+    axes, high = np.full(2 * scene.dimension, NONE), np.zeros(2 * scene.dimension)
+    for n, face in ramps(scene):
+        axes[n], high[n] = face.varies_along, face.temperatures[1]
+    return Ramp(axes, high)
+
+
 def has_special_faces(scene: Scene) -> bool:
     """Whether particles meet faces with a kind, other than periodic ones."""
     return bool(scene.faces) and scene.shear_rate is None
@@ -50,7 +72,7 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
     """The kinds of the container's faces as the kernels' `Faces`, in units of `unit_mass`."""
     kind, level = kinds_and_levels(scene)
     depths, widths = wells_of(scene)
-    velocities = sliding_velocities(scene)
+    velocities, ramp = sliding_velocities(scene), ramp_of(scene)
     return Faces(
         kind=kind,
         level=level / unit_mass,
@@ -64,13 +86,15 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
         motion=motion_of(scene),
         piston=piston_of(scene, state, unit_mass),
         sliding=None if velocities is None else Sliding(velocities, np.zeros((velocities.size, 2))),
+        accommodation=accommodations(scene),
+        ramp=ramp._replace(high=ramp.high / unit_mass) if ramp else None,
     )
 
 
 def face_energy(scene: Scene) -> float:
-    """Upper estimate of the energy that a thermal face or a well gives a particle, at whatever speed it
-    moves."""
-    hottest = max((getattr(face, "temperature", None) or 0.0 for face in scene.faces.values()), default=0.0)
+    """Upper estimate of the energy that a thermal face or wall or a well gives a particle, at whatever speed
+    it moves."""
+    hottest = max(face_temperatures(scene), default=0.0)
     deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
     fastest = max((math.hypot(*(face.velocity or ())) for _, face in sliding_faces(scene)), default=0.0)
     heaviest = max((kind.mass for kind in scene.kinds), default=0.0) if fastest else 0.0

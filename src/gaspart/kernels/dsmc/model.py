@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper
-from gaspart.kernels.model import Space
+from gaspart.kernels.model import Ramp, Space
 
 COLLISIONS, TRIALS, EXCEEDED, UNFINISHED, FAR = range(5)
 PADDED = 8  # counts of a thread, a cache line
@@ -85,14 +85,16 @@ class Workspace(NamedTuple):
 
 
 class Faces(NamedTuple):
-    """Of the container's faces (2d,): kind and temperature of those that are thermal, see `kernels.model`;
-    velocity (2d, d), and by thread shear (threads, 2d, d, WIDTH), the momentum that they were given along
-    each axis, both None if no face slides."""
+    """Of the container's faces (2d,): kind and temperature of those that are thermal, see `kernels.model`,
+    as for accommodation and ramp; velocity (2d, d), and by thread shear (threads, 2d, d, WIDTH), the momentum
+    that they were given along each axis, both None if no face slides."""
 
     kind: np.ndarray
     level: np.ndarray
     velocity: np.ndarray | None
     shear: np.ndarray | None
+    accommodation: np.ndarray | None
+    ramp: Ramp | None
 
 
 class Law(NamedTuple):

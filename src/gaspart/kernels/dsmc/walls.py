@@ -14,6 +14,7 @@ from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.dsmc.contact import Sums, count_loss, law_of, load_spin, store_spin
 from gaspart.kernels.dsmc.model import UNFINISHED, open_space
 from gaspart.kernels.model import HARD, NONE, THERMAL
+from gaspart.kernels.obstacles.thermal import mirrors, temperature_at
 from gaspart.kernels.physics.ballistic import flown
 from gaspart.kernels.physics.collision import collide_wall_by_law
 from gaspart.kernels.physics.exact_sum import add_exact
@@ -141,7 +142,11 @@ def leave_thermal(i, face, which, number, context, faces, law):
     part, workspace, key = context.part, context.workspace, context.workspace.wall_key
     flights, mass, inertia = workspace.flights[part], workspace.mass[which], workspace.inertia[which]
     d, axis, side = len(context.space.lengths), face // 2, 1.0 if face % 2 else -1.0
-    level = faces.level[face]
+    if mirrors(i, face, number, key, faces.accommodation):
+        add_exact(workspace.wall_impulse[part, face], 2.0 * mass * abs(flights[0].velocity[axis]))
+        flights[0].velocity[axis] = -flights[0].velocity[axis]
+        return
+    level = temperature_at(face, flights[0].position, context.space.lengths, faces.level, faces.ramp)
     width, square, given = sqrt(level / mass), 0.0, 0.0
     for k in range(d):
         square += flights[0].velocity[k] * flights[0].velocity[k]

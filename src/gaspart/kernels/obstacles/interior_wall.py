@@ -11,13 +11,8 @@ from gaspart.kernels.obstacles.resting import come_to_rest, leave
 from gaspart.kernels.obstacles.segment import time_to_segment
 from gaspart.kernels.obstacles.short_bounce import longest_rest
 from gaspart.kernels.obstacles.support import is_resting_on, release
-from gaspart.kernels.physics.collision import (
-    LEAST,
-    collide_wall_by_law,
-    fastest_component,
-    push,
-    velocity_of,
-)
+from gaspart.kernels.obstacles.warm_wall import leave_warm
+from gaspart.kernels.physics.collision import collide_wall_by_law, least_speed, push, velocity_of
 from gaspart.kernels.physics.contact import normal_change
 from gaspart.kernels.physics.flight import advance
 from gaspart.kernels.physics.mass import mass_of
@@ -123,23 +118,10 @@ def settle_on(flights, i, m, normal, model, tally, walls, gravity):
 
 
 @inner_helper
-def least_speed(flights, i, space):
-    """The least speed at which a particle parts from a wall: its speed times the rounding of the direction to
-    the wall, which is that of positions over the radius. With less it would meet the wall for ever."""
-    longest = flights[i].radius
-    for k in range(len(space.lengths)):
-        longest = max(longest, space.lengths[k])
-    return LEAST * fastest_component(flights, i, space) * (longest / flights[i].radius)
-
-
-@inner_kernel
-def collide_wall(flights, i, m, model, tally, walls, law):
-    """Reflect a particle at an interior wall that it touches, from its side or its rim. Returns the number of
-    the wall."""
+def bounce_off(flights, i, normal, model, tally, law):
+    """Reflect a particle at a hard wall in the direction of the unit vector `normal` (3,). Returns the
+    momentum given to the wall."""
     space = model.space
-    x, y, z = to_wall(walls.rows, m, flights[i].position, space.lengths)
-    distance = sqrt(x * x + y * y + z * z)
-    normal = x / distance, y / distance, z / distance
     least = least_speed(flights, i, space)
     if law is None:
         velocity = velocity_of(flights, i, space)
@@ -148,10 +130,22 @@ def collide_wall(flights, i, m, model, tally, walls, law):
             approach += normal[2] * velocity[2]
         change = normal_change(approach, 1.0, least)
         push(flights, i, -change, normal, space)
-        impulse = mass_in(model.masses, i) * change
-    else:
-        impulse = collide_wall_by_law(flights, i, normal, least, space, tally, law)
-    settle_on(flights, i, m, normal, model, tally, walls, model.gravity)
+        return mass_in(model.masses, i) * change
+    return collide_wall_by_law(flights, i, normal, least, space, tally, law)
+
+
+@inner_kernel
+def collide_wall(flights, i, m, model, tally, walls, law):
+    """Reflect a particle at an interior wall that it touches, from its side or its rim, or give it a velocity
+    of the wall's temperature. Returns the number of the wall."""
+    space = model.space
+    x, y, z = to_wall(walls.rows, m, flights[i].position, space.lengths)
+    distance = sqrt(x * x + y * y + z * z)
+    normal = x / distance, y / distance, z / distance
+    impulse = leave_warm(flights, i, walls.wall[m], normal, model, tally, law, walls.warm)
+    if impulse < 0.0:
+        impulse = bounce_off(flights, i, normal, model, tally, law)
+        settle_on(flights, i, m, normal, model, tally, walls, model.gravity)
     wall = 2 * len(space.lengths) + walls.wall[m]
     tally.wall_hits[wall] += 1
     add(tally.wall_impulse, wall, impulse)

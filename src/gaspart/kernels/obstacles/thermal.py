@@ -3,10 +3,37 @@
 from math import sqrt
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
-from gaspart.kernels.model import THERMAL
+from gaspart.kernels.model import NONE, THERMAL
 from gaspart.kernels.physics.mass import mass_of
-from gaspart.kernels.physics.rng import flux_speed, normal_pair
+from gaspart.kernels.physics.rng import flux_speed, normal_pair, random_words, uniform
 from gaspart.kernels.physics.running_sum import add
+
+
+@inner_helper
+def mirrors(i, face, number, key, accommodation):
+    """Whether a face leaves a particle its velocity, mirrored, at the hit with this number (Maxwell's model):
+    by a word of block 0, of which `flux_speed` takes another."""
+    if accommodation is None:
+        return False
+    _, word, _, _ = random_words(key, i, number, 0)
+    return uniform(word) >= accommodation[face]
+
+
+@inner_helper
+def temperature_at(face, position, lengths, level, ramp):
+    """The temperature of a thermal face where a particle at this position (d,) hits it."""
+    if ramp is None:
+        return level[face]
+    return _on_ramp(face, position, lengths, level[face], ramp)
+
+
+@inner_helper
+def _on_ramp(face, position, lengths, low, ramp):
+    axis = ramp.axis[face]
+    if axis == NONE:
+        return low
+    part = min(max(position[axis] / lengths[axis], 0.0), 1.0)
+    return (1.0 - part) * low + part * ramp.high[face]
 
 
 @inner_kernel
@@ -18,7 +45,12 @@ def collide_thermal(flights, i, face, model, tally, law, faces):
     mass = mass_of(i, model.masses, law)
     number = faces.draws[i]
     faces.draws[i] = number + 1
-    width = sqrt(faces.level[face] / mass)
+    if mirrors(i, face, number, faces.key, faces.accommodation):
+        add(tally.wall_impulse, face, 2.0 * mass * abs(flights[i].velocity[axis]))
+        flights[i].velocity[axis] = -flights[i].velocity[axis]
+        return
+    level = temperature_at(face, flights[i].position, model.space.lengths, faces.level, faces.ramp)
+    width = sqrt(level / mass)
     square = 0.0
     for k in range(d):
         square += flights[i].velocity[k] * flights[i].velocity[k]
@@ -33,7 +65,7 @@ def collide_thermal(flights, i, face, model, tally, law, faces):
         if d == 3:
             flights[i].velocity[(axis + 2) % d] = width * other
         drag(flights, i, face, mass, faces.sliding)
-        draw_spin(i, face, (number, block), d, tally, law, faces)
+        draw_spin(i, face, level, faces.key, (number, block), d, tally, law)
     for k in range(d):
         square -= flights[i].velocity[k] * flights[i].velocity[k]
     add(tally.wall_energy, face, 0.5 * mass * square)
@@ -60,18 +92,18 @@ def drag(flights, i, face, mass, sliding):
 
 
 @inner_kernel
-def draw_spin(i, face, counter, dimension, tally, law, faces):
-    """The same for the spin of a rough particle, which has one component in 2D. counter: the draw's number
-    and the first block of random words that it may use."""
+def draw_spin(i, wall, level, key, counter, dimension, tally, law):
+    """The same for the spin of a rough particle, which has one component in 2D. wall: the row of the tally;
+    level: the temperature; counter: the draw's number and the first block of random words that it may use."""
     if law is None:
         return
     if law.tangential > -1.0:
         number, block = counter
         inertia = 1.0 / law.inverse_inertia[i]
-        width = sqrt(faces.level[face] / inertia)
+        width = sqrt(level / inertia)
         for k in range(2 if dimension == 2 else 0, 3):
-            one, _, block = normal_pair(faces.key, i, number, block)
+            one, _, block = normal_pair(key, i, number, block)
             spin = width * one
             before = law.spins[i, k]
-            add(tally.wall_energy, face, 0.5 * inertia * (before * before - spin * spin))
+            add(tally.wall_energy, wall, 0.5 * inertia * (before * before - spin * spin))
             law.spins[i, k] = spin

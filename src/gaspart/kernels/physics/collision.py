@@ -66,6 +66,16 @@ def fastest_component(flights, i, space):
 
 
 @inner_helper
+def least_speed(flights, i, space):
+    """The least speed at which a particle parts from a wall: its speed times the rounding of the direction to
+    the wall, which is that of positions over the radius. With less it would meet the wall for ever."""
+    longest = flights[i].radius
+    for k in range(len(space.lengths)):
+        longest = max(longest, space.lengths[k])
+    return LEAST * fastest_component(flights, i, space) * (longest / flights[i].radius)
+
+
+@inner_helper
 def collide_smooth(flights, i, j, rr, rv, space, masses):
     """An elastic contact of smooth particles. Returns |r . dp|."""
     if masses is None:

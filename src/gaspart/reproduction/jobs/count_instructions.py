@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 RESULT = "the machine code of both engines for the scene, with and without the source of absent features"
 KEYS: dict[str, Kind] = {}
 FEATURES = {
-    "collapse", "duration", "faces", "gravity", "impulses", "law", "masses", "motion", "oversized",
-    "pace", "pairs", "piston", "record", "row", "rules", "shear", "sliding", "sticky", "stress", "support",
-    "velocity", "vibrations", "viscous", "walls",
+    "accommodation", "collapse", "duration", "faces", "gravity", "impulses", "law", "masses", "motion",
+    "oversized", "pace", "pairs", "piston", "ramp", "record", "row", "rules", "shear", "sliding",
+    "sticky", "stress", "support", "velocity", "vibrations", "viscous", "walls", "warm",
 }  # fmt: skip
 """Arguments of the kernels that are None for a plain gas."""
 COUNTED_ENGINES = ("event", "step")

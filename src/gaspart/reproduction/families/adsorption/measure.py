@@ -67,7 +67,7 @@ class Holder:
                 pass
         return cls(
             kind=kind,
-            temperature=thermal_face(scene, "x_high").temperature,
+            temperature=thermal_face(scene, "x_high").temperatures[0],
             depth=depth,
             width=width,
             momentum=momentum,

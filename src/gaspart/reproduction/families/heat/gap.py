@@ -36,9 +36,9 @@ class Gap:
     def of(cls, scene: Scene) -> Gap:
         """That of a scene whose walls are thermal."""
         lower, upper = scene.reach(scene.smallest_radius)
-        walls = thermal_face(scene, "x_low").temperature, thermal_face(scene, "x_high").temperature
+        hot, cold = (thermal_face(scene, name).temperatures[0] for name in ("x_low", "x_high"))
         area = float(np.prod(scene.container.lengths[1:]))
-        return cls(upper[0] - lower[0], area, *walls, scene.dimension)
+        return cls(upper[0] - lower[0], area, hot, cold, scene.dimension)
 
     def grid(self, bins: int) -> Grid:
         """Equal bins across the gap."""
