@@ -9,7 +9,7 @@ from gaspart.accuracy.target import Target
 from gaspart.analysis.controls import controlled, group_count, wall_controls
 from gaspart.analysis.run import open_run
 from gaspart.analysis.series import face_pressures
-from gaspart.runs import Accuracy
+from gaspart.runs.ending import Accuracy
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
 
