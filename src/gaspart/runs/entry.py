@@ -62,12 +62,11 @@ def run(
     from the first on (counters are those of all), with `keep` only their "positions" or "velocities". With
     `correlations` each frame has the sums so far of the velocities' correlations, and with `displacements` of
     the mean-squared displacement, over all pairs of samples, or with `Correlations(stress=True)` those of the
-    stress tensor and the heat flux. With `pairs` each frame counts the collisions of each pair of species so
-    far; `impulses`, such as "z:200", and `pair_impulses`, such as "3:300:0.5" (distance, shells, share of
-    contacts), keep what a more accurate density along z and g(r) need (event-driven). A run of the same
-    recipe and program that was cut short is continued, a complete one is not changed; another trajectory is
-    replaced only with `overwrite`, another file never. With `keep_checkpoint` the last state stays in
-    `path.checkpoint.npz`, for `resume`.
+    stress tensor and the heat flux. With `pairs` each frame counts the collisions of each pair of species;
+    `impulses`, such as "z:200", and `pair_impulses`, such as "3:300:0.5" (distance, shells, share of
+    contacts), keep what a more accurate density along z and g(r) need (event-driven). A run of this recipe
+    and program that was cut short is continued, a complete one not changed; another trajectory is replaced
+    only with `overwrite`, another file never. `keep_checkpoint`: `path.checkpoint.npz` has the last state.
 
     initial: a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`) to start from.
     Particles and container size must be the scene's; defaults of engines follow from the scene's `speed` or
@@ -78,9 +77,8 @@ def run(
     (`gaspart.replica_paths`), of the seed with 1, 2 ... behind it; until their mean is as accurate.
 
     `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` then. SIGINT
-    and SIGTERM take effect after a checkpoint, before the caller's handlers. Raises SceneError for invalid
-    settings, files that cannot be written, and what cannot be measured; SimulationError for a broken
-    invariant, with the state in `path.failed.npz`."""
+    and SIGTERM take effect after a checkpoint, before the caller's handlers. Raises SceneError for settings,
+    files and measurements that cannot be; SimulationError for a broken invariant (`path.failed.npz`)."""
     engine = _engine_of(scene, engine)
     wanted = _request(duration, sample_interval, until, at_most)
     displacements |= _needs_paths(wanted, scene, engine, follow, correlations, initial)
