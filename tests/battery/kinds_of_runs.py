@@ -96,6 +96,11 @@ KINDS = {
         interval=0.25,
         steady="the piston oscillates",
     ),
+    "compressed": Kind(
+        _scene((4.0, 4.0, 8.0), _SLIT, _gas(24), faces={"z_high": gp.Piston(speed=0.0625)}),
+        interval=0.25,
+        steady="the piston compresses the gas",
+    ),
     "vibrating": Kind(
         _scene(
             (4.0, 4.0, 8.0),

@@ -19,6 +19,7 @@ KEYS = {
     "mass": Powers(mass=1),
     "temperature": _ENERGY,
     "velocity": _SPEED,
+    "speed": _SPEED,
     "gravity": Powers(0, 1, -2),
     "shear_rate": Powers(0, 0, -1),
     "amplitude": Powers(length=1),

@@ -303,7 +303,7 @@ class Piston(Surface):
         container = scene.container
         return self.pressure / self.mass * (container.volume / container.lengths[axis])
 
-    def velocity(self, number: int) -> float:
+    def initial_velocity(self, number: int) -> float:
         """That along its axis with which it starts, as the face of this number."""
         return (-1.0 if number % 2 else 1.0) * (self.speed or 0.0)
 

@@ -140,7 +140,7 @@ def _taken_piston(scene: Scene, other: State) -> np.ndarray | None:
         if other.piston_face != FACES[n]:
             rule = f"is the face that is the piston, {FACES[n]} in the scene: they must be the same"
             raise SceneError("initial", other.piston_face, rule)
-        return other.piston if face.speed is None else np.array([other.piston[0], face.velocity(n)])
+        return other.piston if face.speed is None else np.array([other.piston[0], face.initial_velocity(n)])
     return None
 
 

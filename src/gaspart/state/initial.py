@@ -73,7 +73,7 @@ def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins
     groups = [len(scene.species), *range(len(scene.species))]
     counts = [len(scene.particles), *(kind.count for kind in scene.species)]
     sides = [
-        (FACES[n], [scene.container.lengths[n // 2] if n % 2 else 0.0, face.velocity(n)])
+        (FACES[n], [scene.container.lengths[n // 2] if n % 2 else 0.0, face.initial_velocity(n)])
         for n, face in pistons(scene)
     ]
     return State(
