@@ -120,7 +120,7 @@ def test_threads_and_kills_change_no_bit():
 
 
 def test_theory_of_a_fluid_is_for_full_accommodation():
-    """At a Knudsen number of 0.4, and of 150 with few hits after which velocities are drawn, none is stated."""
+    """None is stated at a Knudsen number of 0.4, and of 150 with few hits that draw velocities."""
     for radius, fractions in ((0.15, (0.9, 0.9)), (0.0078, (1.0, 0.5))):
         simulation = made(plates(100, radius, hot=2.0, fractions=fractions), 20.0, "dsmc")
         with open_run(simulation, 0.0) as run:
