@@ -17,7 +17,7 @@ HOT, COLD = 0.75, 0.375
 """Accommodation of both plates; a_1 a_2 / (a_1 + a_2 - a_1 a_2) = 1/3 of what is carried at the same hits."""
 
 
-def plates(count, radius=1e-6, hot=1.0, slide=0.0, drift=0.0, fractions=(HOT, COLD)):
+def plates(count, radius=1e-3, hot=1.0, slide=0.0, drift=0.0, fractions=(HOT, COLD)):
     """Between x_low, at `hot`, and x_high, at 1, which slides along y."""
     faces = {
         "x_low": gp.Thermal(hot, velocity=(0.0, drift, 0.0), accommodation=fractions[0]),
@@ -57,11 +57,11 @@ def test_stress_and_heat_of_sliding_plates_in_free_flight(engine, count):
     simulation = made(plates(count, slide=2.0), 1500.0, engine)
     shear, heat = A.wall_shear(simulation), A.heat_flux(simulation)
     stress = count / (GAP * SIDE**2) * 2.0 / math.sqrt(2.0 * math.pi) / 3.0
-    assert shear.theory.sel(component="y").values == pytest.approx([stress, -stress], rel=1e-5)
-    assert heat.theory.values == pytest.approx([stress, stress], rel=1e-5)
+    assert shear.theory.sel(component="y").values == pytest.approx([stress, -stress], rel=1e-3)
+    assert heat.theory.values == pytest.approx([stress, stress], rel=1e-3)
     assert (off(shear) < 3.0).all() and (off(heat) < 3.0).all()
     assert (shear.error.sel(component="y") < 0.08 * stress).all()
-    assert np.isnan(A.velocity_profile(simulation, "x").theory).all()  # not the mean of both plates
+    assert "theory" not in A.velocity_profile(simulation, "x")  # it is not the mean of both plates
 
 
 def test_the_fraction_of_hits_that_are_mirrored():
@@ -71,12 +71,15 @@ def test_the_fraction_of_hits_that_are_mirrored():
     simulation.advance(max_events=20_000)
     events, before = simulation.events, simulation.initial_state.velocities.copy()
     hits, mirrored = np.zeros(2), np.zeros(2)
-    for (particle, face), velocity in zip(events["particles"], events["velocities"][:, 0], strict=True):
-        kept = (velocity[1:] == before[particle][1:]).all()
-        assert kept == (velocity[0] == -before[particle][0])
-        hits[-1 - face] += 1
-        mirrored[-1 - face] += kept
-        before[particle] = velocity
+    for (one, other), velocities in zip(events["particles"], events["velocities"], strict=True):
+        if other < 0:
+            kept = (velocities[0, 1:] == before[one][1:]).all()
+            assert kept == (velocities[0, 0] == -before[one][0])
+            hits[-1 - other] += 1
+            mirrored[-1 - other] += kept
+        else:
+            before[other] = velocities[1]
+        before[one] = velocities[0]
     for side, fraction in enumerate((HOT, COLD)):
         error = math.sqrt(fraction * (1.0 - fraction) / hits[side])
         assert mirrored[side] / hits[side] == pytest.approx(1.0 - fraction, abs=3.0 * error)
@@ -91,7 +94,7 @@ def test_two_engines_draw_the_same():
     event, step = (gp.Simulation(scene, engine, seed=5) for engine in ("event", gp.TimeStepped(0.25)))
     for simulation in (event, step):
         simulation.advance(duration=1000.0)
-    assert event.tally.wall_hits[0] > 50
+    assert event.tally.wall_hits[0] > 30
     assert event.tally.wall_hits.tolist() == step.tally.wall_hits.tolist()
     assert event.tally.wall_energy == pytest.approx(step.tally.wall_energy, rel=1e-6)
     assert event.state.unwrapped == pytest.approx(step.state.unwrapped, abs=1e-6)
@@ -117,8 +120,8 @@ def test_threads_and_kills_change_no_bit():
 
 
 def test_theory_of_a_fluid_is_for_full_accommodation():
-    """At a Knudsen number of 1, and of 150 with few hits after which velocities are drawn, none is stated."""
-    for radius, fractions in ((0.6, (0.9, 0.9)), (0.05, (1.0, 0.5))):
+    """None is stated at a Knudsen number of 0.4, and of 150 with few hits that draw velocities."""
+    for radius, fractions in ((0.15, (0.9, 0.9)), (0.0078, (1.0, 0.5))):
         simulation = made(plates(100, radius, hot=2.0, fractions=fractions), 20.0, "dsmc")
         with open_run(simulation, 0.0) as run:
             found = plates_of(run)

@@ -15,7 +15,7 @@ RAMP = gp.Thermal({"x_low": COLD, "x_high": HOT})
 ENDS = {"x_low": gp.Thermal(COLD), "x_high": gp.Thermal(HOT)}
 VESSEL = gp.Scene(
     gp.Container((LENGTH, WIDTH)),
-    [gp.Species(COUNT, 1e-7, temperature=2.0)],
+    [gp.Species(COUNT, 2e-5, temperature=2.0)],
     faces=ENDS | {"y_low": RAMP, "y_high": RAMP},
 )
 """A slit whose walls are ever hotter from one end to the other."""
@@ -99,7 +99,7 @@ def test_units_of_powers_of_two_change_no_bit():
     faces = {"x_low": gp.Thermal(64.0 * COLD), "x_high": gp.Thermal(64.0 * HOT)}
     large = gp.Scene(
         gp.Container((4.0 * LENGTH, 4.0 * WIDTH)),
-        [gp.Species(COUNT, 4e-7, temperature=128.0)],
+        [gp.Species(COUNT, 8e-5, temperature=128.0)],
         faces=faces | {"y_low": ramp, "y_high": ramp},
     )
     one, other = (gp.Simulation(scene, ENGINES["event"], seed=1) for scene in (VESSEL, large))
