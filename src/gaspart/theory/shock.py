@@ -1,6 +1,6 @@
 """A shock that a piston drives through a gas at rest: the jump of density, temperature and pressure."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,8 +10,7 @@ from gaspart.theory.geometry import number_density
 from gaspart.theory.state import HIGHEST_PACKING_FRACTION, compressibility_factor
 
 
-@dataclass(frozen=True)
-class Shock:
+class Shock(NamedTuple):
     """Of a steady shock: speed, of its front in the gas at rest; packing_fraction, temperature and pressure
     behind it, where the gas moves with the piston."""
 
