@@ -81,3 +81,11 @@ def test_check_and_a_run_without_a_duration_suggest_one(tmp_path, monkeypatch, c
     (line,) = capsys.readouterr().err.splitlines()
     assert "are required: --duration, --sample-interval, or --until" in line
     assert line.endswith(f"for this scene {suggested.removeprefix('suggested: ')}")
+
+
+def test_a_run_is_suggested_in_which_a_piston_leaves_room():
+    container = gp.Container((80.0, 60.0), ("wall", "periodic"))
+    species = [gp.Species(700, 0.5, temperature=1.0)]
+    pushed = scales(gp.Scene(container, species, faces={"x_low": gp.Piston(speed=1.5)}))
+    assert 20.0 < pushed.duration < 24.0 < scales(gp.Scene(container, species)).duration
+    assert 1.0 < pushed.interval < 3.0

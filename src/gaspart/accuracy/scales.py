@@ -28,8 +28,8 @@ _REDUCED = 1e5
 class Scales:
     """thermal_speed: sqrt(k_B T / m), 0 if nothing moves at the start; mean_free_path and collision_time, of
     a particle between two collisions, infinite if there are none; crossing_time: in which a particle crosses
-    the shortest side of the container, as fast as it is or as it falls; packing_fraction; end: the latest of
-    a run, as of a piston at a stated speed."""
+    the shortest side of the container, as fast as it is or as it falls; packing_fraction; end: the longest
+    run that is suggested, where a piston moves at a stated speed."""
 
     thermal_speed: float
     mean_free_path: float
@@ -106,7 +106,7 @@ def scales(scene: Scene) -> Scales:
         collision_time=1.0 / frequency if frequency else math.inf,
         crossing_time=side / fastest if fastest else math.inf,
         packing_fraction=scene.packing_fraction,
-        end=piston_end(scene),
+        end=0.5 * piston_end(scene),  # at which there is no room left
     )
 
 
