@@ -4,6 +4,7 @@ import pytest
 from gaspart.theory import heat
 from gaspart.theory.enskog import enskog_conductivity, mean_free_path
 from gaspart.theory.geometry import packing_fraction
+from gaspart.theory.shear import free_molecular_stress
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -27,6 +28,30 @@ def test_the_normal_component_alone_carries_a_part(dimension, share):
     assert heat.free_molecular_flux(0.1, 2.0, 1.0, dimension, components="normal") == pytest.approx(
         share * complete
     )
+
+
+@pytest.mark.parametrize(("one", "other"), [(0.7, 0.2), (0.2, 0.7), (0.5, 0.5), (1.0, 0.3)])
+def test_partial_accommodation_by_the_balance_of_streams(one, other):
+    """Streams (hot and cold, to the cold wall and back) that both walls turn into one another, solved as
+    linear equations, carry the flux and the stress of the closed forms."""
+    hot, cold, density = 3.0, 1.0, 0.3
+    balance = np.array([
+        [1.0, 0.0, -1.0, -one],  # hot ones that leave the hot wall: mirrored, or drawn from all that come
+        [0.0, 1.0, 0.0, one - 1.0],
+        [other - 1.0, 0.0, 1.0, 0.0],
+        np.sqrt(np.pi / 2.0 / np.array([hot, cold, hot, cold])),  # of their densities
+    ])  # fmt: skip
+    streams = np.linalg.solve(balance, [0.0, 0.0, 0.0, density])
+    net = streams[:2] - streams[2:]
+    fractions = {"accommodation": (one, other)}
+    assert net.sum() == pytest.approx(0.0, abs=1e-15)
+    assert heat.free_molecular_flux(density, hot, cold, 3, **fractions) == pytest.approx(
+        2.0 * net @ [hot, cold]
+    )
+    part = one * other / (one + other - one * other)
+    assert net[0] == pytest.approx(part * streams[:2].sum())
+    free = free_molecular_stress(density, 0.1)
+    assert free_molecular_stress(density, 0.1, **fractions) == pytest.approx(part * free)
 
 
 def test_a_wide_dilute_gap_obeys_the_power_law():
