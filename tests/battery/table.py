@@ -89,10 +89,11 @@ def stated():
 
 def write():
     """Write the file."""
+    found = list(rows())  # before the page loses what it has
     with FILE.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
-        writer.writerows(rows())
+        writer.writerows(found)
 
 
 if __name__ == "__main__":

@@ -70,7 +70,7 @@ class LiveGas:
 
     def pull(self, acceleration: float) -> None:
         """Go on from where the particles are under another gravity, down the last axis."""
-        down = [0.0] * (self._first.dimension - 1) + [-acceleration]
+        down = (*[0.0] * (self._first.dimension - 1), -acceleration)
         scene = replace(self.simulation.scene, gravity=down)
         self.simulation = Simulation(scene, self._engine, self._seed, initial=self.simulation.state)
 
