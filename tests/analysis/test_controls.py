@@ -99,12 +99,16 @@ def test_where_the_energy_is_not_constant_there_are_no_controls(name, tmp_path):
     assert not Target(UNEVEN[name], "pressure").tallies(gp.EventDriven())
 
 
-def test_a_file_without_all_particles_and_another_axis_have_none(tmp_path):
+def test_a_file_without_all_states_and_another_axis_have_none(tmp_path):
     box = gp.Scene(gp.Container((5.0, 5.0, 8.0)), [GAS])
     path = gp.run(box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "few.nc", impulses="x:8", follow=3)
     whole = gp.run(box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "all.nc", impulses="x:8")
-    with open_run(path, 0.0) as run:
-        assert wall_controls(run, 0) is None
+    half = gp.run(box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "half.nc", impulses="x:8", keep="positions")
+    for lacking in (path, half):
+        with open_run(lacking, 0.0) as run:
+            assert wall_controls(run, 0) is None
+    with open_trajectory(half) as data:
+        assert len(components(data, "pressure")) == 6
     with open_run(whole, 0.0) as run:
         assert wall_controls(run, 0) is not None and wall_controls(run, 2) is None
     assert A.wall_pressure(whole)["wall_pressure_freedom"].values.tolist() == [12.0, 12.0, *[15.0] * 4]

@@ -26,10 +26,9 @@ better. In each a particle collides once or more, so that its energy turns to ot
 def wall_controls(run: Run, axis: int) -> np.ndarray | None:
     """(T - 1, 3) in each interval, per time: sum m v^2 of the velocities along an axis less its known mean,
     and the changes of the momentum and of sum m x v along it. None unless the run has kept impulses along
-    this axis, all its particles are in the file, and it is in equilibrium with a kinetic energy that is
-    constant."""
+    this axis and the states of all particles, and is in equilibrium at a constant kinetic energy."""
     has = kept(run.data)
-    if has is None or has.axis != "xyz"[axis] or run.is_subset or not shares_energy_evenly(run.scene):
+    if has is None or has.axis != "xyz"[axis] or not (run.has_states and shares_energy_evenly(run.scene)):
         return None
     time = np.diff(run.time)
     width = float(run.scene.container.lengths[axis]) / has.bins
@@ -41,7 +40,7 @@ def wall_controls(run: Run, axis: int) -> np.ndarray | None:
 def stores(run: Run) -> np.ndarray:
     """(d, T, 2) of each axis the total momentum and sum m x v of the moving particles at each frame, x from
     the middle; (d, T, 0) of a file that lacks some."""
-    if run.is_subset:
+    if not run.has_states:
         return np.zeros((run.dimension, len(run.time), 0))
     velocities, masses = run.velocities[:, run.moving], run.masses[run.moving]
     centred = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)

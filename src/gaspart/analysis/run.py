@@ -218,6 +218,11 @@ class Run:
         """Whether only some of the particles are in the file."""
         return self.data.sizes["atom"] < self.count
 
+    @property
+    def has_states(self) -> bool:
+        """Whether the positions and velocities of all particles are in the file."""
+        return not self.is_subset and {"coordinates", "velocities"} <= set(self.data.variables)
+
     def require_all(self) -> None:
         """Raise SceneError if only some of the particles are in the file."""
         if self.is_subset:
