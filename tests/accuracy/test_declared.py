@@ -41,6 +41,7 @@ def frames(scene):
         "velocities": (("frame", "atom", "spatial"), np.repeat(state.velocities[None], 40, axis=0)),
         "time": ("frame", times),
         "collisions": ("frame", times),
+        "kinetic_energy": ("frame", np.full(40, state.kinetic_energy)),
     }
     return xr.Dataset(data, attrs={"scene": dump_yaml(scene.to_dict())})
 
