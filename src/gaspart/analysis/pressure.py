@@ -87,7 +87,7 @@ def controlled_pressures(run: Run) -> dict[int, tuple[str, int, np.ndarray]]:
     """The pressures on the walls of which the run has kept enough, by their place among all walls: the name
     of each, the number of controls, and the pressure in each interval (T - 1,)."""
     faces, each = pressures_on_walls(run, np.arange(len(run.time)))
-    groups, found = group_count(run), {}
+    groups, found = group_count(run) if run.has_states else 0, {}
     for place, face in enumerate(map(str, faces)) if groups else ():
         controls = wall_controls(run, "xyz".index(face[0]))
         if controls is not None:
