@@ -183,6 +183,8 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
         run.require_all()
         if len(run.time) <= STRETCHES:
             raise SceneError("frames", len(run.time), f"an error needs {STRETCHES + 1} or more")
+        if (run.positions == run.positions[0]).all():
+            raise SceneError("duration", run.time[-1], "nothing moves: all frames are one configuration")
         frames = slice(None, None, -(-len(run.time) // MOST_FRAMES))
         time = run.time[frames]
         edges = np.append(time, 2.0 * time[-1] - time[-2])
