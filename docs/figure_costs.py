@@ -20,7 +20,7 @@ that runs decide, and the multiple of its runs is that which would just suffice 
 
 
 def section(config):
-    """The section, the dearest figure first."""
+    """The section, the most expensive figure first."""
     found = budgets(config)
     lines = ["| figure | s | shared | decided | length that suffices |", "| --- | --- | --- | --- | --- |"]
     for one in found:

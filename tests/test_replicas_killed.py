@@ -1,4 +1,4 @@
-"""Replicas that are killed, one or all, end in the bits of those that nobody has disturbed."""
+"""Replicas that are killed, one or all, end in the bits of undisturbed ones."""
 
 import os
 import signal

@@ -41,7 +41,7 @@ def test_a_longer_run_goes_on_to_the_bytes_of_one_in_one_go(tmp_path, keep):
     part = run(tmp_path / "part.nc", keep, duration=2.0, keep_checkpoint=True)
     gp.resume(part, duration=4.0)
     assert part.read_bytes() == run(tmp_path / "whole.nc", keep).read_bytes()
-    assert gp.last_state(part).spins.any()  # of the checkpoint, which is whole
+    assert gp.last_state(part).spins.any()  # of the checkpoint, which has all of the state
 
 
 @pytest.mark.parametrize("keep", NAMES)
