@@ -62,6 +62,14 @@ SCENES = [
         "walls": [{"corner": [1, 1, 1], "edges": [[2, 0, 0], [0, 2, 0]]}],
     },
     {
+        "container": {"lengths": [8.0, 9.0], "boundary": ["wall", "periodic"]},
+        "species": [
+            {"count": 2, "radius": 0.3, "speed": 1.0, "region": [[0, 0], [4, 9]]},
+            {"count": 2, "radius": 0.3, "speed": 1.0, "region": [[4, 0], [8, 9]]},
+        ],
+        "walls": [{"start": [4, 0], "end": [4, 9], "mass": 20.0}],
+    },
+    {
         "container": {"lengths": [8.0, 9.0], "boundary": "periodic"},
         "species": [{"count": 5, "radius": 0.3, "temperature": 1.0}],
         "faces": {"y_high": {"kind": "lees_edwards", "shear_rate": -0.5}},

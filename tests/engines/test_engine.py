@@ -60,6 +60,7 @@ WITH = {
     "polydispersity": {"species": [gp.Species(3, 0.5, temperature=1.0, polydispersity=0.1)]},
     "centres_to_walls": {"centres_to_walls": True},
     "thermal_walls": {"walls": [gp.Wall((5.0, 5.0), (9.0, 9.0), temperature=1.0)]},
+    "moving_wall": {"walls": [gp.Wall((5.0, 0.0), (5.0, 20.0), mass=5.0)]},
     "thermal": {"faces": {"x_low": gp.Thermal(1.0)}},
     "accommodation": {"faces": {"x_low": gp.Thermal(1.0, accommodation=0.5)}},
     "ramp": {"faces": {"x_low": gp.Thermal({"y_low": 1.0, "y_high": 2.0})}},

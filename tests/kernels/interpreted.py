@@ -42,6 +42,7 @@ def event_scenes():
         gp.Plate((2.5, 2.5, 1.5), ((1.0, 0.5, 0.0), (0.0, 0.0, 2.0))),
         gp.Plate((3.0, 2.5, 2.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))),
     ]
+    parting = gp.Plate((0.0, 0.0, 2.5), ((6.0, 0.0, 0.0), (0.0, 6.0, 0.0)), mass=5.0)
     warm = {"x_low": gp.Thermal(2.0), "x_high": gp.Thermal(0.5, "normal"), "y_low": gp.Thermal(1.0)}
     ramp = gp.Thermal({"y_low": 2.0, "y_high": 1.0})
     partial = {"x_low": ramp, "x_high": gp.Thermal(0.5, accommodation=0.5)}
@@ -70,6 +71,7 @@ def event_scenes():
         "holding": gp.Scene(room, two, faces=low | high),
         "vibrating": gp.Scene(box, two, gravity=down, restitution=ROUGH, faces=shaking),
         "piston": gp.Scene(room, two, faces={"x_low": gp.Piston(5.0, 0.1)}),
+        "moving wall": gp.Scene(room, two, walls=[parting]),
         "sheared": gp.Scene(around, two, restitution=ROUGH, faces={"y_high": gp.LeesEdwards(0.7)}),
         "viscoelastic": gp.Scene(box, [*two, fixed], restitution=VISCOUS),
         "metal": gp.Scene(box, electrons, restitution=METAL, faces=heat),

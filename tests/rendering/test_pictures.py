@@ -226,6 +226,27 @@ def test_a_piston_is_drawn_where_it_is(tmp_path):
                 assert np.ptp(walls[..., 0]) == 8.0
 
 
+def test_an_interior_wall_that_moves_is_drawn_where_it_is(tmp_path):
+    """A particle at speed 1 pushes one of its own mass, which rests between it and another."""
+    for lengths, sides in (((8.0, 6.0), 1), ((8.0, 6.0, 7.0), 4)):
+        container = gp.Container(lengths, ("wall", "periodic", "periodic")[: len(lengths)])
+        near, far = (3.0, 1.0, 1.0)[: len(lengths)], (7.0, 1.0, 1.0)[: len(lengths)]
+        speed = (1.0, 0.0, 0.0)[: len(lengths)]
+        particles = [gp.Particle(near, speed, 0.5), gp.Particle(far, (0.0,) * len(lengths), 0.5)]
+        wall = gp.Wall((4.0, 0.0), (4.0, 6.0), mass=1.0)
+        if sides == 4:
+            wall = gp.Plate((4.0, 0.0, 0.0), ((0.0, 6.0, 0.0), (0.0, 0.0, 7.0)), mass=1.0)
+        scene = gp.Scene(container, particles=particles, walls=[wall])
+        assert np.allclose(particles_of(scene).walls[..., 0], 4.0)
+        path = gp.run(scene, gp.EventDriven(), 0, 2.0, 2.0, tmp_path / f"{sides}.nc")
+        with gp.open_trajectory(path) as run:
+            walls = particles_of(run).walls
+            assert walls.shape == (sides, 2, len(lengths))
+            assert np.allclose(walls[..., 0], 5.5)
+            assert np.ptp(walls[..., 1]) == 6.0
+        assert parameters_of(scene)[-1] == "a wall of mass 1 moves"
+
+
 def test_the_parameters_of_moving_faces_are_stated():
     scene = gp.Scene(gp.Container((8.0, 8.0)), [gp.Species(10, 0.3)])
     assert parameters_of(scene) == ("10 discs", "packing fraction 0.0442")

@@ -8,6 +8,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.scene.faces import Vibrating, faces_of, pistons
+from gaspart.scene.moving_walls import moving_wall
 
 if TYPE_CHECKING:
     from gaspart.analysis.run import Run
@@ -21,9 +22,10 @@ _NUMBERS = 2_000_000  # of all intervals together
 
 
 def moving_axes(run: Run) -> list[int]:
-    """The axes along which a face moves: a piston or a vibrating one."""
+    """The axes along which a face or an interior wall moves, and the gas with it."""
     faces = [*pistons(run.scene), *faces_of(run.scene, Vibrating)]
-    return sorted({number // 2 for number, _ in faces})
+    wall = moving_wall(run.scene)
+    return sorted({number // 2 for number, _ in faces} | ({wall.axis} if wall else set()))
 
 
 def sides(run: Run, times: np.ndarray) -> np.ndarray:

@@ -22,7 +22,7 @@ WALLS = 18  # and from here on the rows of interior walls
 NUMBER_BITS = 26  # of a particle's number where a search lists it beside its image
 IMAGE_BITS = 2  # above them, for each axis: the image, signed
 HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON = range(6)  # of `obstacles.face.RULES`
-PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # of Piston.motion
+PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # of Piston.motion and MovingWall.motion
 
 
 def flight_dtype(dimension: int) -> np.dtype:
@@ -215,10 +215,22 @@ class WarmWalls(NamedTuple):
     key: np.ndarray
 
 
+class MovingWall(NamedTuple):
+    """The interior wall that moves: axis, along which it does; mass, in the kernel's unit; side (N,), 1.0 of
+    particles above it and -1.0 of those below; motion (3,), where it is along its axis and how fast it moves
+    at the time of its clock."""
+
+    axis: int
+    mass: float
+    side: np.ndarray
+    motion: np.ndarray
+
+
 class InteriorWalls(NamedTuple):
     """rows (M, 5) or (M, 11) and wall (M,), see `obstacles.distance`; listed[first[b] :
     first[b + 1]] are those near box b, for particles of a radius up to `largest_radius`; those for larger
-    ones, all, follow the last box. warm: None if no wall is at a temperature."""
+    ones, all, follow the last box. warm: None if no wall is at a temperature; moving: None if none moves,
+    which has no row."""
 
     rows: np.ndarray
     wall: np.ndarray
@@ -226,6 +238,7 @@ class InteriorWalls(NamedTuple):
     listed: np.ndarray
     largest_radius: float
     warm: WarmWalls | None
+    moving: MovingWall | None
 
 
 class Oversized(NamedTuple):

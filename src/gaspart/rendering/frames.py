@@ -19,6 +19,7 @@ from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.rendering.shown import Picture
 from gaspart.scene.faces import Piston, Vibrating, pistons
+from gaspart.scene.moving_walls import moving_wall
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import fixed_images
 from gaspart.scene.walls import Wall
@@ -143,6 +144,8 @@ def parameters_of(scene: Scene) -> tuple[str, ...]:
         if isinstance(face, Piston):
             stated = {key: value for key, value in vars(face).items() if value is not None}
             texts.append(f"{name} a piston: {', '.join(f'{key} {stated[key]:.3g}' for key in stated)}")
+    if wall := moving_wall(scene):
+        texts.append(f"a wall of mass {wall.mass:.3g} moves")
     return tuple(texts)
 
 
@@ -164,25 +167,26 @@ def _of_state(state: State, scene: Scene | None) -> DrawnParticles:
 
 
 def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.ndarray:
-    """(M, 2, d) the segments, the four sides of each plate, and those of the faces that move. piston: the
-    place of one along its axis, if there is one."""
+    """(M, 2, d) the segments, the four sides of each plate, and those of what moves. piston: the place of
+    one along its axis, if there is one."""
     segments: list[tuple] = []
-    for wall in scene.walls:
+    moving = moving_wall(scene)
+    for wall in scene.walls if moving is None else ():
         if isinstance(wall, Wall):
             segments.append((wall.start, wall.end))
         else:
             corner, second, third, fourth = wall.corners.values()
             segments += pairwise((corner, second, fourth, third, corner))
     lengths = np.array(scene.container.lengths)
+    places = [(moving.axis, moving.place if piston is None else float(piston))] if moving else []
     for name, face in scene.faces.items():
         axis, upper = "xyz".index(name[0]), "high" in name
         if isinstance(face, Vibrating):
             inwards = float(face.places(np.array(time)))
-            place = lengths[axis] - inwards if upper else inwards
+            places.append((axis, lengths[axis] - inwards if upper else inwards))
         elif isinstance(face, Piston) and piston is not None:
-            place = float(piston)
-        else:
-            continue
+            places.append((axis, float(piston)))
+    for axis, place in places:
         corners = np.array(_CORNERS[scene.dimension]) * np.delete(lengths, axis)
         segments += pairwise(np.insert(corners, axis, place, axis=1))
     return np.array(segments, dtype=float).reshape(-1, 2, scene.dimension)

@@ -18,6 +18,7 @@ _DISTURBING = (
     "sticky",
     "vibrating",
     "piston",
+    "moving_wall",
     "lees_edwards",
     "sliding",
 )

@@ -38,6 +38,7 @@ from gaspart.scene.features import FEATURES, check_features, features
 from gaspart.scene.gas import Gas, Mixture, mixture_of
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.limits import Nearby, check_packing, check_region, check_room, rounding
+from gaspart.scene.moving_walls import moving_wall
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Particle, Species
 from gaspart.scene.thermostat import Thermostat
@@ -221,13 +222,14 @@ class Scene:
     @property
     def conserved_axes(self) -> tuple[bool, ...]:
         """(d,) whether the total momentum along an axis is conserved: a periodic one, if no particle is fixed
-        and nothing but smooth faces, which act along their normals, is in the container; of a sheared gas
-        that about the flow."""
+        and nothing but smooth faces or a wall that moves, which act along their normals, is in the
+        container; of a sheared gas that about the flow."""
         periodic = self.container.periodic
         fixed = any(it.fixed and it.count for it in self.kinds)
         smooth = all(face.smooth for face in self.faces.values())
         rubbed = not all(periodic) and (self.rough or not smooth)
-        free = not (fixed or self.walls or rubbed)
+        obstructed = bool(self.walls) and moving_wall(self) is None
+        free = not (fixed or obstructed or rubbed)
         return tuple(free and along for along in periodic)
 
     @property

@@ -9,23 +9,27 @@ from typing import TYPE_CHECKING
 from gaspart.errors import SceneError
 from gaspart.keys import declared, positive, two_vectors, validate, vector
 from gaspart.keys.values import finite_vector, positive_number
+from gaspart.scene.moving_walls import check_moving_wall
 
 if TYPE_CHECKING:
     from gaspart.scene.container import Container
     from gaspart.scene.scene import Scene
 
 _TEMPERATURE = positive("temperature of the wall, from which velocities are drawn; without it it is hard")
+_MASS = positive("mass of a wall across the container that particles move; without it it is at rest")
 WALL_RULE = "a Wall needs a container of two dimensions, a Plate one of three"
 
 
 @dataclass(frozen=True)
 class Wall:
     """A straight wall inside a container of two dimensions, from `start` (2,) to `end` (2,): hit from both
-    sides, and at its ends, which are solid. With a `temperature` particles leave it as a `Thermal` face."""
+    sides, and at its ends, which are solid. With a `temperature` particles leave it as a `Thermal` face. With
+    a `mass` it moves: a piston between two gases, as `Plate` states."""
 
     start: tuple[float, ...] = field(metadata=declared(vector("one end", 2, sized=False)))
     end: tuple[float, ...] = field(metadata=declared(vector("the other end", 2, sized=False)))
     temperature: float | None = field(default=None, metadata=declared(_TEMPERATURE))
+    mass: float | None = field(default=None, metadata=declared(_MASS))
 
     def __post_init__(self) -> None:
         validate(self)
@@ -50,13 +54,20 @@ class Wall:
 class Plate:
     """A flat rectangular wall inside a container of three dimensions: a `corner` (3,), and the `edges` (2, 3)
     that lead from it, at right angles. Hit from both sides, at its edges and its corners, which are solid.
-    With a `temperature` particles leave it as a `Thermal` face."""
+    With a `temperature` particles leave it as a `Thermal` face.
+
+    With a `mass` it is a piston between two gases, and must reach across the whole container at right angles
+    to an axis: it starts at rest, no force but that of particles moves it along that axis, and with each of
+    them it exchanges momentum without loss (Lieb, Physica A 263, 491 (1999)). It conducts no heat but by its
+    own motion. There is no other interior wall then, and both its sides have particles, smooth and elastic.
+    """
 
     corner: tuple[float, ...] = field(metadata=declared(vector("one corner", 3, sized=False)))
     edges: tuple[tuple[float, ...], ...] = field(
         metadata=declared(two_vectors("the vectors from it to the two neighbouring corners", 3))
     )
     temperature: float | None = field(default=None, metadata=declared(_TEMPERATURE))
+    mass: float | None = field(default=None, metadata=declared(_MASS))
 
     def __post_init__(self) -> None:
         validate(self)
@@ -118,3 +129,4 @@ def check_walls(scene: Scene) -> None:
             inside = zip(point, scene.container.lengths, strict=True)
             if not all(0.0 <= x <= length for x, length in inside):
                 raise SceneError(f"walls[{n}].{key}", point, "must lie inside the container")
+    check_moving_wall(scene)

@@ -11,6 +11,7 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.scene.faces import FACES, FLOW, GRADIENT, pistons
 from gaspart.scene.features import FEATURES, features
+from gaspart.scene.moving_walls import MOVING_WALL, moving_wall
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import fixed_images, flow_of_rate
 from gaspart.state.initial import assembled, in_flow, masses_of
@@ -141,13 +142,21 @@ def _taken_piston(scene: Scene, other: State) -> np.ndarray | None:
             rule = f"is the face that is the piston, {FACES[n]} in the scene: they must be the same"
             raise SceneError("initial", other.piston_face, rule)
         return other.piston if face.speed is None else np.array([other.piston[0], face.initial_velocity(n)])
-    return None
+    if moving_wall(scene) is None:
+        return None
+    if other.piston_face != MOVING_WALL:
+        rule = f"is the face that is the piston, {MOVING_WALL} in the scene: they must be the same"
+        raise SceneError("initial", other.piston_face, rule)
+    return other.piston
 
 
 def _checked_piston(scene: Scene, piston: np.ndarray | None) -> np.ndarray | None:
     """The given place and velocity of a piston. Raises SceneError."""
-    for n, _ in pistons(scene) if piston is not None else ():
-        values, length = np.asarray(piston), scene.container.lengths[n // 2]
+    axes = [n // 2 for n, _ in pistons(scene)]
+    if wall := moving_wall(scene):
+        axes = [wall.axis]
+    for axis in axes if piston is not None else ():
+        values, length = np.asarray(piston), scene.container.lengths[axis]
         if values.shape != (2,) or not np.isfinite(values).all() or not 0.0 <= values[0] <= length:
             rule = f"must be a place from 0 to {length:g} and a velocity of the piston"
             raise SceneError("initial", values.tolist(), rule)
@@ -190,7 +199,7 @@ def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.n
     """(N, d) positions in [0, L) on axes with fixed images, between the walls and the piston on others."""
     lengths, periodic = np.array(scene.container.lengths), np.array(fixed_images(scene))
     slack = _SINGLE * lengths
-    low, high = _bounds(scene, radii, piston)
+    low, high = _bounds(scene, positions, radii, piston)
     placed = np.where(periodic, _wrapped(positions, lengths), positions)
     outside = ~periodic & ((placed < low - slack) | (placed > high + slack))
     for n in np.flatnonzero(outside.any(axis=1)).tolist():
@@ -198,20 +207,27 @@ def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.n
         rule += "" if piston is None else f", or beyond the piston at {piston[0]:g}"
         raise SceneError("initial", tuple(positions[n].tolist()), rule)
     placed = np.where(periodic, placed, np.clip(placed, low, high))
-    for n in range(len(radii)) if scene.walls else ():
+    for n in range(len(radii)) if scene.walls and moving_wall(scene) is None else ():
         if wall := scene.wall_at(tuple(placed[n].tolist()), float(radii[n] - slack.max())):
             raise SceneError("initial", tuple(placed[n].tolist()), f"particle {n} overlaps {wall}")
     return placed
 
 
-def _bounds(scene: Scene, radii: np.ndarray, piston: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-    """(N, d), (N, d) the least and the greatest coordinates of particles between walls and before a piston; a
-    sheared face is crossed where it is reached."""
+def _bounds(
+    scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """(N, d), (N, d) the least and the greatest coordinates of particles at these positions (N, d) between
+    walls and before a piston, or on their side of it; a sheared face is crossed where it is reached."""
     walled = ~np.array(scene.container.periodic)
     margins = np.where(walled & (not scene.centres_to_walls), radii[:, None], 0.0)
     low, high = margins.copy(), np.array(scene.container.lengths) - margins
     if scene.shear_rate is not None:
         high[:, GRADIENT] = np.nextafter(high[:, GRADIENT], 0.0)
+    if wall := moving_wall(scene):
+        axis, place = wall.axis, wall.place if piston is None else piston[0]
+        above = positions[:, axis] > place
+        low[above, axis] = place + radii[above]
+        high[~above, axis] = place - radii[~above]
     if piston is None:
         return low, high
     for n, _ in pistons(scene):

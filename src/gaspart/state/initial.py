@@ -9,6 +9,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.scene.faces import FACES, pistons
+from gaspart.scene.moving_walls import MOVING_WALL, moving_wall
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
 from gaspart.scene.species import LATTICES
@@ -65,17 +66,14 @@ def masses_of(scene: Scene) -> np.ndarray:
 
 def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins: np.ndarray) -> State:
     """The state at time 0 with these positions and velocities (N, d), and spins (N,) or (N, 3); with a piston
-    at its side, at rest or at its speed, and images of a sheared gas that are not displaced yet."""
+    at its place, at rest or at its speed, and images of a sheared gas that are not displaced yet."""
     radii, masses = per_particle(scene, "radius").astype(float), per_particle(scene, "mass").astype(float)
     shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # of a uniform disc or sphere
     inertia = per_particle(scene, "moment_of_inertia").astype(float)  # None becomes nan
     inertia = np.where(np.isnan(inertia), shape * masses * radii**2, inertia)
     groups = [len(scene.species), *range(len(scene.species))]
     counts = [len(scene.particles), *(kind.count for kind in scene.species)]
-    sides = [
-        (FACES[n], [scene.container.lengths[n // 2] if n % 2 else 0.0, face.initial_velocity(n)])
-        for n, face in pistons(scene)
-    ]
+    piston_face, piston = _piston(scene)
     return State(
         time=0.0,
         positions=positions,
@@ -89,11 +87,20 @@ def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins
         moments_of_inertia=np.where(per_particle(scene, "fixed").astype(bool), np.inf, inertia),
         gravity=None if scene.gravity is None else np.array(scene.gravity),
         well_energies=well_energies(scene, places_in_wells(scene, positions, radii)) if scene.faces else None,
-        piston=np.array(sides[0][1]) if sides else None,
-        piston_face=sides[0][0] if sides else None,
+        piston=piston,
+        piston_face=piston_face,
         displaced=None if scene.shear_rate is None else 0.0,
         shear_rate=scene.shear_rate,
     )
+
+
+def _piston(scene: Scene) -> tuple[str | None, np.ndarray | None]:
+    """The name of the face or interior wall that is a piston, and (2,) its place and velocity at time 0."""
+    for n, face in pistons(scene):
+        start = scene.container.lengths[n // 2] if n % 2 else 0.0
+        return FACES[n], np.array([start, face.initial_velocity(n)])
+    wall = moving_wall(scene)
+    return (None, None) if wall is None else (MOVING_WALL, np.array([wall.place, 0.0]))
 
 
 def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.ndarray:

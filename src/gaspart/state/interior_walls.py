@@ -70,7 +70,7 @@ def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray
     """The walls within `reach` of each box: those of box b are listed[first[b] : first[b + 1]]. All of them
     follow the last box, for particles that reach further."""
     reach *= 1 + _SLACK
-    numbers = rows.view(float).reshape(len(rows), -1)
+    numbers = rows.view(float).reshape(len(rows), rows.itemsize // 8)
     d = 2 if numbers.shape[1] == 5 else 3
     widths, per_side, strides = boxes.widths[:d], boxes.per_side[:d], boxes.strides[:d]
     pairs = []

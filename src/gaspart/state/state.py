@@ -20,9 +20,10 @@ class State:
     angular velocities, (N,) in 2D and (N, 3) in 3D; moments_of_inertia (N,); gravity (d,) or None;
     well_energies (N,), the potential energy in the wells of the faces, and vibrations (N,), the energy of
     each particle's vibration, or None; piston (2,), its place along its axis and its velocity, and
-    piston_face, the face of the container that it is, or None; of a sheared gas displaced, how far images
-    above the container are displaced along x, and shear_rate, du_x / dy of the flow that the velocities
-    include, or None. The mass and moment of inertia of a fixed particle are infinite; they count in no sum.
+    piston_face, the face of the container or the interior wall that it is, or None; of a sheared gas
+    displaced, how far images above the container are displaced along x, and shear_rate, du_x / dy of the flow
+    that the velocities include, or None. The mass and moment of inertia of a fixed particle are infinite;
+    they count in no sum.
     """
 
     time: float

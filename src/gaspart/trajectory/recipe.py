@@ -14,7 +14,7 @@ from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.face_checks import check_piston_end
-from gaspart.scene.faces import pistons
+from gaspart.scene.moving_walls import has_piston
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.state.given import state_at_time_zero, state_from_arrays
@@ -173,7 +173,7 @@ class Recipe:
             "spins": scene.rough and not self.keep,
             "vibrations": scene.vibrates and not self.keep,
             "displacements": self.displacements,
-            "piston": bool(pistons(scene)),
+            "piston": has_piston(scene),
             "pair_collisions": self.pairs,
         }
         extra = [name for name, present in names.items() if present]

@@ -11,6 +11,7 @@ from gaspart.analysis import bulk
 from gaspart.analysis.bulk import BOLTZMANN, ENSKOG
 from gaspart.analysis.expected.run import Expected, equation_of, partners, shift_of
 from gaspart.analysis.run import Run
+from gaspart.scene.moving_walls import moving_wall
 from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.trajectory.pairs import pairs_of
 
@@ -106,7 +107,8 @@ def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | N
 
 def temperature(run: Run) -> Expected | None:
     """The same everywhere in equilibrium."""
-    if run.scene.faces or face_temperatures(run.scene) or run.dissipates or run.scene.thermostat:
+    scene = run.scene
+    if scene.faces or face_temperatures(scene) or run.dissipates or scene.thermostat or moving_wall(scene):
         return None
     return run.temperature, 0.0, "equilibrium"
 

@@ -9,6 +9,7 @@ from gaspart.engines.features.faces import FacesPart, has_special_faces, special
 from gaspart.engines.features.gravity import GravityPart, gravity_of
 from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.masses import scaled_masses
+from gaspart.engines.features.moving_wall import MovingWallPart, moving_wall_of
 from gaspart.engines.features.part import Part
 from gaspart.engines.features.piston import PistonPart
 from gaspart.engines.features.rest import rest_watch
@@ -46,13 +47,14 @@ def event_model(
     law = law._replace(duration=contact_duration(scene, law)) if law else None
     unit_mass, masses = (1.0, None) if law else scaled_masses(state.masses)
     oversized, warm = np.flatnonzero(state.radii > largest), warm_walls(scene, state, seed, unit_mass)
+    moving = moving_wall_of(scene, state, unit_mass)
     model = Model(
         space=Space(scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls)),
         masses=masses,
         gravity=gravity_of(scene, state),
         law=law,
         faces=special_faces(scene, state, seed, unit_mass) if has_special_faces(scene) else None,
-        walls=interior_walls(scene, boxes, largest, warm) if scene.walls else None,
+        walls=interior_walls(scene, boxes, largest, warm, moving) if scene.walls else None,
         oversized=Oversized(oversized, largest) if len(oversized) else None,
         shear=shear_of(scene),
     )
@@ -69,6 +71,7 @@ def event_parts(
         GravityPart(gravity, scene.container.lengths) if gravity else None,
         FacesPart(scene, faces, unit_mass, lightest) if faces else None,
         WarmWallsPart(scene, walls.warm, lightest) if walls and walls.warm else None,
+        MovingWallPart(walls.moving, unit_mass) if walls and walls.moving else None,
         ShearPart(scene, state, model.shear) if model.shear else None,
         VibratingPart(scene, faces.motion) if faces and faces.motion else None,
         PistonPart(faces.piston, scene) if faces and faces.piston else None,

@@ -6,7 +6,7 @@ import numpy as np
 
 from gaspart.engines.features.faces import face_energy
 from gaspart.engines.features.part import Part
-from gaspart.kernels.model import InteriorWalls, WarmWalls
+from gaspart.kernels.model import InteriorWalls, MovingWall, WarmWalls
 from gaspart.scene.scene import Scene
 from gaspart.state.boxes import Boxes
 from gaspart.state.interior_walls import wall_rows, walls_near
@@ -17,11 +17,14 @@ _INTERIOR_DRAWS = 6  # the purpose of their random numbers, after those of the e
 
 
 def interior_walls(
-    scene: Scene, boxes: Boxes, largest_radius: float, warm: WarmWalls | None
+    scene: Scene, boxes: Boxes, largest_radius: float, warm: WarmWalls | None, moving: MovingWall | None
 ) -> InteriorWalls:
-    """The interior walls, with those near each box for radii up to `largest_radius`."""
+    """The interior walls, with those near each box for radii up to `largest_radius`: one that moves is near
+    none."""
     rows, wall = wall_rows(scene)
-    return InteriorWalls(rows, wall, *walls_near(rows, boxes, largest_radius), largest_radius, warm)
+    if moving:
+        rows, wall = rows[:0], wall[:0]
+    return InteriorWalls(rows, wall, *walls_near(rows, boxes, largest_radius), largest_radius, warm, moving)
 
 
 def warm_walls(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> WarmWalls | None:

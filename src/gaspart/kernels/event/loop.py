@@ -159,7 +159,7 @@ def process(particles, i, time, queue, boxes, model, tally):
         wake(particles, (i, partner), queue, boxes, model, tally, (time, number), model.law)
     event, free = (time, number, changes), without_contacts(model)
     predict_after(particles, (first, second), queue, boxes, free, tally, event, crossed)
-    predict_after_piston(particles, partner, time, queue, boxes, free, model.faces)
+    predict_after_piston(particles, partner, time, queue, boxes, free, model.faces, model.walls)
     return i, partner, happens
 
 

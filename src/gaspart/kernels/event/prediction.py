@@ -12,9 +12,10 @@ from gaspart.kernels.event.neighbour_lists import is_renewed_first, next_renewal
 from gaspart.kernels.event.oversized import search_oversized
 from gaspart.kernels.event.queue import EVENT_COUNT, bucket_of, fill, reschedule
 from gaspart.kernels.event.sheared_search import search_sheared
-from gaspart.kernels.model import NONE
+from gaspart.kernels.model import NONE, WALLS
 from gaspart.kernels.obstacles.face import next_face
 from gaspart.kernels.obstacles.interior_wall import find_wall
+from gaspart.kernels.obstacles.moving_wall import next_moving
 from gaspart.kernels.obstacles.piston import next_piston
 from gaspart.kernels.physics.flight import mark_resting
 from gaspart.kernels.prefetch import fetch
@@ -128,12 +129,25 @@ def predict_faces(particles, time, queue, boxes, model, piston):
             reschedule(queue, predictions, i)
 
 
+@inner_kernel
+def predict_walls(particles, time, queue, boxes, model, moving):
+    """The same of the interior wall that moves."""
+    predictions = particles.predictions
+    for i in range(len(predictions)):
+        was = predictions[i].face == WALLS
+        if was or next_moving(particles.flights, i, moving) <= predictions[i].face_time:
+            predict_face(particles, i, boxes, model, time)
+            reschedule(queue, predictions, i)
+
+
 @inner_helper
-def predict_after_piston(particles, partner, time, queue, boxes, model, faces):
-    """After a contact with a piston, whose motion it has changed, predict that of all others with it anew.
-    partner: -1 - the number of the face met."""
+def predict_after_piston(particles, partner, time, queue, boxes, model, faces, walls):
+    """After a contact with a piston or a wall that moves, whose motion it has changed, predict that of all
+    others with it anew. partner: -1 - the number of the face or wall met."""
     if faces is not None:
         _predict_after_piston(particles, partner, time, queue, boxes, model, faces.piston)
+    if walls is not None:
+        _predict_after_wall(particles, partner, time, queue, boxes, model, walls.moving)
 
 
 @inner_helper
@@ -141,6 +155,13 @@ def _predict_after_piston(particles, partner, time, queue, boxes, model, piston)
     if piston is not None:
         if -1 - partner == piston.face:
             predict_faces(particles, time, queue, boxes, model, piston)
+
+
+@inner_helper
+def _predict_after_wall(particles, partner, time, queue, boxes, model, moving):
+    if moving is not None:
+        if -1 - partner == 2 * len(model.space.lengths):
+            predict_walls(particles, time, queue, boxes, model, moving)
 
 
 @inner_kernel

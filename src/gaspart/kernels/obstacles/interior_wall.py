@@ -6,6 +6,7 @@ from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.event.box_lists import box_of
 from gaspart.kernels.model import NONE, WALLS
 from gaspart.kernels.obstacles.distance import to_wall
+from gaspart.kernels.obstacles.moving_wall import collide_moving_wall, find_moving
 from gaspart.kernels.obstacles.plate import time_to_plate
 from gaspart.kernels.obstacles.resting import come_to_rest, leave
 from gaspart.kernels.obstacles.segment import time_to_segment
@@ -53,6 +54,7 @@ def find_wall(particles, i, boxes, space, gravity, walls, time, face):
         )
         if m >= 0:
             return wall_time, WALLS + m
+        return find_moving(particles.flights, i, walls.moving, time, face)
     return time, face
 
 
@@ -155,6 +157,14 @@ def collide_wall(flights, i, m, model, tally, walls, law):
 
 
 @inner_helper
+def collide_interior(flights, i, m, model, tally, walls, moving):
+    """`collide_wall`, or the same with the wall that moves."""
+    if moving is not None:
+        return collide_moving_wall(flights, i, model, tally, moving)
+    return collide_wall(flights, i, m, model, tally, walls, model.law)
+
+
+@inner_helper
 def meet_wall(flights, i, face, time, model, tally, walls):
     """Advance a particle to an interior wall and reflect it there. Returns the number of the wall, or NONE if
     the particle has slid along the wall and leaves it."""
@@ -162,5 +172,5 @@ def meet_wall(flights, i, face, time, model, tally, walls):
         advance(flights, i, time, model.space, model.gravity)
         if leaves(flights, i, face - WALLS, model.space, walls, model.gravity):
             return NONE
-        return collide_wall(flights, i, face - WALLS, model, tally, walls, model.law)
+        return collide_interior(flights, i, face - WALLS, model, tally, walls, walls.moving)
     return face

@@ -28,7 +28,7 @@ RESULT = "the machine code of both engines for the scene, with and without the s
 KEYS: dict[str, Kind] = {}
 FEATURES = {
     "accommodation", "collapse", "duration", "faces", "gravity", "impulses", "law", "masses", "motion",
-    "oversized", "pace", "pairs", "piston", "ramp", "record", "row", "rules", "shear", "sliding",
+    "moving", "oversized", "pace", "pairs", "piston", "ramp", "record", "row", "rules", "shear", "sliding",
     "sticky", "stress", "support", "velocity", "vibrations", "viscous", "walls", "warm",
 }  # fmt: skip
 """Arguments of the kernels that are None for a plain gas."""

@@ -1,0 +1,67 @@
+"""A wall across the container that moves: a piston between two gases."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from gaspart.errors import SceneError
+from gaspart.scene.faces import pistons
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
+    from gaspart.scene.walls import Plate, Wall
+
+
+class MovingWall(NamedTuple):
+    """The axis along which it moves, its place there at time 0, and its mass."""
+
+    axis: int
+    place: float
+    mass: float
+
+
+MOVING_WALL = "walls[0]"
+"""The key of a wall that moves: there is no other beside it."""
+
+
+def moving_wall(scene: Scene) -> MovingWall | None:
+    """The interior wall of a scene that moves, None without one."""
+    for wall in scene.walls:
+        if wall.mass is not None:
+            axis = crossed_axis(wall, scene.container.lengths)
+            return MovingWall(axis, next(iter(wall.corners.values()))[axis], wall.mass)
+    return None
+
+
+def has_piston(scene: Scene) -> bool:
+    """Whether a face or an interior wall moves as particles and its load push it."""
+    return bool(pistons(scene)) or moving_wall(scene) is not None
+
+
+def crossed_axis(wall: Wall | Plate, lengths: tuple[float, ...]) -> int:
+    """The axis at right angles to which a wall reaches from side to side of a container, -1 if to none."""
+    for axis, _ in enumerate(lengths):
+        places = [{corner[k] for corner in wall.corners.values()} for k in range(len(lengths))]
+        whole = all(places[k] == {0.0, length} for k, length in enumerate(lengths) if k != axis)
+        if whole and len(places[axis]) == 1:
+            return axis
+    return -1
+
+
+def check_moving_wall(scene: Scene) -> None:
+    """Raise SceneError for a wall that moves and is not alone, or not across the whole container."""
+    for n, wall in enumerate(scene.walls):
+        if wall.mass is None:
+            continue
+        key, lengths = f"walls[{n}].mass", scene.container.lengths
+        if len(scene.walls) > 1:
+            raise SceneError(key, wall.mass, "a wall that moves must be the only interior wall")
+        if wall.temperature is not None:
+            raise SceneError(key, wall.mass, "a wall that moves has no temperature: it is smooth and elastic")
+        axis = crossed_axis(wall, lengths)
+        if axis < 0:
+            rule = "a wall that moves must reach across the whole container, at right angles to an axis"
+            raise SceneError(key, wall.mass, rule)
+        if scene.container.periodic[axis]:
+            rule = f"a wall that moves needs walls across {'xyz'[axis]}, along which it does"
+            raise SceneError(key, wall.mass, rule)

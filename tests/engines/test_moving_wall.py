@@ -1,0 +1,295 @@
+"""A wall that moves between two gases: contacts of two balls that are computed otherwise, what is conserved,
+the same bits throughout, the exact distribution of its place."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from referee import check_restored, check_searches
+
+import gaspart as gp
+from gaspart.trajectory.last_state import last_state
+
+EVENT = gp.EventDriven()
+WALL_NUMBER = 4
+"""Of the interior wall in two dimensions, after the faces."""
+
+
+def across(place, width, mass, axis=0):
+    """A wall across a container of two dimensions."""
+    ends = [[0.0, 0.0], [width, width]]
+    for end in ends:
+        end[axis] = place
+    return gp.Wall(*map(tuple, ends), mass=mass)
+
+
+def two_gases(left=(20, 4.0), right=(20, 1.0), mass=20.0, lengths=(16.0, 6.0), place=8.0, radius=0.4):
+    """(count, temperature) on either side of a wall across x."""
+    (x, y), container = lengths, gp.Container(lengths, ("wall", "periodic"))
+    species = [
+        gp.Species(left[0], radius, temperature=left[1], region=((0.0, 0.0), (place, y))),
+        gp.Species(right[0], radius, temperature=right[1], region=((place, 0.0), (x, y))),
+    ]
+    return gp.Scene(container, species, walls=[across(place, y, mass)])
+
+
+def meetings(wall, balls, length, count):
+    """(time, ball, place of the wall) of contacts of a wall (place, velocity, mass) with a ball on either
+    side (place, velocity, mass) that bounces off its end of a container, without rounding."""
+    x, u, mass = map(Fraction, wall)
+    state, time, found = [list(map(Fraction, ball)) for ball in balls], Fraction(0), []
+    while len(found) < count:
+        coming = []
+        for n, (side, (place, v, _)) in enumerate(zip((-1, 1), state, strict=True)):
+            if side * (u - v) > 0:
+                coming.append((side * (place - x) / (side * (u - v)), n, "wall"))
+            if side * v > 0:
+                end = Fraction(length if side > 0 else 0)
+                coming.append(((end - place) / v, n, "end"))
+        late, n, what = min(coming)
+        time += late
+        x += u * late
+        for ball in state:
+            ball[0] += ball[1] * late
+        if what == "end":
+            state[n][1] = -state[n][1]
+            continue
+        _, v, m = state[n]
+        centre = (m * v + mass * u) / (m + mass)
+        state[n][1], u = 2 * centre - v, 2 * centre - u
+        found.append((float(time), n, float(x)))
+    return found
+
+
+@pytest.mark.parametrize(("mass", "axis"), [(3.0, 0), (0.25, 0), (200.0, 1)])
+def test_balls_and_a_wall_meet_as_computed_without_rounding(mass, axis):
+    """A heavy and a light wall; balls of two masses, whose radius is within the ends of the container."""
+    radius, length = 0.5, 12.0
+    places, velocities, masses = (2.0, 9.5), (1.25, -0.75), (1.0, 2.0)
+    particles = []
+    for place, velocity, own in zip(places, velocities, masses, strict=True):
+        where, speed = [2.0, 2.0], [0.0, 0.0]
+        where[axis], speed[axis] = place, velocity
+        particles.append(gp.Particle(tuple(where), tuple(speed), radius, mass=own))
+    lengths, boundary = [4.0, 4.0], ["periodic", "periodic"]
+    lengths[axis], boundary[axis] = length, "wall"
+    wall = across(5.5, 4.0, mass, axis)
+    scene = gp.Scene(gp.Container(lengths, boundary), particles=particles, walls=[wall])
+    sim = gp.Simulation(scene, EVENT)
+    sim.record_events = True
+    sim.advance(max_events=120)
+    hits = sim.events["particles"][:, 1] == -1 - WALL_NUMBER
+    balls = sim.events["particles"][hits, 0]
+    centres = sim.events["positions"][hits, 0, axis]
+    # points between ends that are a diameter nearer, with the wall a radius nearer to each
+    points = [
+        (places[0] - radius, velocities[0], masses[0]),
+        (places[1] - 3 * radius, velocities[1], masses[1]),
+    ]
+    known = meetings((5.5 - 2 * radius, 0.0, mass), points, length - 4 * radius, 40)
+    assert len(balls) >= 40
+    for n, (time, ball, place) in enumerate(known):
+        assert sim.events["time"][hits][n] == pytest.approx(time, abs=1e-9)
+        assert balls[n] == ball
+        assert centres[n] == pytest.approx(place + (3 * radius if ball else radius), abs=1e-9)
+
+
+@st.composite
+def between(draw):
+    """Some discs of one or two sizes and masses, and a light or a heavy wall across x or y."""
+    axis = draw(st.sampled_from([0, 1]))
+    lengths, boundary = [6.0, 6.0], [draw(st.sampled_from(["wall", "periodic"]))] * 2
+    lengths[axis], boundary[axis] = 10.0, "wall"
+    place, low, high = draw(st.floats(3.0, 7.0)), [0.0, 0.0], list(lengths)
+    low[axis] = high[axis] = place
+    regions = ((0.0, 0.0), tuple(high)), (tuple(low), tuple(lengths))
+    species = [
+        gp.Species(
+            draw(st.integers(1, 8)),
+            draw(st.floats(0.1, 0.4)),
+            draw(st.sampled_from([1.0, 0.01, 50.0])),
+            temperature=draw(st.sampled_from([1.0, 9.0])),
+            region=region,
+        )
+        for region in regions
+    ]
+    wall = across(place, 6.0, draw(st.floats(1e-3, 1e4)), axis)
+    return gp.Scene(gp.Container(lengths, boundary), species, walls=[wall])
+
+
+@given(between(), st.integers(0, 2**32))
+def test_energy_and_momentum_are_conserved_and_all_searches_agree(scene, seed):
+    sim = check_searches(scene, 200, seed, "state.positions", "state.piston", "tally.wall_energy")
+    sim.check_invariants()
+    (wall,), state, start, tally = scene.walls, sim.state, sim.initial_state, sim.tally
+    axis = 0 if wall.start[0] == wall.end[0] else 1
+    place, velocity = state.piston
+    energy = start.energy
+    assert state.energy + 0.5 * wall.mass * velocity**2 == pytest.approx(energy, rel=1e-12)
+    assert tally.wall_energy[WALL_NUMBER] == pytest.approx(0.5 * wall.mass * velocity**2, abs=1e-12 * energy)
+    from_ends = tally.wall_impulse[2 * axis] - tally.wall_impulse[2 * axis + 1]
+    moved = state.momentum[axis] + wall.mass * velocity - start.momentum[axis]
+    assert moved == pytest.approx(from_ends, abs=1e-10 * max(1.0, abs(from_ends), tally.wall_impulse.max()))
+    below = start.positions[:, axis] < start.piston[0]
+    x = state.positions[:, axis]
+    assert (x[below] + state.radii[below] <= place + 1e-9).all()
+    assert (x[~below] - state.radii[~below] >= place - 1e-9).all()
+
+
+def test_time_runs_backwards():
+    """Rounding grows by collisions, of which each particle has a few."""
+    scene = two_gases(mass=5.0)
+    there = gp.Simulation(scene, EVENT, seed=2)
+    there.advance(until=1.5)
+    turned = there.state.copy()
+    turned.velocities, turned.piston[1] = -turned.velocities, -turned.piston[1]
+    back = gp.Simulation(scene, EVENT, initial=turned)
+    back.advance(until=1.5)
+    assert there.tally.wall_hits[WALL_NUMBER] > 5
+    assert back.state.piston == pytest.approx([8.0, 0.0], abs=1e-8)
+    lengths, apart = np.array(scene.container.lengths), back.state.positions - there.initial_state.positions
+    assert np.abs(apart - lengths * np.round(apart / lengths)).max() < 1e-8
+
+
+def test_splits_and_checkpoints_change_no_bit():
+    names = "state.positions", "state.velocities", "state.piston", "tally.wall_energy", "tally.wall_impulse"
+    check_restored(two_gases(), (0.1, 0.37, 5.0, 40.0, 100.0, 300.0), *names)
+
+
+def test_a_trajectory_has_its_motion_from_which_another_run_goes_on(tmp_path):
+    scene = two_gases()
+    scene.to_file(tmp_path / "scene.yaml")
+    assert gp.Scene.from_file(tmp_path / "scene.yaml") == scene
+    gp.run(scene, EVENT, 3, 20.0, 2.0, tmp_path / "first.nc")
+    whole = gp.Simulation(scene, EVENT, seed=3)
+    whole.advance(until=20.0)
+    with gp.open_trajectory(tmp_path / "first.nc") as run:
+        assert run["piston_position"].values[0] == 8.0
+        assert run["piston_position"].values[-1] == whole.state.piston[0]
+        assert run["piston_velocity"].values[-1] == whole.state.piston[1]
+    frame = last_state(tmp_path / "first.nc")
+    assert np.array_equal(frame.piston, whole.state.piston)
+    again = gp.Simulation(scene, EVENT, initial=frame)  # positions are those of single precision
+    again.advance(duration=1.0)
+    whole.advance(duration=1.0)
+    assert again.state.piston == pytest.approx(whole.state.piston, abs=1e-4)
+    exact = gp.Simulation(replace(scene, walls=[across(3.0, 6.0, 20.0)]), EVENT, initial=whole.state)
+    assert np.array_equal(exact.state.piston, whole.state.piston)  # the state's, not the scene's
+
+
+def excluded(width, height, diameter):
+    """The integral of two points in width x height over all places in which they are no nearer than this."""
+    a = (np.arange(4000) + 0.5) * (width / 4000)
+    least = np.minimum(np.sqrt(np.clip(diameter**2 - a**2, 0.0, None)), height)
+    return 4.0 * ((width - a) * 0.5 * (height - least) ** 2).sum() * (width / 4000)
+
+
+def test_its_place_has_the_distribution_of_statistical_mechanics():
+    """Two discs on one side and one on the other: the energy is all kinetic, so that each place counts by the
+    room that it leaves to the centres, Z_2(x) (L - x - 2 r). Runs of 24 seeds give the error."""
+    length, width, radius, mass = 8.0, 3.0, 0.5, 1.5
+    container = gp.Container((length, width), "wall")
+    wall = across(4.0, width, mass)
+    left = gp.Species(2, radius, temperature=1.0, region=((0.0, 0.0), (4.0, width)))
+    right = gp.Species(1, radius, temperature=1.0, region=((4.0, 0.0), (length, width)))
+    scene = gp.Scene(container, [left, right], walls=[wall])
+    places = np.linspace(2 * radius, length - 2 * radius, 401)[1:-1]
+    room = [excluded(x - 2 * radius, width - 2 * radius, 2 * radius) for x in places]
+    weights = np.array(room) * (length - places - 2 * radius)
+    weights /= weights.sum()
+    expected = np.array([weights @ places**power for power in (1, 2, 3)])
+    means = []
+    for seed in range(24):
+        sim = gp.Simulation(scene, EVENT, seed=seed)
+        sim.advance(until=20.0)
+        values = []
+        for _ in range(1500):
+            sim.advance(duration=1.75)
+            values.append(sim.state.piston[0])
+        means.append([np.mean(np.array(values) ** power) for power in (1, 2, 3)])
+    errors = np.std(means, axis=0, ddof=1) / math.sqrt(len(means))
+    assert (errors < 0.01 * expected).all()
+    assert (np.abs(np.mean(means, axis=0) - expected) < 3.5 * errors).all()
+    ideal = ((length - 2.0) * 3 / 5 + 1.0) - expected[0]  # of points p ~ x^2 (L - x)
+    assert abs(ideal) > 10 * errors[0]
+
+
+def test_a_heavy_wall_begins_to_move_by_the_difference_of_the_pressures():
+    """Of points, n k_B T (P = 4 and 1): the momentum M u after a time t is (P_1 - P_2) A t, whose scatter is
+    known: m^2 (2 v)^2 of each hit, 4 m n A t <|v|^3>, with the distribution of the normal velocity."""
+    scene = two_gases((400, 4.0), (400, 1.0), mass=1e7, lengths=(20.0, 10.0), place=10.0, radius=1e-3)
+    time, runs, pressures = 0.5, 120, np.array([4.0 * 4.0, 4.0 * 1.0])
+    gained = []
+    for seed in range(runs):
+        sim = gp.Simulation(scene, EVENT, seed=seed)
+        sim.advance(until=time)
+        gained.append(1e7 * sim.state.piston[1])
+    moved = (pressures[0] - pressures[1]) * 10.0 * time
+    temperatures = np.array([4.0, 1.0])
+    variance = (4.0 * 4.0 * 10.0 * time * np.sqrt(2.0 / math.pi) * temperatures**1.5).sum()
+    variance -= ((pressures * 10.0 * time) ** 2 / 400).sum()  # their number is fixed
+    assert abs(np.mean(gained) - moved) < 3.0 * math.sqrt(variance / runs)
+    assert math.sqrt(variance / runs) < 0.05 * moved
+    assert np.var(gained, ddof=1) == pytest.approx(variance, rel=4.0 * math.sqrt(2.0 / runs))
+
+
+def test_what_a_wall_that_moves_does_not_go_with_is_refused():
+    scene = two_gases()
+    with pytest.raises(gp.SceneError, match='walls.*needs the "event" engine'):
+        gp.Simulation(scene, gp.TimeStepped(0.01))
+    (wall,) = scene.walls
+    for walls, rule in (
+        ([wall, gp.Wall((1.0, 1.0), (2.0, 1.0))], "must be the only interior wall"),
+        ([replace(wall, temperature=1.0)], "has no temperature"),
+        ([gp.Wall((8.0, 0.0), (8.0, 5.0), mass=1.0)], "must reach across the whole container"),
+        ([gp.Wall((8.0, 0.0), (8.5, 6.0), mass=1.0)], "must reach across the whole container"),
+        ([across(3.0, 16.0, 1.0, axis=1)], "needs walls across y"),
+    ):
+        with pytest.raises(gp.SceneError, match=rf"walls\[\d\].mass.*{rule}"):
+            replace(scene, walls=walls)
+    for key, value in (
+        ("gravity", (-1.0, 0.0)),
+        ("restitution", gp.Restitution(0.9)),
+        ("restitution", gp.Restitution(1.0, 0.5)),
+        ("thermostat", gp.Thermostat(1.0, 0.1)),
+        ("faces", {"x_low": gp.Vibrating(0.1, 1.0)}),
+        ("faces", {"x_low": gp.Piston(1.0, 1.0)}),
+        ("faces", {"x_low": gp.Sticky(0.1)}),
+        ("particles", [gp.Particle((1.0, 1.0), (0.0, 0.0), 0.1, fixed=True)]),
+    ):
+        with pytest.raises(gp.SceneError, match="excludes (an interior wall that|piston faces)"):
+            replace(scene, **{key: value})
+    for mass in (0.0, -1.0, math.nan):
+        with pytest.raises(gp.SceneError, match="mass"):
+            replace(wall, mass=mass)
+    with pytest.raises(gp.SceneError, match=r"walls\[0\].mass = 20.0: .* needs particles on both sides"):
+        gp.Simulation(two_gases(right=(0, 1.0)), EVENT)
+
+
+def test_a_given_state_must_have_the_same_piston():
+    scene = two_gases()
+    state = gp.Simulation(scene, EVENT, seed=1).initial_state
+    with pytest.raises(gp.SceneError, match=r"is the face that is the piston, walls\[0\] in the scene"):
+        gp.Simulation(scene, EVENT, initial=replace(state, piston_face="x_high"))
+    nearest = state.positions[state.positions[:, 0] < 8.0, 0].max()
+    touching = replace(state, piston=np.array([nearest + 0.4 - 4e-7, 0.0]))  # as in single precision
+    placed = gp.Simulation(scene, EVENT, initial=touching).initial_state
+    assert placed.positions[placed.positions[:, 0] < 8.0, 0].max() == pytest.approx(nearest - 4e-7, abs=1e-12)
+    with pytest.raises(gp.SceneError, match="is not inside the container, or beyond the piston at"):
+        gp.Simulation(scene, EVENT, initial=replace(state, piston=np.array([nearest + 0.2, 0.0])))
+    with pytest.raises(gp.SceneError, match="must be a place from 0 to 16 and a velocity"):
+        gp.Simulation(scene, EVENT, initial=replace(state, piston=np.array([17.0, 0.0])))
+
+
+def test_the_gases_may_be_between_thermal_faces():
+    """Heat flows through the wall only as it moves: from the hot face to the cold one."""
+    faces = {"x_low": gp.Thermal(4.0), "x_high": gp.Thermal(1.0)}
+    sim = gp.Simulation(replace(two_gases(mass=1.0), faces=faces), EVENT, seed=1)
+    sim.advance(until=600.0)
+    sim.check_invariants()
+    given = sim.tally.wall_energy
+    assert given[0] < -50.0 and given[1] > 50.0
