@@ -10,6 +10,7 @@ import xarray as xr
 import gaspart as gp
 from gaspart.analysis import declaration
 from gaspart.analysis.declaration import Along
+from gaspart.scene.moving_walls import moving_wall
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 AXES = "xyz"
@@ -41,13 +42,17 @@ class View:
                 for old, sign in zip(self.order, self.signs, strict=True) for end in (0, 1)]  # fmt: skip
 
 
-def seen(scene, view):
-    """The scene from another view."""
+def container_seen(scene, view):
+    """The container from another view."""
     container = scene.container
-    lengths = tuple(container.lengths[k] for k in view.order)
     boundary = container.boundary
     if not isinstance(boundary, str):
         boundary = tuple(boundary[k] for k in view.order)
+    return gp.Container(tuple(container.lengths[k] for k in view.order), boundary)
+
+
+def seen(scene, view):
+    """The scene from another view."""
     old = [f"{a}_{end}" for a in AXES for end in ("low", "high")]
     faces = {old[new]: _face(scene.faces[old[was]], view) for new, was in enumerate(view.faces())
              if old[was] in scene.faces}  # fmt: skip
@@ -56,16 +61,37 @@ def seen(scene, view):
     gravity = None if scene.gravity is None else tuple(view.vectors(scene.gravity).tolist())
     species = scene.species[::-1] if view.renumbered else scene.species
     return replace(
-        scene, container=gp.Container(lengths, boundary), faces=faces, gravity=gravity, species=species
+        scene,
+        container=container_seen(scene, view),
+        faces=faces,
+        gravity=gravity,
+        species=species,
+        walls=[_wall(scene, view, wall) for wall in scene.walls],
     )
 
 
 def _face(face, view):
-    """A face from another view: one that slides does so at another velocity, and one at rest may slide."""
+    """A face from another view: one that slides does so at another velocity, and one at rest may slide. A
+    temperature that varies does so from one end to the other."""
     velocity = getattr(face, "velocity", None)
+    if isinstance(getattr(face, "temperature", None), dict):
+        names = [f"{a}_{end}" for a in AXES for end in ("low", "high")]
+        ends = {new: names[was] for new, was in zip(names, view.faces(), strict=True)}
+        varies = {new: face.temperature[was] for new, was in ends.items() if was in face.temperature}
+        face = replace(face, temperature=varies)
     if velocity is None:
         return face
     return replace(face, velocity=tuple((view.vectors(velocity) + view.velocity).tolist()))
+
+
+def _wall(scene, view, wall):
+    """A plate from another view; one that reaches across the container still does."""
+    lengths = container_seen(scene, view).lengths
+    corner, edges = positions_seen(scene, view, np.array(wall.corner)), view.vectors(wall.edges)
+    for edge in edges:
+        whole = np.abs(edge) == lengths
+        corner[whole], edge[whole] = 0.0, np.abs(edge[whole])
+    return replace(wall, corner=tuple(corner.tolist()), edges=tuple(map(tuple, edges.tolist())))
 
 
 def _rate(scene, view):
@@ -84,7 +110,7 @@ def particles_of(scene, view):
 
 def positions_seen(scene, view, positions, time=0.0):
     """Positions (..., N, 3) inside the container; time: (..., 1, 1)."""
-    new = seen(scene, view).container
+    new = container_seen(scene, view)
     lengths, periodic = np.array(new.lengths), np.array(new.periodic)
     start = np.where(np.array(view.signs) < 0.0, lengths, 0.0) + np.array(view.shift) * lengths
     places = start + view.vectors(positions) + np.array(view.velocity) * time
@@ -100,7 +126,8 @@ def state_seen(scene, view, state):
     if state.piston_face is not None:
         parts = zip(("piston_position", "piston_velocity"), state.piston, strict=True)
         faces["piston"] = np.array([_piston(scene, view, *part) for part in parts])
-        faces["piston_face"] = next(name for name, face in other.faces.items() if face.kind == "piston")
+        pistons = [name for name, face in other.faces.items() if face.kind == "piston"]
+        faces["piston_face"] = pistons[0] if pistons else state.piston_face
     per_particle = ("radii", "masses", "moments_of_inertia", "spins")
     return replace(
         state,
@@ -133,9 +160,9 @@ def data_seen(data, view):
             drift = {"velocities": 1.0, "displacements": time}[name]
             values = moved + np.array(view.velocity) * drift
         elif along == ("face",):
-            values = values[:, view.faces()]
+            values = values[:, _surfaces(view, values)]
         elif along == ("face", "axis"):
-            values = view.vectors(values[:, view.faces()])
+            values = view.vectors(values[:, _surfaces(view, values)])
         elif along == ("axis",):
             values = view.vectors(values) + (np.array(view.velocity) if name == "flux_velocity" else 0.0)
         elif along == ("axis", "direction"):
@@ -162,6 +189,11 @@ def data_seen(data, view):
         type=("atom", numbers.max() - numbers[order] if view.renumbered else numbers, data["type"].attrs),
     )
     return _energies_seen(result, data, scene, view)
+
+
+def _surfaces(view, values):
+    """The old numbers of the faces and of the interior walls of values (T, surfaces, ...)."""
+    return [*view.faces(), *range(2 * len(AXES), values.shape[1])]
 
 
 def _energies_seen(result, data, scene, view):
@@ -204,7 +236,8 @@ def _flux_seen(scene, view, values, axis, time):
 
 def _piston(scene, view, name, values):
     """The place or the velocity of a piston along its axis."""
-    axis = next(AXES.index(face[0]) for face, it in scene.faces.items() if it.kind == "piston")
+    axes = [AXES.index(face[0]) for face, it in scene.faces.items() if it.kind == "piston"]
+    axis = axes[0] if axes else moving_wall(scene).axis
     sign = view.signs[view.axis(axis)]
     start = scene.container.lengths[axis] if name == "piston_position" and sign < 0.0 else 0.0
     return start + sign * values

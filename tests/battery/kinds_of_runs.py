@@ -58,6 +58,12 @@ def _gas(count=32, **properties):
     return gp.Species(count, **({"radius": 0.5, "temperature": 1.0} | properties))
 
 
+def _across(sides, place, **properties):
+    """A plate across z."""
+    x, y = sides
+    return gp.Plate((0.0, 0.0, place), ((x, 0.0, 0.0), (0.0, y, 0.0)), **properties)
+
+
 _SLIT = (PERIODIC, PERIODIC, "wall")
 _CUBE = (4.0, 4.0, 4.0)
 _PLATES = {
@@ -65,6 +71,11 @@ _PLATES = {
     for side, sign, fraction in (("low", -1, 1.0), ("high", 1, 0.75))
 }
 _AT_REST = "the walls are at rest"
+_SMALL = gp.Plate((0.5, 0.5, 3.25), ((1.0, 0.0, 0.0), (0.0, 1.5, 0.0)), temperature=2.0)
+_RAMPS = {
+    "z_low": gp.Thermal({"x_low": 1.0, "x_high": 4.0}),
+    "z_high": gp.Thermal({"x_low": 2.0, "x_high": 1.0}, accommodation=0.75),
+}
 KINDS = {
     "periodic": Kind(_scene(_CUBE, PERIODIC, _gas())),
     "walls": Kind(_scene((5.0, 5.0, 5.0), "wall", _gas(24)), moving=_AT_REST),
@@ -100,6 +111,22 @@ KINDS = {
         _scene((4.0, 4.0, 8.0), _SLIT, _gas(24), faces={"z_high": gp.Piston(speed=0.0625)}),
         interval=0.25,
         steady="the piston compresses the gas",
+    ),
+    "parted": Kind(
+        _scene((4.0, 4.0, 8.0), _SLIT, _gas(24), walls=[_across((4.0, 4.0), 4.5, mass=16.0)]),
+        interval=0.25,
+        steady="the wall moves",
+    ),
+    "warm": Kind(
+        _scene((4.0, 5.0, 6.0), _SLIT, _gas(24), walls=[_SMALL]),
+        interval=0.25,
+        moving=_AT_REST,
+    ),
+    "ramp": Kind(
+        _scene((6.0, 4.0, 5.0), ("wall", PERIODIC, "wall"), _gas(24), faces=_RAMPS),
+        interval=0.25,
+        moving=_AT_REST,
+        mirror=0,
     ),
     "vibrating": Kind(
         _scene(

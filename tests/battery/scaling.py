@@ -8,6 +8,7 @@ from battery.units import Powers, powers_of
 
 import gaspart as gp
 from gaspart.engines import engine_from_dict, engine_to_dict
+from gaspart.scene.faces import FACES
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 UNITS = {"mass": 2.0**4, "length": 2.0**-3, "time": 2.0**2}
@@ -18,6 +19,9 @@ KEYS = {
     "radius": Powers(length=1),
     "mass": Powers(mass=1),
     "temperature": _ENERGY,
+    **dict.fromkeys(FACES, _ENERGY),
+    "corner": Powers(length=1),
+    "edges": Powers(length=1),
     "velocity": _SPEED,
     "speed": _SPEED,
     "gravity": Powers(0, 1, -2),
@@ -46,7 +50,8 @@ KEYS = {
         _NUMBER,
     ),
 }
-"""Key of a scene or an engine -> its units. Another number in a scene of the battery is a KeyError."""
+"""Key of a scene or an engine -> its units, of a face those of the temperature there. Another number in a
+scene of the battery is a KeyError."""
 
 
 def _scaled(values, key=""):

@@ -21,13 +21,10 @@ ELSEWHERE = {
     "roughness": "tests/engines/test_metamorphic.py",
     "viscoelasticity": "tests/engines/test_viscoelastic.py",
     "contact_duration": "tests/engines/test_contact_duration.py",
-    "walls": "tests/engines/test_metamorphic.py",
-    "thermal_walls": "tests/kernels/obstacles/test_warm_wall.py",
     "fixed": "tests/engines/test_metamorphic.py",
     "centres_to_walls": "tests/engines/test_event_driven.py",
     "well": "tests/engines/test_event_driven.py",
     "sticky": "tests/engines/test_event_driven.py",
-    "ramp": "tests/engines/test_ramps.py",
     "vibrations": "tests/engines/test_vibration.py",
 }
 """Features of scenes that the battery has not, and the tests of their symmetries."""
@@ -49,6 +46,7 @@ def test_runs_from_the_same_state_are_the_same(engine, name):
 
 
 EXCHANGE = ("walls", "gravity", "lees_edwards", "plates", "piston", "compressed", "vibrating", "thermostat")
+EXCHANGE += ("parted", "warm", "ramp")
 CONSERVING = [(engine, name) for engine, name in RUNS if name in EXCHANGE]
 
 

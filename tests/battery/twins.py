@@ -17,7 +17,7 @@ ALIKE = 2e-5
 """Relative difference of variables, some of which are in single precision, after `FEW` intervals."""
 COSTS = {"pair_tests", "box_visits", "crossings", "rebuilds", "worst_contact", "deepest_overlap"}
 """What depends on how particles are found."""
-DRAWN = ("thermal", "sliding", "thermostat")
+DRAWN = ("thermal", "thermal_walls", "sliding", "thermostat")
 """Features that draw random numbers, for each particle and face by their numbers."""
 
 

@@ -1,0 +1,79 @@
+"""Onsager's reciprocity in a channel: the pressure that a gradient of the temperature makes, and the heat that
+a flow carries along."""
+
+import math
+
+import numpy as np
+import pytest
+
+import gaspart as gp
+
+DENSITY, STEP, BLOCKS = 2000.0, 0.03, 16
+KNUDSEN = 0.3
+"""Mean free path over the width of the channel, which is 1."""
+RADIUS = 0.5 * math.sqrt(1.0 / (math.sqrt(2.0) * math.pi * DENSITY * KNUDSEN))
+
+
+def channel(lengths, boundary, faces, temperature, **rest):
+    """A channel between z_low and z_high, whose width is that for the centres of spheres."""
+    gas = gp.Species(round(DENSITY * math.prod(lengths)), RADIUS, temperature=temperature)
+    container = gp.Container(lengths, boundary)
+    return gp.Scene(container, [gas], faces=faces, centres_to_walls=True, **rest)
+
+
+def means(scene, cells, settle, duration, row):
+    """(BLOCKS, ...) means over parts of a run of row(state)."""
+    sim = gp.Simulation(scene, gp.DSMC(STEP, cells, "boltzmann"), seed=1)
+    sim.advance(until=settle)
+    rows = []
+    while sim.time < settle + duration:
+        sim.advance(duration=10 * STEP)
+        rows.append(row(sim.state))
+    return np.array([part.mean(axis=0) for part in np.array_split(rows, BLOCKS)])
+
+
+def jackknife(blocks, value):
+    """The value of the mean of all blocks, and its error."""
+    whole = blocks.sum(axis=0)
+    others = np.array([value((whole - one) / (BLOCKS - 1)) for one in blocks])
+    return value(whole / BLOCKS), others.std() * math.sqrt(BLOCKS - 1)
+
+
+def exponent(mean, inner=slice(2, 8)):
+    """d ln p / d ln T from particles and sums of v^2 (2, slices), away from the ends."""
+    count, square = mean[:, inner]
+    return np.polyfit(np.log(square / count), np.log(square), 1)[0]
+
+
+@pytest.mark.thorough
+@pytest.mark.filterwarnings("ignore:gaspart")  # cells as wide as they may be: nothing varies along them
+def test_the_pressure_of_a_gradient_is_that_of_the_heat_that_a_flow_carries():
+    """Without a net flow, thermal creep along the walls, towards where they are hotter, and Poiseuille's flow
+    back balance: p ~ T^gamma. By Onsager's reciprocity gamma is -q / (n u k_B T) of the same channel at one
+    temperature, through which a force drives a flow u with a heat flux q against it; 1/2 without collisions
+    (Sharipov & Seleznev, J. Phys. Chem. Ref. Data 27, 657 (1998), section 3)."""
+    both = {"z_low": gp.Thermal(1.0), "z_high": gp.Thermal(1.0)}
+    pushed = channel((2.0, 2.0, 1.0), ("periodic", "periodic", "wall"), both, 1.0, gravity=(0.08, 0.0, 0.0))
+
+    def flow(state):
+        v = state.velocities
+        temperature = np.var(v, axis=0).mean()
+        heat = ((0.5 * (v**2).sum(axis=1) - 2.5 * temperature) * v[:, 0]).mean()
+        return v[:, 0].mean() * temperature, heat
+
+    blocks = means(pushed, (1, 1, 10), 8.0, 1600.0, flow)
+    carried, carried_error = jackknife(blocks, lambda mean: -mean[1] / mean[0])
+
+    ramp, length = gp.Thermal({"x_low": 1.0, "x_high": 2.0}), 5.0
+    ends = {"x_low": gp.Thermal(1.0), "x_high": gp.Thermal(2.0), "z_low": ramp, "z_high": ramp}
+    closed = channel((length, 0.6, 1.0), ("wall", "periodic", "wall"), ends, 1.4)
+
+    def slices(state):
+        place = np.minimum((state.positions[:, 0] / length * 10).astype(int), 9)
+        square = (state.velocities**2).sum(axis=1)
+        return [np.bincount(place, weights, 10) for weights in (np.ones(state.count), square)]
+
+    made, made_error = jackknife(means(closed, (50, 1, 10), 40.0, 4000.0, slices), exponent)
+    print(f"gamma {made:.4f}({made_error:.4f}) of a gradient, {carried:.4f}({carried_error:.4f}) of a flow")
+    assert max(made_error, carried_error) < 0.04 * made
+    assert abs(made - carried) < 3.0 * math.hypot(made_error, carried_error)
