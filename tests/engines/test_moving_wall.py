@@ -237,6 +237,33 @@ def test_a_heavy_wall_begins_to_move_by_the_difference_of_the_pressures():
     assert np.var(gained, ddof=1) == pytest.approx(variance, rel=4.0 * math.sqrt(2.0 / runs))
 
 
+@pytest.mark.thorough
+def test_a_wall_drifts_to_the_hot_gas_although_the_pressures_are_equal():
+    """Points, P = 4 on both sides, T = 4 and 1, and ends so far that nothing comes back from them. From the
+    force on a wall of velocity V, A P - gamma_1 V + m n_1 A V^2 + ..., and that of the other side follow, in
+    first order of m / M, <V^2> = sqrt(T_1 T_2) / M and the mean sqrt(2 pi m) / (4 M) (sqrt(T_2) - sqrt(T_1))
+    (Gruber & Piasecki, Physica A 268, 412 (1999)), reached within M / (gamma_1 + gamma_2)."""
+    mass, width, lengths, time, runs = 20.0, 100.0, (90.0, 50.0), 21.0, 1600
+    linear, temperatures = np.array([2.0, 8.0]), np.array([4.0, 1.0])  # particles per length of the container
+    counts = np.round(linear * lengths).astype(int).tolist()
+    scene = two_gases((counts[0], 4.0), (counts[1], 1.0), mass, (sum(lengths), width), lengths[0], 5e-3)
+    moved, squares = [], []
+    for seed in range(runs):
+        sim = gp.Simulation(scene, gp.EventDriven(boxes_per_side=1), seed=seed)
+        sim.advance(until=time)
+        place, velocity = sim.state.piston
+        moved.append(place - lengths[0])
+        squares.append(velocity**2)
+    relaxation = mass / (4.0 * linear * np.sqrt(temperatures / (2.0 * math.pi))).sum()
+    drift = math.sqrt(2.0 * math.pi) / (4.0 * mass) * (1.0 - 2.0)
+    error, spread = np.std(moved) / math.sqrt(runs), np.std(squares) / math.sqrt(runs)
+    print(f"moved {np.mean(moved):.3f}({error:.3f}), {drift * (time - relaxation):.3f}")
+    print(f"<V^2> {np.mean(squares):.4f}({spread:.4f}), {2.0 / mass:.4f}")
+    assert error < 0.1 * abs(drift) * time
+    assert abs(np.mean(moved) - drift * (time - relaxation)) < 3.0 * error
+    assert abs(np.mean(squares) - 2.0 / mass) < 3.0 * spread
+
+
 def test_what_a_wall_that_moves_does_not_go_with_is_refused():
     scene = two_gases()
     with pytest.raises(gp.SceneError, match='walls.*needs the "event" engine'):
