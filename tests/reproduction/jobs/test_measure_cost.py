@@ -2,6 +2,7 @@
 
 import pytest
 import xarray as xr
+from numba import config
 
 from gaspart.engines import DSMC, EventDriven, TimeStepped
 from gaspart.errors import SceneError, SimulationError
@@ -125,3 +126,36 @@ def test_parts_of_a_step_need_an_engine_with_steps():
     run = {"temperature": 1.0, "engine": "event", "collisions_per_particle": 2, "scan_step_parts": [1]}
     with pytest.raises(SceneError, match="has no meaning with engine: event"):
         _ = Point("gas", "a", "measure_cost", gas | run, ".", 1).engines
+
+
+def test_several_cores_have_the_bits_of_one_and_are_timed_by_the_wall():
+    alone = {"scene": GAS, "engines": [TimeStepped(0.01)]}
+    for engine, extras in (TimeStepped(0.01, threads=2), {}), (TimeStepped(0.01), {"copies": 2}):
+        run = xr.Dataset(*measure_cost(GAS, [engine], (1, 2), 0.0, 0.1, 2, extras, alone))
+        assert run.cores.values.tolist() == [2, 1]
+        assert run.bits.values[0] == run.bits.values[1]
+    longer = measured([TimeStepped(0.01)], interval=0.2)
+    assert longer.bits.values[0] != run.bits.values[0]
+    assert (longer.wall_seconds > 0.0).all()
+
+
+def test_runs_that_need_more_cores_than_there_are_are_not_timed(monkeypatch):
+    monkeypatch.setattr(config, "NUMBA_NUM_THREADS", 3)
+    run = xr.Dataset(*measure_cost(DISCS, [EventDriven()], (1, 2), 0.0, 1.0, 5, {"copies": 4}))
+    assert run.attrs["cores"] == 3 and run.cores.values.tolist() == [4]
+    assert run.seconds.shape == (1, 1) and run.seconds.isnull().all() and run.wall_seconds.isnull().all()
+    assert run.collisions.values[0] > 0
+
+
+def test_runs_at_once_have_one_thread_each():
+    gas = {"dimension": 3, "count": 20, "radius": 0.5, "packing_fraction": 0.01, "boundary": "periodic"}
+    run = {"temperature": 1.0, "engine": "step", "time_step": 0.01, "steps": 1, "threads": 2, "copies": 2}
+    with pytest.raises(SceneError, match="one thread each"):
+        _ = Point("gas", "a", "measure_cost", gas | run, ".", 1).arguments
+
+
+def test_runs_at_once_that_differ_are_an_error(monkeypatch):
+    counts = iter([{"steps": 1}, {"steps": 2}])
+    monkeypatch.setattr(cost, "_counted", lambda dynamics: next(counts))
+    with pytest.raises(SimulationError, match="at once"):
+        measure_cost(DISCS, [EventDriven()], (1, 2), 0.0, 1.0, 1, {"copies": 2})

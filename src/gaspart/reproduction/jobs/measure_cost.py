@@ -2,18 +2,22 @@
 
 Every timing starts from one and the same state, so the repeated timings of an engine are of exactly the
 same work, and differ by what disturbs the clock alone; and engines that differ in their partition are timed
-in turn, in alternating order, so that a machine that slows down favours none of them.
+in turn, in alternating order, so that a machine that slows down favours none of them. What uses several cores
+is timed by the wall's clock: processor time does not tell waiting from work.
 
 Planning reads this module, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
 
+import hashlib
 import math
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gaspart.engines import engine_to_dict, reference_engine
 from gaspart.errors import SimulationError
@@ -22,7 +26,10 @@ from gaspart.reproduction.jobs.data import PointData
 from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY, SCAN_TIME_STEPS, SLACK, intervals
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from gaspart.engines import Engine
+    from gaspart.engines.dynamics import Dynamics
     from gaspart.reproduction.points.point import Point
     from gaspart.scene.scene import Scene
     from gaspart.state.state import State
@@ -47,14 +54,17 @@ KEYS: dict[str, Kind] = {
     ),
     "record_events": flag("record all events; needs an engine that has them", default=False),
     "stress": flag("tally the stress tensor and the heat flux", default=False),
+    "copies": count("equal runs at once, each in a thread of its own; times are those of all", default=1),
     "without": described(
         {"type": "array", "items": TEXT, "minItems": 1},
         "keys that a second scene and engine lack, which are timed in turn with the point's",
         default=None,
     ),
 }
-EXTRAS = ("record_events", "stress")
-"""Keys of what is done besides: to write down all events, and forget them; to tally the stress."""
+EXTRAS = ("record_events", "stress", "copies")
+"""Keys of what is done besides: to write down all events, and forget them; to tally the stress; to do the
+same on other cores at once."""
+_NONE: Mapping[str, Any] = MappingProxyType({})
 COUNTED = ("steps", "collisions", "wall_hits", "pair_tests", "box_visits", "crossings")
 
 
@@ -65,9 +75,11 @@ def engines(point: Point) -> list[Engine]:
 
 def arguments(point: Point) -> dict:
     """The arguments of `measure_cost`. Raises SceneError."""
-    extras = [key for key in EXTRAS if point.settings.get(key)]
+    extras = {key: point.settings[key] for key in EXTRAS if point.settings.get(key)}
     if "record_events" in extras and not point.engine.records_events:
         raise point.refused("record_events", "has a meaning with job: measure_cost and engine: event only")
+    if extras.get("copies", 1) > 1 and point.settings.get("threads", 1) > 1:
+        raise point.refused("copies", "are of runs with one thread each")
     if "stress" in extras:
         from gaspart.state.optional_tallies import StressTally  # which loads numpy
 
@@ -92,6 +104,25 @@ def _rival(point: Point) -> dict | None:
     return {"scene": rival.scene, "engines": rival.engines}
 
 
+class _Run(NamedTuple):
+    """What is timed: a run of an engine with some of `EXTRAS`, which starts from a state of a scene."""
+
+    scene: Scene
+    state: State
+    engine: Engine
+    extras: Mapping[str, Any]
+
+    @property
+    def copies(self) -> int:
+        """How many runs advance at once."""
+        return self.extras.get("copies", 1)
+
+    @property
+    def cores(self) -> int:
+        """On how many cores they run."""
+        return self.copies * engine_to_dict(self.engine).get("threads", 1)
+
+
 def measure_cost(
     scene: Scene,
     engines: Sequence[Engine],
@@ -99,53 +130,71 @@ def measure_cost(
     equilibration: float,
     interval: float,
     samples: int,
-    extras: Collection[str] = (),
+    extras: Mapping[str, Any] = _NONE,
     rival: dict[str, Any] | None = None,
 ) -> PointData:
     """Time `samples` times, with each of the engines, the same interval of simulated time of the same gas.
 
-    equilibration, interval: in the scene's time; extras: of `EXTRAS`; rival: another `scene` and `engines`,
-    timed in turn with these and without extras: the last partitions.
-    Engines without a step of their own take that of the scene.
-    Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``: ``seconds``
-    (partition, repeat), processor time of the advance alone (filling the container, setting up and compiling
-    are left out); over ``partition``: ``boxes`` in all, ``boxes_per_side`` (of the first axis; both 0 if the
-    engine chooses itself), ``duration`` (scene's time) and the counts of the tally. Attributes: count,
-    dimension, radius, side (first axis), packing_fraction, engine, search (event-driven), model (DSMC) or
-    time_step, extras.
+    equilibration, interval: in the scene's time; extras: of `EXTRAS`, with their values; rival: another
+    `scene` and `engines`, timed in turn with these and without extras: the last partitions. Engines without a
+    step of their own take that of the scene.
+    Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``: ``seconds`` and
+    ``wall_seconds`` (partition, repeat), processor time of all threads and time on the wall of the advance
+    alone (filling the container, setting up and compiling are left out); over ``partition``: ``cores`` used,
+    ``boxes`` in all, ``boxes_per_side`` (of the first axis; both 0 if the engine chooses itself),
+    ``duration`` (scene's time), the counts of the tally, and ``bits``, a digest of the final state and of the
+    sums over collisions. Attributes: count, dimension, radius, side (first axis), packing_fraction, engine,
+    search (event-driven), model (DSMC) or time_step, extras, and cores, those that kernels may use here.
+    Where a run would need more of them, all run once, for their counts and bits, and all times are NaN.
 
-    Raises SceneError, and SimulationError if the counted work of a repeat differs from the first one's.
+    Raises SceneError, and SimulationError if the counted work or the bits of a repeat, or of a copy, differ
+    from the first one's.
     """
+    from numba import config
+
     # By the shortest step: a longer one leaves overlaps, which would count against a shorter one.
     careful = min(engines, key=lambda engine: engine.quantum or 0.0)
-    runs = []
-    for made, chosen, also in [
-        (scene, engines, extras),
-        *([(rival["scene"], rival["engines"], ())] if rival else []),
-    ]:
-        start = _start(made, careful, seed, equilibration)
-        runs += [(made, start, engine.resolved(made), also) for engine in chosen]
-    seconds = [[0.0] * samples for _ in runs]
-    counts: list[dict] = [{}] * len(runs)
-    for repeat in range(samples):
-        order = range(len(runs))
-        for n in order if repeat % 2 == 0 else reversed(order):
-            seconds[n][repeat], counted = _timed(*runs[n], interval)
-            if not counts[n]:
-                counts[n] = counted
-            elif counted != counts[n]:
-                raise SimulationError(f"the same run twice: counted {counts[n]}, then {counted}")
+    start = _start(scene, careful, seed, equilibration)
+    runs = [_Run(scene, start, engine.resolved(scene), extras) for engine in engines]
+    if rival:
+        made = rival["scene"]
+        other = start if made == scene else _start(made, careful, seed, equilibration)
+        runs += [_Run(made, other, one.resolved(made), _NONE) for one in rival["engines"]]
+    available = config.NUMBA_NUM_THREADS
+    possible = max(run.cores for run in runs) <= available
+    times, counts = _in_turn(runs, interval, samples if possible else 1)
+    processor, wall = times if possible else times * math.nan
     columns = {name: ("partition", [counted[name] for counted in counts]) for name in counts[0]}
-    sides = [_sides(engine, made.dimension) for made, _, engine, _ in runs]
+    sides = [_sides(run.engine, run.scene.dimension) for run in runs]
     return PointData(
         {
-            "seconds": (("partition", "repeat"), seconds, {"units": "s"}),
+            "seconds": (("partition", "repeat"), processor, {"units": "s"}),
+            "wall_seconds": (("partition", "repeat"), wall, {"units": "s"}),
+            "cores": ("partition", [run.cores for run in runs]),
             "boxes": ("partition", [math.prod(side) for side in sides]),
             "boxes_per_side": ("partition", [side[0] for side in sides]),
             **columns,
         },
-        attributes={**_attributes(scene, engines[0]), "extras": " ".join(extras)},
+        attributes={**_attributes(scene, engines[0]), "extras": " ".join(extras), "cores": available},
     )
+
+
+def _in_turn(runs: Sequence[_Run], interval: float, repeats: int) -> tuple[np.ndarray, list[dict]]:
+    """Processor time and time on the wall (2, runs, repeats), and what was counted in each run. Raises
+    SimulationError where that is not the same in all repeats."""
+    import numpy as np
+
+    times = np.empty((2, len(runs), repeats))
+    counts: list[dict] = [{}] * len(runs)
+    for repeat in range(repeats):
+        order = range(len(runs))
+        for n in order if repeat % 2 == 0 else reversed(order):
+            times[:, n, repeat], counted = _timed(runs[n], interval)
+            if not counts[n]:
+                counts[n] = counted
+            elif counted != counts[n]:
+                raise SimulationError(f"the same run twice: counted {counts[n]}, then {counted}")
+    return times, counts
 
 
 def _attributes(scene: Scene, engine: Engine) -> dict:
@@ -177,28 +226,46 @@ def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: f
     return simulation.state.copy()
 
 
-def _timed(
-    scene: Scene, state: State, engine: Engine, extras: Collection[str], interval: float
-) -> tuple[float, dict]:
-    """Processor time of one interval, in s, and what was counted in it."""
-    import numpy as np
-
+def _timed(run: _Run, interval: float) -> tuple[tuple[float, float], dict]:
+    """Processor time and time on the wall of one interval, in s, and what was counted in it."""
     from gaspart.engines.event_log import EventLog
     from gaspart.state.optional_tallies import StressTally
 
-    dynamics = engine.start(scene, state, tallies=[StressTally()] if "stress" in extras else [])
-    log = EventLog(scene.dimension, scene.rough) if "record_events" in extras else None
+    scene, engine = run.scene, run.engine
     step = engine.quantum or 0.0
-    # This loads the kernels, and the first step touches all memory.
-    dynamics.advance(state.time + step * (1 + SLACK), log=log)
-    dynamics.reset_tally()
-    target = dynamics.time + interval + step * SLACK
-    start = time.process_time()
-    dynamics.advance(target, log=log)
-    seconds = time.process_time() - start
-    tally = dynamics.tally
-    counted = {name: int(np.sum(getattr(tally, name))) for name in COUNTED}
-    return seconds, {"duration": tally.time, **counted}
+    copies = []
+    for _ in range(run.copies):
+        dynamics = engine.start(scene, run.state, tallies=[StressTally()] if "stress" in run.extras else [])
+        log = EventLog(scene.dimension, scene.rough) if "record_events" in run.extras else None
+        # This loads the kernels, and the first step touches all memory.
+        dynamics.advance(run.state.time + step * (1 + SLACK), log=log)
+        dynamics.reset_tally()
+        copies.append((dynamics, dynamics.time + interval + step * SLACK, log))
+    with ThreadPoolExecutor(run.copies) as pool:
+        wall, processor = time.perf_counter(), time.process_time()
+        others = [pool.submit(dynamics.advance, until, log=log) for dynamics, until, log in copies[1:]]
+        dynamics, until, log = copies[0]
+        dynamics.advance(until, log=log)
+        for other in others:
+            other.result()
+        processor, wall = time.process_time() - processor, time.perf_counter() - wall
+    counted, *beside = (_counted(dynamics) for dynamics, *_ in copies)
+    for other in beside:
+        if other != counted:
+            raise SimulationError(f"the same run twice at once: counted {counted}, and {other}")
+    return (processor, wall), counted
+
+
+def _counted(dynamics: Dynamics) -> dict:
+    """The counts of a tally, and a digest of the particles and of the sums over collisions."""
+    import numpy as np
+
+    tally, state = dynamics.tally, dynamics.state
+    digest = hashlib.sha256(np.array([tally.virial_sum, tally.dissipated_energy]).tobytes())
+    for part in (tally.wall_impulse, state.positions, state.velocities, state.spins, state.images):
+        digest.update(np.ascontiguousarray(part).tobytes())
+    counts = {name: int(np.sum(getattr(tally, name))) for name in COUNTED}
+    return {"duration": tally.time, **counts, "bits": digest.hexdigest()}
 
 
 def _sides(engine: Engine, dimension: int) -> tuple[int, ...]:

@@ -1,0 +1,61 @@
+"""Claims about several cores: the bits of one, and the speed."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from gaspart.reproduction.claims import Claim, Estimate
+from gaspart.reproduction.table import Table, each
+
+LARGE = 10**5
+"""Number of particles from which on threads must be worth their while, which the largest gas of each kind
+claims."""
+_SMALL = 10**4  # up to which two runs at once do not compete for the caches
+_IDLE = "the uncertainty has what other programs took of the machine, by what runs at once waited"
+
+
+def cores(dataset: xr.Dataset) -> list[Claim]:
+    """Any number of threads gives the bits of one; on two cores they are faster."""
+    runs = Table.prefixed(dataset, "run")
+    two = runs[runs.cores == 2]
+    threads, copies = two[two.copies == 1], two[(two.copies == 2) & (two.engine == "event-driven")]
+    largest = [gas.sorted_by("count")[-1:] for *_, gas in threads.by("engine", "packing_fraction")]
+    return [
+        *(_bits(engine, same) for engine, same in runs.by("engine")),
+        *(
+            claim
+            for gas in largest
+            for claim in each(
+                gas[gas.count >= LARGE],
+                "speed with two threads over one, {engine}, {count} spheres at {packing_fraction:g}",
+                Claim.at_least,
+                measured=gas[gas.count >= LARGE].speed,
+                bound=1.7,
+                required=0.1,
+                source=f"at least 1.7 on two idle cores (this project's aim); {_IDLE}",
+                fails_if="too much of the work is done by one thread, or threads wait for one another",
+            )
+        ),
+        *each(
+            copies[copies.count <= _SMALL],
+            "speed of two runs at once over one, {engine}, {count} spheres at {packing_fraction:g}",
+            Claim.at_least,
+            measured=copies[copies.count <= _SMALL].speed,
+            bound=1.85,
+            required=0.1,
+            source=f"at least 1.85 on two idle cores (this project's aim); {_IDLE}",
+            fails_if="kernels hold a lock, or write to memory that they share",
+        ),
+    ]
+
+
+def _bits(engine: str, runs: Table) -> Claim:
+    """One claim for all runs of an engine."""
+    return Claim(
+        claim=f"runs on several cores that differ from one core in any bit, {engine}, of {len(runs)}",
+        measured=Estimate(float((runs.same == 0).sum())),
+        expected=0,
+        required=0.0,
+        source="digests of positions, velocities and sums over collisions at the end (exact)",
+        fails_if="the order of collisions or of sums depends on threads",
+    )

@@ -1,0 +1,85 @@
+"""Figures of several cores."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gaspart.rendering import style
+from gaspart.reproduction.families.cores.measure import SLABS, speed_up
+from gaspart.reproduction.table import Row, Table
+
+_PANELS = {"DSMC": "DSMC", "time-stepped": "steps", "event-driven": "events"}
+_MOST = 8  # cores up to which the model is drawn
+_LABEL = "speed over one core"
+
+
+def cores(dataset: xr.Dataset) -> Figure:
+    """Speed on two cores against the number of particles, by threads and by runs at once, with the model; and
+    against the number of cores."""
+    figure, axes = style.new((2.6,), (2.6,), (2.6,), (2.6,))
+    runs, models = Table.prefixed(dataset, "run"), Table.prefixed(dataset, "model")
+    fractions = sorted(set(runs.packing_fraction.tolist()))
+    two = runs[runs.cores == 2]
+    for axis, (name, short) in zip(axes, _PANELS.items(), strict=False):
+        own = two[[str(engine).startswith(name) for engine in two.engine]]
+        _by_count(axis, own.sorted_by("count"), models, fractions)
+        axis.set(xscale="log", xlim=(0.6 * runs.count.min(), 1.6 * runs.count.max()), ylim=(0.0, 2.6))
+        style.labelled(axis, "number of particles $N$", f"{short}: {_LABEL}", legend="lower right")
+    _by_cores(axes[-1], runs, models, dataset.cores)
+    style.letters(*axes)
+    return figure
+
+
+def _by_count(axis: Axes, runs: Table, models: Table, fractions: list[float]) -> None:
+    """The runs of an engine, by the colours of their packing fractions."""
+    named: set[str] = set()  # each in the legend once
+    for engine, fraction, copies, gas in runs.by("engine", "packing_fraction", "copies"):
+        kind = fractions.index(fraction)
+        label = ", ".join([*engine.split(", ")[1:], f"$\\eta={fraction:g}$"])
+        if copies > 1:
+            label = "two runs at once" if engine != "event-driven" else f"{label}, two runs"
+        style.points(axis, gas.count, gas.speed, kind=kind, hollow=copies > 1, label=_once(label, named))
+        if copies == 1:
+            count = np.geomspace(max(gas.count.min(), SLABS.get(engine, 0)), gas.count.max(), 100)
+            speed = _modelled(models, gas[0], 2.0, count)
+            axis.plot(count, speed, color=style.COLOURS[kind], linewidth=0.8, label=_once("model", named))
+    style.level(axis, 1.0)
+    style.level(axis, 2.0, linestyle="--")
+    if not np.isfinite(runs.speed.value).any():
+        axis.text(0.5, 0.6, "fewer than two cores: not timed", transform=axis.transAxes, ha="center")
+
+
+def _by_cores(axis: Axes, runs: Table, models: Table, available: int) -> None:
+    """The gases that run on the most cores, and the model of threads; dotted beyond the machine's cores."""
+    fine = np.linspace(1.0, _MOST, 100)
+    axis.plot(fine, fine, "--", color=style.GREY, linewidth=0.6, label="ideal")
+    for kind, widest in enumerate(runs[runs.cores == runs.cores.max()].sorted_by("copies")):
+        at_once = widest.copies > 1
+        columns = ("engine", "packing_fraction", "count")
+        alike = [getattr(runs, name) == widest[name] for name in columns]
+        gas = runs[np.all([*alike, (runs.copies > 1) == at_once], axis=0)]
+        label = f"{widest.engine}, {'runs at once' if at_once else 'threads'}"
+        style.points(axis, gas.cores, gas.speed, kind=kind, hollow=at_once, label=label)
+        if not at_once and widest.engine not in SLABS:
+            for part, dashes in ((fine <= available, "-"), (fine >= available, ":")):
+                speed = _modelled(models, widest, fine[part], widest.count)
+                axis.plot(fine[part], speed, dashes, color=style.COLOURS[kind], linewidth=0.8)
+    place = f"cores (dotted: beyond the {available} of this machine)"
+    style.labelled(axis, place, _LABEL, legend="upper left", xlim=(0.8, _MOST + 0.2), ylim=(0.0, _MOST + 0.5))
+
+
+def _once(label: str, named: set[str]) -> str:
+    """A label unless it is among those named before, and then none."""
+    new = label not in named
+    named.add(label)
+    return label if new else ""
+
+
+def _modelled(models: Table, run: Row, cores: float | np.ndarray, count: float | np.ndarray) -> np.ndarray:
+    """The speed of a run's gas and engine by the model, on so many cores and with so many particles."""
+    same = (models.engine == run.engine) & (models.packing_fraction == run.packing_fraction)
+    model = models[same][0]
+    return speed_up(cores, count, model.serial.value, model.overhead.value)

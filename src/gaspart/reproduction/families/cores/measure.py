@@ -1,0 +1,105 @@
+"""What several cores gain: threads of one run, and equal runs at once.
+
+Each job times them in turn with one run on one core, by the wall's clock. Equal runs at once wait for nothing
+but a core, so the time for which they wait tells what other programs took of the cores: of p cores as much is
+part of the uncertainty of each speed on p cores.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import compress
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.optimize import nnls
+
+from gaspart.analysis.estimate import Estimate
+from gaspart.reproduction.families.shared.timings import SYSTEMATIC, median, weights
+from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import Table, prefixed, table
+
+ENGINES = {"event": "event-driven", "step": "time-stepped", "dsmc": "DSMC"}
+"""The names of engines in the figure."""
+SLABS = {"DSMC, Enskog": 8**3 * 64}
+"""The engine of which threads share collisions by slabs of cells, and the number of particles from which on
+two threads have one each at a time (docs/dsmc.md). Fewer do not share them, and more threads share them
+unevenly, which Amdahl's law does not know."""
+
+_KNOWN = 0.15  # the relative uncertainty up to which speeds are fitted
+
+
+def cores(points: list[Point], settings: dict) -> xr.Dataset:
+    """Speed-ups, and a model of those by threads.
+
+    Over run: engine, packing_fraction, count of particles; copies, of runs at once, 1 for threads; cores
+    used; speed, the work in a time over that of one run on one core, NaN where the machine has too few; same,
+    whether all bits are those of one core. Over model, each gas and engine with threads: engine,
+    packing_fraction, and serial and overhead of `speed_up`. The attribute cores: of the machine, for kernels;
+    waiting: the share of their time for which runs at once waited for a core, NaN if none were timed.
+    """
+    jobs = [_job(point) for point in points]
+    waits = [job.pop("waiting") for job in jobs]
+    available = max(job.pop("available") for job in jobs)
+    waiting = float(np.mean([one for one in waits if math.isfinite(one)] or [math.nan]))
+    for job in jobs:
+        own = job["speed"]
+        job["speed"] = Estimate(own.value, math.hypot(own.error, job["cores"] * waiting))
+    runs = table("run", jobs, dict, units={})
+    threads = Table(runs, "run")
+    threads = threads[threads.copies == 1]
+    gases = [gas for _, same in threads.by("engine") for _, gas in same.by("packing_fraction")]
+    models = table("model", gases, _model, units={"overhead": "particles"})
+    return prefixed(run=runs, model=models).assign_attrs(cores=available, waiting=waiting)
+
+
+def speed_up(cores: ArrayLike, count: ArrayLike, serial: float, overhead: float) -> np.ndarray:
+    """Amdahl's law (AFIPS Conf. Proc. 30, 483 (1967)), 1 / (s + (1 - s) / p + N_0 / N) for p cores and N
+    particles. serial: the share s of the work that one core does alone; overhead: N_0, the number of
+    particles whose work on one core takes the time in which threads are begun and waited for."""
+    shared, waited = (1.0 - serial) / np.asarray(cores), overhead / np.asarray(count)
+    return np.asarray(1.0 / (serial + shared + waited))
+
+
+def _job(point: Point) -> dict:
+    """The row of one job, with its uncertainty from its repeats and from what disturbs entire runs."""
+    copies = point.settings.get("copies", 1)
+    with xr.open_dataset(point.path) as run:
+        own, alone = np.log(run.wall_seconds.values)
+        gain, error = median(math.log(copies) + alone - own)
+        used = int(run.cores[0])
+        busy = np.median(run.seconds.values[0] / (used * run.wall_seconds.values[0]))
+        model = f", {run.attrs['model'].capitalize()}" if run.attrs["model"] else ""
+        return {
+            "engine": ENGINES[run.attrs["engine"]] + model,
+            "packing_fraction": round(run.packing_fraction, 9),  # one number for gases of all sizes
+            "count": int(run.attrs["count"]),
+            "copies": copies,
+            "cores": used,
+            "speed": Estimate(math.exp(gain), math.exp(gain) * math.hypot(error, SYSTEMATIC)),
+            "same": int(len(set(run.bits.values.tolist())) == 1),
+            "waiting": max(0.0, 1.0 - busy) if copies > 1 and math.isfinite(busy) else math.nan,
+            "available": int(run.attrs["cores"]),
+        }
+
+
+def _model(gas: Table) -> dict:
+    """1 / speed - 1 / p = s (1 - 1 / p) + N_0 / N, fitted to all counts and cores (but see `SLABS`); neither
+    is negative, and one that would be has the uncertainty 0. NaN where fewer than two speeds are known."""
+    engine = gas.engine[0]
+    used = gas.speed.error < _KNOWN * gas.speed.value  # not where there is none, NaN
+    if engine in SLABS:
+        used &= (gas.count >= SLABS[engine]) & (gas.cores == 2)
+    timed = gas[used]
+    found = {"serial": Estimate(math.nan, math.nan), "overhead": Estimate(math.nan, math.nan)}
+    if len(timed) > 1:
+        parts = np.stack([1.0 - 1.0 / timed.cores, 1.0 / timed.count], axis=1)
+        lost = 1.0 / timed.speed - 1.0 / timed.cores
+        costly = nnls(parts / lost.error[:, None], lost.value / lost.error)[0] > 0.0
+        found = dict.fromkeys(found, Estimate(0.0))
+        if costly.any():
+            fit = weights(lost, *parts[:, costly].T)
+            values = map(Estimate, fit.values, fit.errors)
+            found |= dict(zip(compress(found, costly), values, strict=True))
+    return {"engine": engine, "packing_fraction": gas.packing_fraction[0], **found}
