@@ -242,7 +242,8 @@ def test_a_wall_drifts_to_the_hot_gas_although_the_pressures_are_equal():
     """Points, P = 4 on both sides, T = 4 and 1, and ends so far that nothing comes back from them. From the
     force on a wall of velocity V, A P - gamma_1 V + m n_1 A V^2 + ..., and that of the other side follow, in
     first order of m / M, <V^2> = sqrt(T_1 T_2) / M and the mean sqrt(2 pi m) / (4 M) (sqrt(T_2) - sqrt(T_1))
-    (Gruber & Piasecki, Physica A 268, 412 (1999)), reached within M / (gamma_1 + gamma_2)."""
+    (Gruber & Piasecki, Physica A 268, 412 (1999)). From rest, this takes M / (gamma_1 + gamma_2), and <V^2>,
+    on which it depends, half of that."""
     mass, width, lengths, time, runs = 20.0, 100.0, (90.0, 50.0), 21.0, 1600
     linear, temperatures = np.array([2.0, 8.0]), np.array([4.0, 1.0])  # particles per length of the container
     counts = np.round(linear * lengths).astype(int).tolist()
@@ -257,10 +258,10 @@ def test_a_wall_drifts_to_the_hot_gas_although_the_pressures_are_equal():
     relaxation = mass / (4.0 * linear * np.sqrt(temperatures / (2.0 * math.pi))).sum()
     drift = math.sqrt(2.0 * math.pi) / (4.0 * mass) * (1.0 - 2.0)
     error, spread = np.std(moved) / math.sqrt(runs), np.std(squares) / math.sqrt(runs)
-    print(f"moved {np.mean(moved):.3f}({error:.3f}), {drift * (time - relaxation):.3f}")
+    print(f"moved {np.mean(moved):.3f}({error:.3f}), {drift * (time - 1.5 * relaxation):.3f}")
     print(f"<V^2> {np.mean(squares):.4f}({spread:.4f}), {2.0 / mass:.4f}")
     assert error < 0.1 * abs(drift) * time
-    assert abs(np.mean(moved) - drift * (time - relaxation)) < 3.0 * error
+    assert abs(np.mean(moved) - drift * (time - 1.5 * relaxation)) < 3.0 * error
     assert abs(np.mean(squares) - 2.0 / mass) < 3.0 * spread
 
 
