@@ -171,6 +171,9 @@ def test_a_trajectory_has_its_motion_from_which_another_run_goes_on(tmp_path):
         assert run["piston_position"].values[0] == 8.0
         assert run["piston_position"].values[-1] == whole.state.piston[0]
         assert run["piston_velocity"].values[-1] == whole.state.piston[1]
+    for name in ("flux", "temperature"):  # of a wall at rest, and in equilibrium, there is a theory
+        assert f"{name}_theory" not in gp.measure(tmp_path / "first.nc", name), name
+    assert scene.conserved_axes == (False, True)
     frame = last_state(tmp_path / "first.nc")
     assert np.array_equal(frame.piston, whole.state.piston)
     again = gp.Simulation(scene, EVENT, initial=frame)  # positions are those of single precision
