@@ -164,7 +164,7 @@ def test_a_trajectory_has_its_motion_from_which_another_run_goes_on(tmp_path):
     scene = two_gases()
     scene.to_file(tmp_path / "scene.yaml")
     assert gp.Scene.from_file(tmp_path / "scene.yaml") == scene
-    gp.run(scene, EVENT, 3, 20.0, 2.0, tmp_path / "first.nc")
+    gp.run(scene, EVENT, 3, 20.0, 0.5, tmp_path / "first.nc")
     whole = gp.Simulation(scene, EVENT, seed=3)
     whole.advance(until=20.0)
     with gp.open_trajectory(tmp_path / "first.nc") as run:
