@@ -164,13 +164,16 @@ def test_a_trajectory_has_its_motion_from_which_another_run_goes_on(tmp_path):
     scene = two_gases()
     scene.to_file(tmp_path / "scene.yaml")
     assert gp.Scene.from_file(tmp_path / "scene.yaml") == scene
-    gp.run(scene, EVENT, 3, 20.0, 2.0, tmp_path / "first.nc")
+    gp.run(scene, EVENT, 3, 20.0, 0.5, tmp_path / "first.nc")
     whole = gp.Simulation(scene, EVENT, seed=3)
     whole.advance(until=20.0)
     with gp.open_trajectory(tmp_path / "first.nc") as run:
         assert run["piston_position"].values[0] == 8.0
         assert run["piston_position"].values[-1] == whole.state.piston[0]
         assert run["piston_velocity"].values[-1] == whole.state.piston[1]
+    for name in ("flux", "temperature"):  # of a wall at rest, and in equilibrium, there is a theory
+        assert f"{name}_theory" not in gp.measure(tmp_path / "first.nc", name), name
+    assert scene.conserved_axes == (False, True)
     frame = last_state(tmp_path / "first.nc")
     assert np.array_equal(frame.piston, whole.state.piston)
     again = gp.Simulation(scene, EVENT, initial=frame)  # positions are those of single precision
@@ -242,7 +245,8 @@ def test_a_wall_drifts_to_the_hot_gas_although_the_pressures_are_equal():
     """Points, P = 4 on both sides, T = 4 and 1, and ends so far that nothing comes back from them. From the
     force on a wall of velocity V, A P - gamma_1 V + m n_1 A V^2 + ..., and that of the other side follow, in
     first order of m / M, <V^2> = sqrt(T_1 T_2) / M and the mean sqrt(2 pi m) / (4 M) (sqrt(T_2) - sqrt(T_1))
-    (Gruber & Piasecki, Physica A 268, 412 (1999)), reached within M / (gamma_1 + gamma_2)."""
+    (Gruber & Piasecki, Physica A 268, 412 (1999)). From rest, this takes M / (gamma_1 + gamma_2), and <V^2>,
+    on which it depends, half of that."""
     mass, width, lengths, time, runs = 20.0, 100.0, (90.0, 50.0), 21.0, 1600
     linear, temperatures = np.array([2.0, 8.0]), np.array([4.0, 1.0])  # particles per length of the container
     counts = np.round(linear * lengths).astype(int).tolist()
@@ -257,10 +261,10 @@ def test_a_wall_drifts_to_the_hot_gas_although_the_pressures_are_equal():
     relaxation = mass / (4.0 * linear * np.sqrt(temperatures / (2.0 * math.pi))).sum()
     drift = math.sqrt(2.0 * math.pi) / (4.0 * mass) * (1.0 - 2.0)
     error, spread = np.std(moved) / math.sqrt(runs), np.std(squares) / math.sqrt(runs)
-    print(f"moved {np.mean(moved):.3f}({error:.3f}), {drift * (time - relaxation):.3f}")
+    print(f"moved {np.mean(moved):.3f}({error:.3f}), {drift * (time - 1.5 * relaxation):.3f}")
     print(f"<V^2> {np.mean(squares):.4f}({spread:.4f}), {2.0 / mass:.4f}")
     assert error < 0.1 * abs(drift) * time
-    assert abs(np.mean(moved) - drift * (time - relaxation)) < 3.0 * error
+    assert abs(np.mean(moved) - drift * (time - 1.5 * relaxation)) < 3.0 * error
     assert abs(np.mean(squares) - 2.0 / mass) < 3.0 * spread
 
 

@@ -15,6 +15,7 @@ from gaspart.analysis.expected.walls import FLUID, FREE, Plates, dilute, heating
 from gaspart.analysis.run import Run
 from gaspart.scene.driving import driven_axes
 from gaspart.scene.faces import sliding_faces
+from gaspart.scene.moving_walls import moving_wall
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
 from gaspart.scene.thermal_faces import face_temperatures
@@ -116,9 +117,8 @@ def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndar
         return _closed(run)
     masses, radii = run.masses[members], run.radii[members]
     area = opening(scene, axis, place, float(radii.max()))
-    plain = not (
-        scene.faces or face_temperatures(scene) or scene.thermostat or run.dissipates or run.has_gravity
-    )
+    moved = scene.thermostat or run.dissipates or run.has_gravity or moving_wall(scene)
+    plain = not (scene.faces or face_temperatures(scene) or moved)
     alike = np.ptp(masses) == 0.0 and np.ptp(radii) == 0.0 and run.moving.all()
     if area is None or not alike or not plain or _path(run) < area ** (1.0 / (run.dimension - 1)):
         return None
