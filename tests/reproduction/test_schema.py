@@ -106,7 +106,7 @@ def test_the_tables_of_the_engines_follow_from_the_keys():
     assert set(point_keys.ENGINE_KEYS["event"]) == {"search", "boxes_per_side", "boxes_per_particle"}
     assert {"time_step", "skin", "boxes_per_side"} <= set(point_keys.ENGINE_KEYS["step"])
     whole = {"dimension", "count", "samples", "steps", "attempts", "follow", "lags", "frames"}
-    assert whole | {"replicas", "passes", "threads"} == config_keys.WHOLE
+    assert whole | {"replicas", "passes", "threads", "copies"} == config_keys.WHOLE
 
 
 @pytest.mark.parametrize(

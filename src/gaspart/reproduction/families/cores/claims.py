@@ -11,14 +11,15 @@ LARGE = 10**5
 """Number of particles from which on threads must be worth their while, which the largest gas of each kind
 claims."""
 _SMALL = 10**4  # up to which two runs at once do not compete for the caches
-_IDLE = "the uncertainty has what other programs took of the machine, by what runs at once waited"
+_IDLE = "the uncertainty has what other programs took of the cores, for which runs at once waited"
 
 
 def cores(dataset: xr.Dataset) -> list[Claim]:
     """Any number of threads gives the bits of one; on two cores they are faster."""
     runs = Table.prefixed(dataset, "run")
     two = runs[runs.cores == 2]
-    threads, copies = two[two.copies == 1], two[(two.copies == 2) & (two.engine == "event-driven")]
+    threads = two[(two.copies == 1) & (two.count >= LARGE)]
+    copies = two[(two.copies == 2) & (two.count <= _SMALL) & (two.engine == "event-driven")]
     largest = [gas.sorted_by("count")[-1:] for *_, gas in threads.by("engine", "packing_fraction")]
     return [
         *(_bits(engine, same) for engine, same in runs.by("engine")),
@@ -26,10 +27,10 @@ def cores(dataset: xr.Dataset) -> list[Claim]:
             claim
             for gas in largest
             for claim in each(
-                gas[gas.count >= LARGE],
+                gas,
                 "speed with two threads over one, {engine}, {count} spheres at {packing_fraction:g}",
                 Claim.at_least,
-                measured=gas[gas.count >= LARGE].speed,
+                measured=gas.speed,
                 bound=1.7,
                 required=0.1,
                 source=f"at least 1.7 on two idle cores (this project's aim); {_IDLE}",
@@ -37,10 +38,10 @@ def cores(dataset: xr.Dataset) -> list[Claim]:
             )
         ),
         *each(
-            copies[copies.count <= _SMALL],
+            copies,
             "speed of two runs at once over one, {engine}, {count} spheres at {packing_fraction:g}",
             Claim.at_least,
-            measured=copies[copies.count <= _SMALL].speed,
+            measured=copies.speed,
             bound=1.85,
             required=0.1,
             source=f"at least 1.85 on two idle cores (this project's aim); {_IDLE}",

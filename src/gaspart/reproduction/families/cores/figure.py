@@ -45,7 +45,8 @@ def _by_count(axis: Axes, runs: Table, models: Table, fractions: list[float]) ->
         if copies == 1:
             count = np.geomspace(max(gas.count.min(), SLABS.get(engine, 0)), gas.count.max(), 100)
             speed = _modelled(models, gas[0], 2.0, count)
-            axis.plot(count, speed, color=style.COLOURS[kind], linewidth=0.8, label=_once("model", named))
+            if np.isfinite(speed).all():
+                axis.plot(count, speed, color=style.COLOURS[kind], linewidth=0.8, label=_once("model", named))
     style.level(axis, 1.0)
     style.level(axis, 2.0, linestyle="--")
     if not np.isfinite(runs.speed.value).any():
