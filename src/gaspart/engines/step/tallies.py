@@ -41,9 +41,14 @@ class ImpulsesPart(TallyPart):
         self._per_length = asked.bins / scene.container.lengths[self._axis]
         rows = row_count(scene)
         sums, momenta = np.zeros((threads, rows, asked.bins + 1, 2), np.int64), np.zeros((rows, asked.bins + 1))
-        pull = 0.0 if model.gravity is None else float(model.gravity[self._axis])
-        row = self._rows if rows > 1 else None
-        kernel = {"impulses": sums, "axis": self._axis, "pull": pull, "row": row}
+        kernel = {
+            "impulses": sums,
+            "axis": self._axis,
+            "pull": 0.0 if model.gravity is None else float(model.gravity[self._axis]),
+            "per_length": self._per_length,
+            "turns": 1.0 / asked.bins if scene.container.periodic[self._axis] else 0.0,
+            "row": self._rows if rows > 1 else None,
+        }
         super().__init__("impulses", kernel, {"momenta": momenta}, {"impulses": sums})
         self.reset(0.0)
 

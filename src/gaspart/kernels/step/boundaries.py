@@ -172,7 +172,7 @@ def add_impulse_of_face(particles, slot, before, rules, tally, impulses):
     if impulses is not None:
         flight = rules.flights[particles.index[slot]]
         change, place = flight.velocity[tally.axis] - before, flight.position[tally.axis]
-        add_impulse(particles, slot, place, change, rules.model.space, tally, 0, impulses)
+        add_impulse(particles, slot, place, change, tally, 0, impulses)
 
 
 @inner_kernel

@@ -23,14 +23,13 @@ def place_and_speed(particles, slot, ago, tally, impulses):
 
 
 @inner_helper
-def add_impulse(particles, slot, place, change, space, tally, thread, impulses):
+def add_impulse(particles, slot, place, change, tally, thread, impulses):
     """Add the impulse that has changed the velocity of a particle along the axis, at a place."""
     if impulses is not None:
         if change != 0.0:
             bins, number = impulses.shape[2] - 1, particles.index[slot]
-            place *= bins / np.float64(space.lengths[tally.axis])
-            if space.periodic[tally.axis]:
-                place -= np.floor(place / bins) * bins
+            place *= tally.per_length
+            place -= np.floor(place * tally.turns) * bins
             bin_, part = bin_at(place, bins)
             row = row_of(number, tally.row)
             impulse = np.float64(particles.masses[number]) * change
@@ -40,21 +39,21 @@ def add_impulse(particles, slot, place, change, space, tally, thread, impulses):
 
 
 @inner_helper
-def add_contact(particles, slot, before, space, tally, impulses):
+def add_contact(particles, slot, before, tally, impulses):
     """Add the impulse of a contact. before: what `place_and_speed` gave then."""
     if impulses is not None:
         place, speed = before
         change = particles.velocities[tally.axis, slot] - speed
-        add_impulse(particles, slot, place, change, space, tally, 0, impulses)
+        add_impulse(particles, slot, place, change, tally, 0, impulses)
 
 
 @inner_helper
-def add_reflection(particles, slot, axis, at, space, tally, thread, impulses):
+def add_reflection(particles, slot, axis, at, tally, thread, impulses):
     """Add the impulse of a face across an axis. at: its place, and the change of the velocity."""
     if impulses is not None:
         if axis == tally.axis:
             place, change = np.float64(at[0]), np.float64(at[1])
-            add_impulse(particles, slot, place, change, space, tally, thread, impulses)
+            add_impulse(particles, slot, place, change, tally, thread, impulses)
 
 
 @inner_helper

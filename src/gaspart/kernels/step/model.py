@@ -85,8 +85,9 @@ class StepTally(NamedTuple):
     by `running_sum.add_whole`; momentum and energy: the powers of two that few terms of these exceed.
 
     impulses (threads, rows, bins + 1, 2), by `add_whole`: those along an axis, as in `kernels.physics.planes`,
-    or None; pull, the acceleration along it; row (N,), that of each particle, or None if there is one. They
-    are not in a tuple of their own: numba passes no tuples in tuples to threads."""
+    or None; pull, the acceleration along it; per_length, bins in a unit of length; turns, times the container
+    in a bin if it is periodic along the axis, or 0; row (N,), that of each particle, or None if there is one.
+    They are not in a tuple of their own: numba passes no tuples in tuples to threads."""
 
     counts: np.ndarray
     sums: np.ndarray
@@ -99,6 +100,8 @@ class StepTally(NamedTuple):
     impulses: np.ndarray | None = None
     axis: int = 0
     pull: float = 0.0
+    per_length: float = 0.0
+    turns: float = 0.0
     row: np.ndarray | None = None
 
 

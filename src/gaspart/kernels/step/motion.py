@@ -51,7 +51,7 @@ def reflect(particles, slot, axis, planes, model, tally, thread):
             lost = 0.5 * impulse * abs(v) * (1.0 - model.normal)
             add_whole(tally.wall_loss[thread], lost, tally.energy)
         at = plane, -v * model.normal - v
-        add_reflection(particles, slot, axis, at, model.space, tally, thread, tally.impulses)
+        add_reflection(particles, slot, axis, at, tally, thread, tally.impulses)
         v = -v * model.normal
     particles.positions[axis, slot] = x
     particles.velocities[axis, slot] = v
@@ -76,7 +76,7 @@ def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
         if square < 0.0:  # pushed out by a contact, too slow to have come through by itself
             if u < 0.0:
                 at = x, -v - v
-                add_reflection(particles, slot, axis, at, model.space, tally, thread, tally.impulses)
+                add_reflection(particles, slot, axis, at, tally, thread, tally.impulses)
                 v = -v
             break
         w = np.sqrt(square)
@@ -94,7 +94,7 @@ def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
         u = w + a * s
         y = max(y - y, half * (w + u) * s)
         at = upper if side else lower, (-u if side else u) - v
-        add_reflection(particles, slot, axis, at, model.space, tally, thread, tally.impulses)
+        add_reflection(particles, slot, axis, at, tally, thread, tally.impulses)
         x, v = (upper - y, -u) if side else (lower + y, u)
     particles.positions[axis, slot] = x
     particles.velocities[axis, slot] = v

@@ -255,8 +255,8 @@ def resolve(particles, i, j, model, step, tally, law, cells):
     before_i = place_and_speed(particles, i, ago, tally, tally.impulses)
     before_j = place_and_speed(particles, j, ago, tally, tally.impulses)
     speed_i, speed_j = collide(particles, i, j, (ago, rr, rv), model, tally, law)
-    add_contact(particles, i, before_i, space, tally, tally.impulses)
-    add_contact(particles, j, before_j, space, tally, tally.impulses)
+    add_contact(particles, i, before_i, tally, tally.impulses)
+    add_contact(particles, j, before_j, tally, tally.impulses)
     for k in range(len(space.lengths)):
         if step.rewind and space.periodic[k]:
             wrap(particles, i, k, space.lengths[k])

@@ -67,7 +67,8 @@ def tally_of_contact(tally, terms):
     count references, which this function does not."""
     return StepTally(
         tally.counts, terms, tally.extremes, tally.wall_hits, tally.wall_impulse, tally.wall_loss,
-        tally.momentum, tally.energy, tally.impulses, tally.axis, tally.pull, tally.row,
+        tally.momentum, tally.energy, tally.impulses, tally.axis, tally.pull, tally.per_length, tally.turns,
+        tally.row,
     )  # fmt: skip
 
 
@@ -114,7 +115,8 @@ def resolve_part(particles, part, contacts, model, step, tally, cells):
     )  # fmt: skip
     tally = StepTally(
         counts, tally.sums, extremes, tally.wall_hits, tally.wall_impulse, tally.wall_loss, tally.momentum,
-        tally.energy, own_impulses(tally.impulses, part), tally.axis, tally.pull, tally.row,
+        tally.energy, own_impulses(tally.impulses, part), tally.axis, tally.pull, tally.per_length,
+        tally.turns, tally.row,
     )  # fmt: skip
     resolve_own(particles, contacts, own[:number], model, step, tally, cells)
     contacts.counts[part], contacts.extremes[part], contacts.bounds[part] = counts, extremes, bounds
