@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from engines.planes import carried, rows_of
-from engines.test_impulses import BOX, FALLING, FLAT, MIXTURE, REFUSED, SCENES
+from engines.test_impulses import BOX, FALLING, MIXTURE, REFUSED, SCENES
 
 import gaspart as gp
 from gaspart.state.optional_tallies import ImpulseTally

@@ -40,7 +40,8 @@ class ImpulsesPart(TallyPart):
         self._axis, self._rows = "xyz".index(asked.axis), rows_of(scene)
         self._per_length = asked.bins / scene.container.lengths[self._axis]
         rows = row_count(scene)
-        sums, momenta = np.zeros((threads, rows, asked.bins + 1, 2), np.int64), np.zeros((rows, asked.bins + 1))
+        momenta = np.zeros((rows, asked.bins + 1))
+        sums = np.zeros((threads, *momenta.shape, 2), np.int64)
         kernel = {
             "impulses": sums,
             "axis": self._axis,

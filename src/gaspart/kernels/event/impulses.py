@@ -12,8 +12,8 @@ from gaspart.kernels.physics.planes import bin_at, row_of
 
 
 class Impulses(NamedTuple):
-    """sums (rows, bins + 1), as in `planes`, in the kernels' unit of mass; axis; per_length: bins in a unit of
-    length; row (N,), that of each particle, or None if there is one."""
+    """sums (rows, bins + 1), as in `planes`, in the kernels' unit of mass; axis; per_length: bins in a unit
+    of length; row (N,), that of each particle, or None if there is one."""
 
     sums: np.ndarray
     axis: int

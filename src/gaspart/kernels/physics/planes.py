@@ -21,7 +21,7 @@ def row_of(i, row):
 
 @inner_helper
 def bin_at(place, bins):
-    """In which of so many bins a place is, counted in bins, and how far up in it. What is outside counts as in
-    the last bin on that side, by the same line."""
+    """In which of so many bins a place is, counted in bins, and how far up in it. What is outside counts as
+    in the last bin on that side, by the same line."""
     bin_ = min(max(np.int64(place), 0), bins - 1)
     return bin_, place - bin_
