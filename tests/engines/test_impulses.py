@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from engines.planes import carried, rows_of
 
 import gaspart as gp
 from gaspart.state.optional_tallies import ImpulseTally
@@ -32,28 +33,17 @@ def started(scene, axis, search="automatic", tallies=True):
 
 
 def flown(scene, axis, states):
-    """(species, BINS) the time integral of m v^2 delta(z - z_i), the mean over the planes of each bin, less
-    that at a periodic face and, under gravity, what this has given to the particles below: by small steps."""
-    rows = np.repeat(np.arange(len(scene.species)), [kind.count for kind in scene.species])
-    length, periodic = scene.container.lengths[axis], scene.container.periodic[axis]
-    pull = scene.gravity[axis] if scene.gravity else 0.0
-    found, width = np.zeros((len(scene.species), BINS)), length / BINS
-    edges = np.arange(BINS + 1) * width
-    for before, after in itertools.pairwise(states):
-        steps = 200 if pull else 1
-        dt = (after.time - before.time) / steps
-        for step in range(steps):
-            v = before.velocities[:, axis] + pull * (step + 0.5) * dt
-            x = before.positions[:, axis] + (before.velocities[:, axis] + 0.5 * pull * step * dt) * step * dt
-            for image in (-1, 0, 1) if periodic else (0,):
-                low, high = np.sort([x, x + v * dt], axis=0) + image * length
-                way = np.minimum(high[:, None], edges[1:]) - np.maximum(low[:, None], edges[:-1])
-                crosses = ((low < 0.0) & (high >= 0.0))[:, None] & periodic
-                flux = before.masses[:, None] * np.abs(v[:, None])
-                np.add.at(found, rows, flux * (np.maximum(way, 0.0) / width - crosses))
-            below = np.clip((edges[1:] - x[:, None]) / width, 0.0, 1.0)  # of the planes of each bin
-            np.add.at(found, rows, -before.masses[:, None] * pull * dt * below)
-    return found
+    """(species, BINS) what flies through planes between the first and the last of the states."""
+    return sum(
+        carried(
+            scene,
+            axis,
+            BINS,
+            (rows_of(scene), one.masses, one.positions[:, axis], one.velocities[:, axis]),
+            after.time - one.time,
+        )
+        for one, after in itertools.pairwise(states)
+    )
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -124,8 +114,8 @@ def test_scenes_without_equilibrium_at_one_temperature_are_refused(reason):
 
 def test_other_engines_axes_and_numbers_of_bins_are_refused():
     asked = [ImpulseTally("z", BINS)]
-    with pytest.raises(gp.SceneError, match='needs the "event" engine'):
-        gp.Simulation(replace(FALLING, gravity=None), gp.TimeStepped(0.01), tallies=asked)
+    with pytest.raises(gp.SceneError, match='needs the "event" or "step" engine'):
+        gp.Simulation(replace(FALLING, gravity=None), gp.DSMC(0.01), tallies=asked)
     with pytest.raises(gp.SceneError, match="impulses.axis"):
         gp.Simulation(SCENES["wells, mixture"][0], gp.EventDriven(), tallies=asked)
     for text in ("z", "z:", "z:1", "z:1000000", "w:10", "z:1.5"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +11,7 @@ from gaspart.engines.features.faces import FacesPart, special_faces
 from gaspart.engines.features.gravity import gravity_of
 from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.masses import scaled_masses
-from gaspart.engines.features.part import Part
+from gaspart.engines.features.part import Part, TallyPart
 from gaspart.kernels.model import Model, Space, empty_tally, flight_dtype
 from gaspart.kernels.step import model as layout
 from gaspart.kernels.step.boundaries import Rules
@@ -69,9 +70,12 @@ def model_for(
     )
 
 
-def step_tally(faces: int, threads: int, largest: tuple[float, float]) -> StepTally:
-    """A tally at zero, for so many faces; largest: see `largest_terms`."""
-    return StepTally(
+def step_tally(
+    faces: int, threads: int, largest: tuple[float, float], asked: Iterable[TallyPart]
+) -> StepTally:
+    """A tally at zero, for so many faces; largest: see `largest_terms`; asked: the parts of optional
+    tallies."""
+    tally = StepTally(
         counts=np.zeros(layout.PASSED + 1, dtype=np.int64),
         sums=np.zeros((len(layout.SUMS), 2)),
         extremes=np.zeros(len(layout.EXTREMES)),
@@ -81,6 +85,9 @@ def step_tally(faces: int, threads: int, largest: tuple[float, float]) -> StepTa
         momentum=largest[0],
         energy=largest[1],
     )
+    for part in asked:
+        tally = tally._replace(**part.kernel)
+    return tally
 
 
 def rules_for(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,11 +17,13 @@ from gaspart.engines.step.limits import (
     oversized_particles,
 )
 from gaspart.engines.step.search import search_for
+from gaspart.engines.step.tallies import tally_parts
 from gaspart.engines.stepped import SteppedDynamics
 from gaspart.kernels.physics import running_sum
 from gaspart.kernels.step import loop
 from gaspart.kernels.step import model as layout
 from gaspart.scene.scene import Scene
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
@@ -34,7 +37,14 @@ _OF_ALL = ("counts", "sums", "extremes")
 class StepDynamics(SteppedDynamics):
     """A scene under way; its time is a whole number of steps."""
 
-    def __init__(self, engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...]) -> None:
+    def __init__(
+        self,
+        engine: TimeStepped,
+        scene: Scene,
+        state: State,
+        seed: int | tuple[int, ...],
+        tallies: Sequence[OptionalTally] = (),
+    ) -> None:
         engine.check_features(scene)
         oversized = oversized_particles(state)
         check_scene(scene, state, oversized)
@@ -50,9 +60,11 @@ class StepDynamics(SteppedDynamics):
         self._place(slots, state.positions, state.velocities, state.images)
         self._search = search_for(engine, scene, state, ordinary)
         self._model = model_for(engine, scene, state, seed, ordinary)
-        self._parts = parts_for(scene, self._model.rules)
         self._largest = largest_terms(scene, state, unit_mass)
-        self._tally = step_tally(2 * scene.dimension, engine.threads, self._largest)
+        units = unit_mass, self._largest[0]
+        asked = tally_parts(tallies, self._particles, self._model, scene, engine.threads, units)
+        self._parts = [*parts_for(scene, self._model.rules), *asked]
+        self._tally = step_tally(2 * scene.dimension, engine.threads, self._largest, asked)
 
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray

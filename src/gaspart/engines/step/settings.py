@@ -83,6 +83,7 @@ class TimeStepped(Engine):
 
     timed_at: ClassVar[tuple[float, float]] = (0.1, 0.08)
     advised: ClassVar[tuple[str, ...]] = ("time_step", "precision")
+    tallies: ClassVar[frozenset[str]] = frozenset(("impulses",))
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -151,7 +152,7 @@ class TimeStepped(Engine):
         """Set the engine up for a scene in a given state; `seed` is that of thermal walls."""
         from gaspart.engines.step.dynamics import StepDynamics
 
-        return StepDynamics(self, scene, state, seed)
+        return StepDynamics(self, scene, state, seed, tallies)
 
 
 def _unit(scene: Scene) -> float:

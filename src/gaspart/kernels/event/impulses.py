@@ -1,10 +1,5 @@
-"""Impulses by the place where a particle receives them, along one axis: what makes densities accurate.
-
-An impulse dp on a particle at z changes the momentum below every plane above z. Of the planes of one bin that
-is the part 1 - f, where f is how far up in the bin the particle is: the bin is given dp (1 - f), the next one
-dp f, and the mean over the planes of a bin is the sum of all up to it (docs/design-notes.md). Impulses of any
-origin count, of contacts, walls and edges of wells: all that changes a velocity between two flights.
-"""
+"""Impulses by the place where a particle receives them, along one axis (`kernels.physics.planes`): what makes
+densities accurate."""
 
 from typing import NamedTuple
 
@@ -13,11 +8,12 @@ import numpy as np
 from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.physics.flight import acceleration_of
 from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.planes import bin_at, row_of
 
 
 class Impulses(NamedTuple):
-    """sums (rows, bins + 1), as above, in the kernels' unit of mass; axis; per_length: bins in a unit of
-    length; row (N,), that of each particle, or None if there is one."""
+    """sums (rows, bins + 1), as in `planes`, in the kernels' unit of mass; axis; per_length: bins in a unit
+    of length; row (N,), that of each particle, or None if there is one."""
 
     sums: np.ndarray
     axis: int
@@ -26,19 +22,10 @@ class Impulses(NamedTuple):
 
 
 @inner_helper
-def row_of(i, row):
-    """The row of a particle."""
-    if row is None:
-        return 0
-    return np.int64(row[i])
-
-
-@inner_helper
 def add_at(sums, row, place, impulse):
-    """Add an impulse at a place, in bins. What rounding puts outside counts as in the last bin on that side,
-    by the same line."""
-    bin_ = min(max(np.int64(place), 0), sums.shape[1] - 2)
-    upper = impulse * (place - bin_)
+    """Add an impulse at a place, in bins."""
+    bin_, part = bin_at(place, sums.shape[1] - 1)
+    upper = impulse * part
     sums[row, bin_] += impulse - upper
     sums[row, bin_ + 1] += upper
 

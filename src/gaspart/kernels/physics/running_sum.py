@@ -33,12 +33,13 @@ def add(sums, n, x):
 def add_whole(sum_, x, largest):
     """Add x to a sum (2,) of integers: multiples of a coarse unit, and of a fine one for the remainder.
 
-    largest: a power of two that few terms exceed.
+    largest: a power of two that few terms exceed, so that but for rint all here is exact, and the quotient
+    the same for all terms.
     """
-    coarse = largest * _COARSE
-    whole = np.rint(x / coarse)
+    units = x * (1.0 / largest / _COARSE)
+    whole = np.rint(units)
     sum_[0] += np.int64(whole)
-    sum_[1] += np.int64(np.rint((x - whole * coarse) / (largest * _FINE)))
+    sum_[1] += np.int64(np.rint((units - whole) * (_COARSE / _FINE)))
 
 
 def values(sums: np.ndarray) -> np.ndarray:

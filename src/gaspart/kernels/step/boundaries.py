@@ -20,6 +20,7 @@ from gaspart.kernels.physics.collision import collide_by_law
 from gaspart.kernels.physics.contact import time_to_plane
 from gaspart.kernels.physics.flight import advance, face_plane
 from gaspart.kernels.physics.running_sum import add, add_whole
+from gaspart.kernels.step.impulses import add_impulse
 from gaspart.kernels.step.model import LOSS, VIRIAL
 
 _SHORT = 2.0**-12  # of a step: bounces on a floor in less time are not distinguished
@@ -156,6 +157,24 @@ def record_face(face, rules, tally):
     event.wall_hits[face] = 0
 
 
+@inner_helper
+def speed_at_face(flights, i, tally, impulses):
+    """The velocity of a particle along the axis of impulses; 0 if none are tallied."""
+    if impulses is not None:
+        return flights[i].velocity[tally.axis]
+    return 0.0
+
+
+@inner_helper
+def add_impulse_of_face(particles, slot, before, rules, tally, impulses):
+    """Add the impulse of a face that a particle has met, which had the velocity `before`, where it is now on
+    its flight."""
+    if impulses is not None:
+        flight = rules.flights[particles.index[slot]]
+        change, place = flight.velocity[tally.axis] - before, flight.position[tally.axis]
+        add_impulse(particles, slot, place, change, tally, 0, impulses)
+
+
 @inner_kernel
 def meet_faces(particles, slot, rules, dt, tally, law):
     """Let a particle meet all faces that it has come through, one after another. Returns whether there was
@@ -169,6 +188,7 @@ def meet_faces(particles, slot, rules, dt, tally, law):
             break
         met = True
         advance(flights, i, time, space, gravity)
+        before = speed_at_face(flights, i, tally, tally.impulses)
         if face >= WELL_EDGES:
             face -= WELL_EDGES
             cross_edge(flights, i, face, model, rules.tally, law, faces)
@@ -176,6 +196,7 @@ def meet_faces(particles, slot, rules, dt, tally, law):
             if time < 0.0:
                 flights[i].position[face // 2] = face_plane(flights, i, face // 2, face % 2 == 1, space)
             collide_face(flights, i, face, model, rules.tally, law, faces)
+        add_impulse_of_face(particles, slot, before, rules, tally, tally.impulses)
         advance(flights, i, 0.0, space, gravity)
         record_face(face, rules, tally)
     if met:

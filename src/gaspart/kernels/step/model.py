@@ -82,7 +82,13 @@ class Step(NamedTuple):
 class StepTally(NamedTuple):
     """counts, sums (..., 2) by `running_sum.add` and extremes, see the names at the module's top; by
     thread: wall_hits (threads, 2d); wall_impulse (threads, 2d, 2) and wall_loss (threads, 2), an energy, both
-    by `running_sum.add_whole`; momentum and energy: the powers of two that few terms of these exceed."""
+    by `running_sum.add_whole`; momentum and energy: the powers of two that few terms of these exceed.
+
+    impulses (threads, rows, bins + 1, 2), by `add_whole`: those along an axis, as in
+    `kernels.physics.planes`, or None; pull, the acceleration along it; per_length, bins in a unit of length;
+    turns, one over the number of bins if the axis is periodic, otherwise 0; row (N,), that of each particle,
+    or None if there is one. They are not in a tuple of their own: numba passes no tuples in tuples to
+    threads."""
 
     counts: np.ndarray
     sums: np.ndarray
@@ -92,6 +98,12 @@ class StepTally(NamedTuple):
     wall_loss: np.ndarray
     momentum: float
     energy: float
+    impulses: np.ndarray | None = None
+    axis: int = 0
+    pull: float = 0.0
+    per_length: float = 0.0
+    turns: float = 0.0
+    row: np.ndarray | None = None
 
 
 class Found(NamedTuple):

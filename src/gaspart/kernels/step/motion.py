@@ -10,6 +10,7 @@ from gaspart.kernels.compile.policy import inner_allocating_kernel, inner_helper
 from gaspart.kernels.physics.periodic import nearest
 from gaspart.kernels.physics.running_sum import add_whole
 from gaspart.kernels.step.boundaries import is_free, meet_faces
+from gaspart.kernels.step.impulses import add_reflection
 from gaspart.kernels.step.model import DISPLACEMENT, FASTEST
 
 _BLOCK = 128
@@ -49,6 +50,8 @@ def reflect(particles, slot, axis, planes, model, tally, thread):
             x = plane + model.normal * (plane - x)
             lost = 0.5 * impulse * abs(v) * (1.0 - model.normal)
             add_whole(tally.wall_loss[thread], lost, tally.energy)
+        at = plane, -v * model.normal - v
+        add_reflection(particles, slot, axis, at, tally, thread, tally.impulses)
         v = -v * model.normal
     particles.positions[axis, slot] = x
     particles.velocities[axis, slot] = v
@@ -72,6 +75,8 @@ def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
         square = u * u - (y + y) * a
         if square < 0.0:  # pushed out by a contact, too slow to have come through by itself
             if u < 0.0:
+                at = x, -v - v
+                add_reflection(particles, slot, axis, at, tally, thread, tally.impulses)
                 v = -v
             break
         w = np.sqrt(square)
@@ -88,6 +93,8 @@ def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
         add_whole(tally.wall_impulse[thread, 2 * axis + side], impulse, tally.momentum)
         u = w + a * s
         y = max(y - y, half * (w + u) * s)
+        at = upper if side else lower, (-u if side else u) - v
+        add_reflection(particles, slot, axis, at, tally, thread, tally.impulses)
         x, v = (upper - y, -u) if side else (lower + y, u)
     particles.positions[axis, slot] = x
     particles.velocities[axis, slot] = v

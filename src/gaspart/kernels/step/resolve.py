@@ -16,6 +16,7 @@ from gaspart.kernels.physics.periodic import nearest
 from gaspart.kernels.physics.running_sum import add
 from gaspart.kernels.prefetch import fetch
 from gaspart.kernels.step.boundaries import collide_flights
+from gaspart.kernels.step.impulses import add_contact, place_and_speed
 from gaspart.kernels.step.model import (
     COLLISIONS,
     DEEPEST,
@@ -251,7 +252,11 @@ def resolve(particles, i, j, model, step, tally, law, cells):
         rv += ago * vv
         tally.extremes[WORST] = max(tally.extremes[WORST], abs(rr / ss - 1.0))
     tally.counts[COLLISIONS] += 1
+    before_i = place_and_speed(particles, i, ago, tally, tally.impulses)
+    before_j = place_and_speed(particles, j, ago, tally, tally.impulses)
     speed_i, speed_j = collide(particles, i, j, (ago, rr, rv), model, tally, law)
+    add_contact(particles, i, before_i, tally, tally.impulses)
+    add_contact(particles, j, before_j, tally, tally.impulses)
     for k in range(len(space.lengths)):
         if step.rewind and space.periodic[k]:
             wrap(particles, i, k, space.lengths[k])

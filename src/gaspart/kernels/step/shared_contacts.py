@@ -19,6 +19,7 @@ from gaspart.kernels.compile.policy import (
 )
 from gaspart.kernels.model import Space
 from gaspart.kernels.physics.running_sum import add
+from gaspart.kernels.step.impulses import own_impulses
 from gaspart.kernels.step.model import StepModel, StepParticles, StepTally, part_of
 from gaspart.kernels.step.resolve import fetch_ahead, resolve, resolve_all
 
@@ -66,7 +67,8 @@ def tally_of_contact(tally, terms):
     count references, which this function does not."""
     return StepTally(
         tally.counts, terms, tally.extremes, tally.wall_hits, tally.wall_impulse, tally.wall_loss,
-        tally.momentum, tally.energy,
+        tally.momentum, tally.energy, tally.impulses, tally.axis, tally.pull, tally.per_length, tally.turns,
+        tally.row,
     )  # fmt: skip
 
 
@@ -113,7 +115,8 @@ def resolve_part(particles, part, contacts, model, step, tally, cells):
     )  # fmt: skip
     tally = StepTally(
         counts, tally.sums, extremes, tally.wall_hits, tally.wall_impulse, tally.wall_loss, tally.momentum,
-        tally.energy,
+        tally.energy, own_impulses(tally.impulses, part), tally.axis, tally.pull, tally.per_length,
+        tally.turns, tally.row,
     )  # fmt: skip
     resolve_own(particles, contacts, own[:number], model, step, tally, cells)
     contacts.counts[part], contacts.extremes[part], contacts.bounds[part] = counts, extremes, bounds
