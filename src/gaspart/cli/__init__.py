@@ -144,7 +144,8 @@ def _unrecognised(words: list[str], parser: Parser) -> str:
 
 
 def _parser(words: Sequence[str]) -> Parser:
-    """The parser of a command line. Only the command that it names is imported; `completion` needs all."""
+    """The parser of a command line: for the command alone with which it begins, else with a list of all. Only
+    the command that it names is imported; `completion` needs all."""
     parser = Parser(
         prog="gaspart",
         description="Simulate hard-sphere and hard-disc gases, measure and draw them.",
@@ -152,15 +153,18 @@ def _parser(words: Sequence[str]) -> Parser:
     )
     parser.add_argument("--version", action="version", version=f"gaspart {__version__}")
     named = next((word for word in words if word in _COMMANDS), "")
-    _add_commands(parser, _COMMANDS if named == "completion" else (named,))
+    alone = named != "completion" and list(words[:1]) == [named]
+    complete = _COMMANDS if named == "completion" else (named,)
+    _add_commands(parser, (named,) if alone else _COMMANDS, complete)
     parser.set_defaults(program=parser)
     return parser
 
 
-def _add_commands(parser: Parser, complete: Iterable[str]) -> dict[str, Parser]:
-    """Add all commands; those not in `complete` with their name and brief description only."""
+def _add_commands(parser: Parser, names: Iterable[str], complete: Iterable[str]) -> dict[str, Parser]:
+    """Add commands; those not in `complete` with their name and brief description only."""
     added = parser.add_subparsers(required=True, metavar="COMMAND", title="commands", parser_class=Parser)
-    for name, (module, brief) in _COMMANDS.items():
+    for name in names:
+        module, brief = _COMMANDS[name]
         its = added.add_parser(name, help=brief)
         if name in complete:
             getattr(import_module(f"gaspart.cli.{module}"), f"add_{name}")(its)
@@ -169,4 +173,4 @@ def _add_commands(parser: Parser, complete: Iterable[str]) -> dict[str, Parser]:
 
 def commands() -> dict[str, Parser]:
     """The parser of each command, by name."""
-    return _add_commands(Parser(prog="gaspart"), _COMMANDS)
+    return _add_commands(Parser(prog="gaspart"), _COMMANDS, _COMMANDS)

@@ -24,8 +24,11 @@ KNOWN = "0.68"
 same bits: several times as long, and in every process again."""
 _known = numba.__version__.startswith(f"{KNOWN}.")
 if _known:
+    from gaspart.kernels.compile import shortcuts
     from gaspart.kernels.compile.files import KernelCache
     from gaspart.kernels.compile.parts import KernelCompiler, PartCache, PartCompiler, narrow_calls
+
+    shortcuts.take()
 else:
     warnings.warn(
         f"gaspart: numba {numba.__version__} is not {KNOWN}: kernels compile more slowly, and are not kept",
