@@ -26,7 +26,9 @@ def cores(dataset: xr.Dataset) -> Figure:
     for axis, (name, short) in zip(axes, _PANELS.items(), strict=False):
         own = two[[str(engine).startswith(name) for engine in two.engine]]
         _by_count(axis, own.sorted_by("count"), models, fractions)
-        axis.set(xscale="log", xlim=(0.6 * runs.count.min(), 1.6 * runs.count.max()), ylim=(0.0, 2.6))
+        highest = np.nanmax([2.36, *own.speed.value])
+        axis.set(xscale="log", xlim=(0.6 * runs.count.min(), 1.6 * runs.count.max()))
+        axis.set_ylim(0.0, 1.1 * highest)
         style.labelled(axis, "number of particles $N$", f"{short}: {_LABEL}", legend="lower right")
     _by_cores(axes[-1], runs, models, dataset.cores)
     style.letters(*axes)
