@@ -18,7 +18,8 @@ def own_cache(tmp_path, monkeypatch):
 
 
 def test_a_random_scene_of_every_fourth_kind(tmp_path):
-    found = results(tmp_path / "results", range(0, len(OBSERVABLES), 4))
+    """The first is advised to be run by time steps; the others are the shortest of three of their kind."""
+    found = results(tmp_path / "results", (0, 180, 41))
     assert {one["kind"] for one in found if "reached" in one} == set(list(OBSERVABLES)[::4])
     assert sum(not one["reached"] for one in found) <= MISSED
 

@@ -399,7 +399,7 @@ def test_a_run_without_a_contact_is_given_up(tmp_path, monkeypatch):
 def test_the_pressure_of_walls_that_nothing_hits_is_given_up(tmp_path, monkeypatch):
     monkeypatch.setattr(reached, "IDLE", 64)
     scene = gp.Scene(gp.Container((8.0, 8.0)), [], [gp.Particle((1.0, 1.0), (1.0, 0.0), 0.5)])
-    run = {"engine": gp.EventDriven(), "seed": 1, "sample_interval": 16.0}
+    run = {"engine": gp.EventDriven(), "seed": 1, "sample_interval": 20.0}
     gp.run(scene, path=tmp_path / "y.nc", until=gp.Accuracy("pressure", 0.1, face="y low"), **run)
     gp.run(scene, path=tmp_path / "x.nc", until=gp.Accuracy("pressure", 0.5, face="x low"), **run)
     ((y,), (x,)) = (gp.reached_accuracy(tmp_path / f"{axis}.nc") for axis in "yx")
