@@ -99,6 +99,19 @@ def test_where_the_energy_is_not_constant_there_are_no_controls(name, tmp_path):
     assert not Target(UNEVEN[name], "pressure").tallies(gp.EventDriven())
 
 
+def test_steps_keep_no_impulses_for_a_pressure_as_they_share_energy_unevenly(tmp_path):
+    steps = gp.TimeStepped(0.02)
+    run = gp.run(SCENE, steps, 1, 100.0, 0.5, tmp_path / "run.nc", impulses="z:8")
+    with open_trajectory(run) as data, open_run(data, 0.0) as opened:
+        assert wall_controls(opened, 2) is None and group_count(opened)
+        found, bare = A.wall_pressure(data), A.wall_pressure(data.assign_attrs(tallies="[]"))
+    assert found.attrs["estimator"] == "wall impulses" and found.identical(bare)
+    assert "note" not in found.attrs
+    for engine, kept in ((steps, 0), (gp.EventDriven(), 1)):
+        assert len(Target(SCENE, "pressure", "z low").tallies(engine)) == kept
+        assert len(Target(SCENE, "density").tallies(engine)) == 1
+
+
 def test_a_file_without_all_states_and_another_axis_have_none(tmp_path):
     box = gp.Scene(gp.Container((5.0, 5.0, 8.0)), [GAS])
     path = gp.run(box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "few.nc", impulses="x:8", follow=3)

@@ -56,11 +56,14 @@ def test_weights_are_of_the_other_half_and_prefer_what_has_less_noise():
     assert np.array_equal(changed[:32], weights[:32]) and not np.array_equal(changed[32:], weights[32:])
 
 
-@pytest.fixture(scope="module")
-def column(tmp_path_factory):
+ENGINES = {"event": gp.EventDriven(), "step": gp.TimeStepped(2.0**-6)}
+
+
+@pytest.fixture(scope="module", params=ENGINES)
+def column(request, tmp_path_factory):
     """A thin column of spheres that fall, with its impulses."""
-    path = tmp_path_factory.mktemp("column") / "run.nc"
-    return gp.run(COLUMN, gp.EventDriven(), 5, 600.0, 0.5, path, impulses="z:80")
+    path = tmp_path_factory.mktemp("column") / f"{request.param}.nc"
+    return gp.run(COLUMN, ENGINES[request.param], 5, 600.0, 0.5, path, impulses="z:80")
 
 
 def counted(run):
@@ -84,10 +87,11 @@ def test_the_density_of_a_run_has_less_error_with_impulses(column):
     inside = other.error > 0.0
     assert float(((other.error / found.error)[inside] ** 2).median()) > 15.0
     assert float(found.estimate.sum()) * 36.0 * 0.1 == pytest.approx(20.0)
-    assert row.estimate.values == pytest.approx(found.estimate.values.reshape(20, 4).mean(axis=1), rel=0.05)
-    assert (
-        not found.estimate[:4].any() and not found.estimate[-4:].any() and not (found.error[-4:] > 0.0).any()
-    )
+    beyond = 1e-3 if column.stem == "step" else 0.0  # centres that a contact has moved, until the next step
+    wide = found.estimate.values.reshape(20, 4).mean(axis=1)
+    assert row.estimate.values == pytest.approx(wide, rel=0.05, abs=beyond * wide.max())
+    assert (found.estimate[[*range(4), *range(-4, 0)]] <= beyond * wide.max()).all()
+    assert not (found.error[-4:] > beyond * wide.max()).any()
 
 
 @pytest.mark.parametrize("bins", [16, 80])
@@ -129,11 +133,11 @@ def test_along_a_periodic_axis_a_gas_is_uniform_in_a_moving_frame_too():
     assert abs(float((apart**2).mean()) - 1.0) < 3.0 * math.sqrt(2.0 / 12.0) + 0.2
 
 
-def test_a_run_that_is_extended_keeps_its_impulses(tmp_path):
-    whole = gp.run(COLUMN, gp.EventDriven(), 1, 20.0, 1.0, tmp_path / "whole.nc", impulses="z:10")
-    short = gp.run(
-        COLUMN, gp.EventDriven(), 1, 10.0, 1.0, tmp_path / "short.nc", impulses="z:10", keep_checkpoint=True
-    )
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_run_that_is_extended_keeps_its_impulses(name, tmp_path):
+    engine = ENGINES[name]
+    whole = gp.run(COLUMN, engine, 1, 20.0, 1.0, tmp_path / "whole.nc", impulses="z:10")
+    short = gp.run(COLUMN, engine, 1, 10.0, 1.0, tmp_path / "short.nc", impulses="z:10", keep_checkpoint=True)
     assert gp.resume(short, duration=20.0).read_bytes() == whole.read_bytes()
     assert "--impulses z:10" in " ".join(run_options(whole, read_recipe(whole)))
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from gaspart.accuracy.conditions import Conditions, known_conditions
 from gaspart.analysis.diffusion import LINEAR_FROM
+from gaspart.analysis.estimators import knows_energies
 from gaspart.analysis.impulses import USUAL_BINS
 from gaspart.analysis.motion import MOST_FRAMES
 from gaspart.analysis.observables import (
@@ -25,7 +26,6 @@ from gaspart.engines import Engine, reference_engine
 from gaspart.engines.dsmc.rates import rates
 from gaspart.errors import SceneError
 from gaspart.scene.faces import wall_of
-from gaspart.scene.impulses import shares_energy_evenly
 from gaspart.scene.scene import Scene
 from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.simulation import Simulation
@@ -158,7 +158,7 @@ class Target:
         axes = {self.scene.dimension - 1}
         if "face" in self.declared.along:
             asked = [self.face] if self.face else walls_of(self.observable, self.scene)
-            axes = {"xyz".index(face[0]) for face in asked} if shares_energy_evenly(self.scene) else set()
+            axes = {"xyz".index(face[0]) for face in asked} if knows_energies(engine, self.scene) else set()
         if len(axes) != 1:
             return ()
         return useful_impulses(self.scene, engine.tallies, axes.pop(), USUAL_BINS)

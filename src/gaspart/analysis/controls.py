@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from gaspart.analysis.estimators import engine_class, knows_energies
 from gaspart.analysis.impulses import kept
 from gaspart.analysis.run import Run
-from gaspart.scene.impulses import shares_energy_evenly
 
 _LEAST, _MOST = 32, 128
 """Groups of a run, from half of which coefficients are estimated: with fewer they are not, with more no
@@ -28,7 +28,9 @@ def wall_controls(run: Run, axis: int) -> np.ndarray | None:
     and the changes of the momentum and of sum m x v along it. None unless the run has kept impulses along
     this axis and the states of all particles, and is in equilibrium at a constant kinetic energy."""
     has = kept(run.data)
-    if has is None or has.axis != "xyz"[axis] or not (run.has_states and shares_energy_evenly(run.scene)):
+    if has is None or has.axis != "xyz"[axis] or not run.has_states:
+        return None
+    if not knows_energies(engine_class(run), run.scene):
         return None
     time = np.diff(run.time)
     width = float(run.scene.container.lengths[axis]) / has.bins

@@ -5,15 +5,27 @@ from __future__ import annotations
 import json
 
 from gaspart.analysis.run import Run
-from gaspart.engines import ENGINES
+from gaspart.engines import ENGINES, Engine
 from gaspart.errors import SceneError
+from gaspart.scene.impulses import shares_energy_evenly
+from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally, option_of
+
+
+def engine_class(run: Run) -> type[Engine]:
+    """The engine of a run; the base of all, which can do nothing, of a file that does not state it."""
+    return ENGINES.get(json.loads(run.data.attrs.get("engine", "{}")).get("name"), Engine)
 
 
 def engine_tallies(run: Run) -> frozenset[str]:
     """The names of the optional tallies that the engine of a run can make."""
-    engine = json.loads(run.data.attrs.get("engine", "{}")).get("name")
-    return ENGINES[engine].tallies if engine in ENGINES else frozenset()
+    return engine_class(run).tallies
+
+
+def knows_energies(engine: Engine | type[Engine], scene: Scene) -> bool:
+    """Whether the mean energy of motion along each axis is known exactly: by an engine without a systematic
+    error, of a scene that shares it evenly. Steps take some from that across a wall, near it."""
+    return engine.reference and shares_energy_evenly(scene)
 
 
 def estimator(

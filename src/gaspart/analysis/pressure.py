@@ -6,7 +6,7 @@ import numpy as np
 
 from gaspart.analysis import series
 from gaspart.analysis.controls import controlled, group_count, wall_controls
-from gaspart.analysis.estimators import estimator
+from gaspart.analysis.estimators import engine_class, estimator, knows_energies
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.impulses import USUAL_BINS
 from gaspart.analysis.observable import Observable, observable, scalar
@@ -16,7 +16,6 @@ from gaspart.analysis.room import mean_areas, touched
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
-from gaspart.scene.impulses import shares_energy_evenly
 from gaspart.state.optional_tallies import ImpulseTally
 from gaspart.trajectory.amber import face_names
 
@@ -76,7 +75,7 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
             errors,
             **described("pressure", run, touched(run, run.time[:1])[0]),
         )
-        serves = shares_energy_evenly(run.scene)
+        serves = knows_energies(engine_class(run), run.scene)
         asked = ImpulseTally(str(faces[-1])[0], USUAL_BINS) if serves else None
         of = "wall impulses", "wall impulses, with the known mean of the energy along an axis"
         result.attrs |= estimator(run, *of, bool(improved), asked)
