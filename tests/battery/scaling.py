@@ -32,6 +32,7 @@ KEYS = {
     **dict.fromkeys(
         (
             "accommodation",
+            "activity",
             "count",
             "normal",
             "tangential",
