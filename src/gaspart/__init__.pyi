@@ -22,6 +22,7 @@ from gaspart.runs.entry import resume as resume
 from gaspart.runs.entry import run as run
 from gaspart.scene.container import Container as Container
 from gaspart.scene.faces import LeesEdwards as LeesEdwards
+from gaspart.scene.faces import Open as Open
 from gaspart.scene.faces import Piston as Piston
 from gaspart.scene.faces import Sticky as Sticky
 from gaspart.scene.faces import Thermal as Thermal

@@ -16,6 +16,7 @@ from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys.values import count_of, number
 from gaspart.scene.face_checks import check_piston_end, piston_end
+from gaspart.scene.open_faces import is_open, refuse_open
 from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene, require_scene
 from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.given import check_apart, state_at_time_zero
@@ -87,7 +88,8 @@ class Simulation:
     def __repr__(self) -> str:
         kind = "discs" if self.scene.dimension == 2 else "spheres"
         reached = f"time {self.time:g}, {self._dynamics.tally.collisions} collisions"
-        return f"<Simulation of {self.scene.count} {kind}, {self.engine.name} engine: {reached}>"
+        count = self.state.count if is_open(self.scene) else self.scene.count
+        return f"<Simulation of {count} {kind}, {self.engine.name} engine: {reached}>"
 
     def _repr_html_(self) -> str:
         """A picture of the present state, with `repr` below it."""
@@ -239,6 +241,8 @@ class Simulation:
     def record_events(self, wanted: bool) -> None:
         if wanted and not self.engine.records_events:
             raise SceneError("record_events", wanted, 'needs the "event" engine')
+        if wanted:
+            refuse_open(self.scene, "changes the particles: events are not recorded")
         self._log = EventLog(self.scene.dimension, self.scene.rough) if wanted else None
 
     @property
@@ -289,7 +293,8 @@ class Simulation:
         Now: (N, ...) each. Or at the times `at`, from the start to the present one and in any order, by
         running it again: (T, N, ...) each, and `time` (T,) with them.
 
-        Raises SceneError for an unknown name, and for a time outside this range.
+        Raises SceneError for an unknown name, for a time outside this range, and for times of a scene with
+        open faces, whose particles are others at each.
         """
         for name in names:
             if name not in PROPERTIES:
@@ -297,6 +302,7 @@ class Simulation:
         if at is None:
             state = self.state
             return {name: getattr(state, name) for name in names}
+        refuse_open(self.scene, "changes the particles: look at the states of `replay`")
         times = [number("at", time, "must be from 0 to the present time", least=0.0) for time in at]
         if max(times, default=0.0) > self.time:
             raise SceneError("at", max(times), f"is after the present time {self.time:g}")

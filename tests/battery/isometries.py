@@ -99,10 +99,10 @@ def _rate(scene, view):
     return scene.shear_rate * view.signs[0] * view.signs[1]
 
 
-def particles_of(scene, view):
-    """(N,) the old numbers of the particles."""
+def particles_of(scene, view, count=None):
+    """(N,) the old numbers of the particles; of so many of them, where they come and go."""
     ends = np.cumsum([kind.count for kind in scene.species])
-    numbers = np.split(np.arange(scene.count), ends[:-1])
+    numbers = np.split(np.arange(count or scene.capacity), ends[:-1])
     if view.renumbered:
         numbers = [np.concatenate([part[1::2], part[::2]]) for part in numbers[::-1]]
     return np.concatenate(numbers)
@@ -119,7 +119,7 @@ def positions_seen(scene, view, positions, time=0.0):
 
 def state_seen(scene, view, state):
     """A state at time 0 from another view."""
-    order, other = particles_of(scene, view), seen(scene, view)
+    order, other = particles_of(scene, view, state.count), seen(scene, view)
     faces = {}
     if state.shear_rate is not None:
         faces["shear_rate"] = other.shear_rate

@@ -11,6 +11,7 @@ import gaspart as gp
 from gaspart.analysis.run import repeated
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
+from gaspart.scene.open_faces import is_open
 from gaspart.state.optional_tallies import ImpulseTally, PairImpulseTally, StressTally
 from gaspart.state.state import State
 from gaspart.trajectory.correlator import Correlations
@@ -149,6 +150,18 @@ KINDS = {
     ),
     "halves": Kind(_scene(_CUBE, PERIODIC, _gas(16), _gas(16)), impulses=True),
     "polydisperse": Kind(_scene(_CUBE, PERIODIC, _gas(radius=0.45, polydispersity=0.2))),
+    "open": Kind(
+        _scene(
+            (6.0, 4.0, 4.0),
+            ("wall", PERIODIC, PERIODIC),
+            _gas(16),
+            faces={"x_low": gp.Open(0.5, 1.0), "x_high": gp.Open(0.25, 2.0)},
+            centres_to_walls=True,
+        ),
+        interval=0.25,
+        moving="reservoirs are at rest",
+        mirror=0,
+    ),
     "two": Kind(_scene((2.5, 2.5, 2.5), PERIODIC, _gas(2)), steady="two particles pass a cell too rarely"),
     "ten": Kind(_scene((3.0, 3.0, 3.0), PERIODIC, _gas(10))),
 }
@@ -208,6 +221,8 @@ class Start:
         """Form of the file -> arguments of `gaspart.run`: with paths and pairs, with correlations of the
         motion, with those of the fluxes, and with impulses, where the engine has them."""
         half = self.interval / 2.0
+        if is_open(self.scene):  # nothing follows particles that come and go
+            return {"frames": {}}
         found = {
             "frames": {"displacements": True, "pairs": self.engine.records_events},
             "correlations": {"displacements": True, "correlations": Correlations(half, LAGS)},
@@ -264,4 +279,4 @@ def repeated_simulation(engine, name, form="frames"):
     simulation = gp.Simulation(start.scene, start.engine, start.seed, initial=start.initial, tallies=tallies)
     quantum = start.engine.quantum or 0.0
     simulation.advance(until=FRAMES * start.interval + 0.5 * quantum)
-    return repeated(simulation, pairs=start.engine.records_events)
+    return repeated(simulation, pairs=start.engine.records_events and not is_open(start.scene))

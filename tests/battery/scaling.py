@@ -36,6 +36,7 @@ KEYS = {
     **dict.fromkeys(
         (
             "accommodation",
+            "activity",
             "count",
             "normal",
             "tangential",

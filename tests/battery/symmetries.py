@@ -13,6 +13,7 @@ from battery.scaling import data_in_units, result_in_units
 
 import gaspart as gp
 from gaspart.errors import SceneError
+from gaspart.scene.open_faces import is_open
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 ROUNDING = 1e-9
@@ -198,14 +199,15 @@ def of_division(engine, name, observables):
     """The cells of two equal species against one."""
     kind, run = KINDS[name], recorded(engine, name)
     species = kind.scene.species
-    alike = all(one == species[0] and one.alike for one in species)
+    alike = all(one == species[0] and one.alike for one in species) and not is_open(kind.scene)
+    different = "of one species particles enter" if is_open(kind.scene) else "its particles differ"
     other = {form: divided(data) for form, data in run.items()} if alike else {}
     for observable in observables:
         place, form = (observable, "one species", engine, name), form_of(observable)
         if form not in run:
             yield Cell(*place, "not defined", NO_SUMS)
         elif not alike:
-            yield Cell(*place, "not defined", "its particles differ")
+            yield Cell(*place, "not defined", different)
         elif traits_of(observable).merged:
             yield Cell(*place, "not defined", "it is of each species or pair of species")
         elif form == "impulses" and len(species) == 1:

@@ -46,6 +46,8 @@ def refusal(engine, name, symmetry, view):
         return view
     start = base(engine, name)
     present = features(start.scene)
+    if "open" in present:
+        return "what enters is drawn by the numbers of faces and the places on them"
     if engine.startswith("dsmc") and symmetry != "moving":
         return "partners are drawn by the numbers of cells and particles"
     if present & set(DRAWN) and symmetry not in ("shifted", "moving"):
@@ -126,7 +128,7 @@ def _size(key, data):
         return speed * float(np.abs(data["stress_sum"].values).max())
     if key.startswith(("rotational", "heat")):
         return speed**2 * float(np.abs(data[f"shear_{kind}"].values).max())
-    return float(np.abs(data[key].values).max(initial=0.0))
+    return float(np.nanmax(np.abs(data[key].values), initial=0.0))
 
 
 def _apart(old, new, size, lengths):
@@ -134,5 +136,7 @@ def _apart(old, new, size, lengths):
     difference = new.values - old
     if new.name == "coordinates":
         difference -= lengths * np.round(difference / lengths)
-    largest = float(np.abs(difference).max(initial=0.0))
+    if not np.array_equal(np.isnan(old), np.isnan(new.values)):  # of other particles
+        return np.inf
+    largest = float(np.nanmax(np.abs(difference), initial=0.0))
     return largest / size if size else largest

@@ -70,6 +70,7 @@ WITH = {
     "vibrating": {"faces": {"x_low": gp.Vibrating(0.1, 1.0)}},
     "lees_edwards": {"container": AROUND, "faces": {"y_high": gp.LeesEdwards(1.0)}},
     "piston": {"faces": {"x_low": gp.Piston(1.0, 0.1)}},
+    "open": {"faces": {"x_low": gp.Open()}, "centres_to_walls": True},
 }
 
 

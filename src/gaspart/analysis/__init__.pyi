@@ -11,6 +11,7 @@ from gaspart.analysis.motion import mean_squared_displacement as mean_squared_di
 from gaspart.analysis.motion import velocity_autocorrelation as velocity_autocorrelation
 from gaspart.analysis.mutual import mutual_diffusion as mutual_diffusion
 from gaspart.analysis.observable import Observable as Observable
+from gaspart.analysis.occupancy import particle_number as particle_number
 from gaspart.analysis.opening import particle_flux as particle_flux
 from gaspart.analysis.pairs import rdf as rdf
 from gaspart.analysis.pressure import collision_rate as collision_rate

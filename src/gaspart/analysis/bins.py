@@ -45,13 +45,14 @@ class Grid:
         return math.prod((high - low) / number for low, high, number in sides)
 
     def cells(self, places: np.ndarray, inside: bool = False) -> np.ndarray:
-        """(...) the number of the cell at each place (..., A), -1 outside. The upper end belongs to the last
-        cell. inside: what rounding put outside counts to the nearest cell."""
+        """(...) the number of the cell at each place (..., A), -1 outside and at none (NaN). The upper end
+        belongs to the last cell. inside: what rounding put outside counts to the nearest cell."""
         shape = np.shape(places)[:-1]
         found, outside = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=bool)
         for k, (low, high, number) in enumerate(zip(self.lower, self.upper, self.numbers, strict=True)):
             x = places[..., k].astype(float)
-            cell = np.floor((x - low) * (number / (high - low)))
+            outside |= np.isnan(x)
+            cell = np.floor((np.nan_to_num(x) - low) * (number / (high - low)))
             if not inside:
                 outside |= (x < low) | (x > high)
             found = found * number + np.clip(cell, 0, number - 1).astype(np.int64)

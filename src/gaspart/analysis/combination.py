@@ -23,6 +23,7 @@ from gaspart.errors import SceneError, shown
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.optional_tallies import ImpulseTally
+from gaspart.state.state import by_number
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.yaml_text import parse_yaml
 
@@ -111,7 +112,8 @@ def _simulated(simulation: Simulation, time: float) -> bytes:
     if time < simulation.time:
         simulation = simulation.again()
         simulation.advance(until=time)
-    return _bits(simulation.state.positions, simulation.state.velocities)
+    state, capacity = simulation.state, simulation.scene.capacity
+    return _bits(*(by_number(state, values, capacity) for values in (state.positions, state.velocities)))
 
 
 def _bits(*vectors: np.ndarray) -> bytes:

@@ -12,8 +12,9 @@ from typing import Any
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.driving import has_dragged_faces
-from gaspart.scene.faces import sliding_faces, thermal_numbers
+from gaspart.scene.faces import FACES, Open, faces_of, sliding_faces, thermal_numbers
 from gaspart.scene.gas import plain_mixture
+from gaspart.scene.open_faces import is_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.stress import require_tallied
@@ -23,6 +24,7 @@ Selection = Mapping[str, Any]
 GROUPS = 16
 """Groups of particles whose scatter is an uncertainty."""
 SLIDING = "this observable is not defined where images of the particles slide"
+VARYING = "changes the particles: this observable is that of particles that stay"
 DISCS = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
 _NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and those around it in a crystal
 
@@ -30,6 +32,23 @@ _NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and those around it in a crystal
 def unsheared(scene: Scene, selection: Selection) -> None:
     """No sheared faces."""
     refuse_sheared(scene, SLIDING)
+
+
+def opened(scene: Scene, selection: Selection) -> None:
+    """Faces that are open."""
+    if not is_open(scene):
+        raise SceneError(
+            "faces", list(scene.faces), f"none is open: there are always {scene.count} particles"
+        )
+
+
+def open_across(scene: Scene, selection: Selection) -> None:
+    """No open face along the selected axis, where particles would pass its plane outside the container."""
+    axis = walled_axis_of(scene, selection.get("axis"))
+    for face, _ in faces_of(scene, Open):
+        if face // 2 != axis:
+            rule = f"is open: particles come and go on either side of a plane across {'xyz'[axis]}"
+            raise SceneError(f"faces.{FACES[face]}", "open", rule)
 
 
 def periodic(scene: Scene, selection: Selection) -> None:

@@ -95,8 +95,9 @@ class Named:
     each pair of species, "fluxes" correlations of the stress and the heat flux, or "shear" the momentum along
     faces, which some engines tally; conditions: of a scene, see `Condition`; whole: whether the file must
     have all particles: "always", "never", "mixed", of several kinds of them, or "unless fluxes" are kept,
-    which have the temperature; nothing: the equations that an engine solves (`Engine.equation`) whose runs
-    say nothing of it, each with the reason.
+    which have the temperature; varying: whether it is defined where particles come and go through open faces;
+    nothing: the equations that an engine solves (`Engine.equation`) whose runs say nothing of it, each with
+    the reason.
 
     What it is compared with. theory: a function in `analysis.expected`, which knows the equation of the
     engine; bulk: a function of `analysis.bulk`, of an infinite plain gas by each equation, and source: where
@@ -129,6 +130,7 @@ class Named:
     needs: str = ""
     conditions: tuple[Condition, ...] = ()
     whole: str = "always"
+    varying: bool = False
     nothing: dict[str, str] = field(default_factory=dict)
     theory: str = ""
     bulk: str = ""

@@ -40,7 +40,7 @@ def field(
     Raises SceneError for an unknown property or axis, a file without all particles, and too few frames.
     """
     one_of("of", of, QUANTITIES)
-    with open_run(source, start, sheared=True) as run:
+    with open_run(source, start, sheared=True, varying=True) as run:
         along = _axes(run, axes)
         numbers = _numbers(cells, len(along))
         members = np.flatnonzero(run.moving)[selected(run, species, None)]

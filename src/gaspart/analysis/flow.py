@@ -7,7 +7,8 @@ is spent on u. What is taken as a group depends on how the gas can move:
 - as a whole: all particles of a frame, along axes on which their momentum is conserved;
 - between faces that slide, under a force along a periodic axis, or in a `wind`: the particles of a cell in
   all frames, a steady flow;
-- before faces that move along their normal: those of a cell in one frame, since the flow changes.
+- before faces that move along their normal, and between open ones: those of a cell in one frame, since the
+  flow changes.
 
 A flow that is known, between sheared faces (`LeesEdwards`), is taken off before.
 """
@@ -22,7 +23,8 @@ import numpy as np
 
 from gaspart.analysis.bins import Grid
 from gaspart.analysis.room import moving_axes
-from gaspart.scene.faces import sliding_faces
+from gaspart.scene.faces import Open, faces_of, sliding_faces
+from gaspart.scene.open_faces import is_open
 from gaspart.scene.shear import flow
 
 if TYPE_CHECKING:
@@ -79,6 +81,8 @@ def flow_axes(run: Run) -> list[int]:
     """The axes along which the velocity of the gas may vary; none if it moves as a whole only."""
     if moving := moving_axes(run):
         return moving
+    if opened := {number // 2 for number, _ in faces_of(run.scene, Open)}:
+        return sorted(opened)
     across = {number // 2 for number, _ in sliding_faces(run.scene)}
     pulls = run.scene.gravity or (0.0,) * run.dimension
     driven = any(pull and periodic for pull, periodic in zip(pulls, run.periodic, strict=True))
@@ -110,7 +114,7 @@ def about_the_flow(run: Run, along: Mapping[int, int] | None = None) -> Peculiar
     across = run.flow_axes
     if not across:
         return about_the_whole(run)
-    changes = bool(moving_axes(run))
+    changes = bool(moving_axes(run)) or is_open(run.scene)
     stated = dict(along or {})
     axes = across if changes else sorted({*across, *stated})
     return about_cells(run, {axis: stated.get(axis, _number(run, axes, changes)) for axis in axes}, changes)
@@ -138,4 +142,5 @@ def about_cells(run: Run, numbers: Mapping[int, int], changes: bool) -> Peculiar
     for k in range(run.dimension):
         momentum = grid.sums(cells, masses * velocities[..., k], blocks).ravel()
         means[..., k] = np.divide(momentum, weight, out=np.zeros(weight.size), where=weight > 0.0)[groups]
-    return Peculiar(velocities - means, (1.0 - masses / weight[groups])[..., None])
+    shares = np.divide(masses, weight[groups], out=np.ones(cells.shape), where=cells >= 0)
+    return Peculiar(velocities - means, (1.0 - shares)[..., None])

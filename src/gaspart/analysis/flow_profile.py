@@ -31,7 +31,7 @@ def velocity_profile(
     Raises SceneError for an unknown axis, a species that does not move, a file without all particles, and too
     few frames.
     """
-    with open_run(source, start, sheared=True) as run:
+    with open_run(source, start, sheared=True, varying=True) as run:
         require_defined("velocity", run.scene, axis=axis, species=species)
         name = "xyz"[run.dimension - 1] if axis is None else axis
         found = field(run.data, "velocity", name, bins, float(run.time[0]), species)

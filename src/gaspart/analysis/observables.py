@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from gaspart.analysis import conditions as where
 from gaspart.analysis.declaration import Named, units_in
 from gaspart.errors import SceneError, unknown_word
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="pressure on each wall",
         units="energy / length^d",
         function="wall_pressure",
+        varying=True,
         whole="never",
         along=("face",),
         conditions=(where.walled, where.unsheared),
@@ -274,6 +276,7 @@ OBSERVABLES: dict[str, Named] = {
         function="profile",
         whole="mixed",
         arguments={"of": "density"},
+        varying=True,
         along=("position",),
         selections=("axis", "species"),
         conditions=(where.unsheared, where.has_axis, where.has_species),
@@ -286,6 +289,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="mean velocity along an axis, by default the last",
         units="length / time",
         function="velocity_profile",
+        varying=True,
         along=("component", "position"),
         selections=("axis", "species"),
         conditions=(where.has_axis, where.has_species),
@@ -301,13 +305,24 @@ OBSERVABLES: dict[str, Named] = {
         definition="particles that pass a plane or an opening across an axis per time, net",
         units="1 / time",
         function="particle_flux",
+        varying=True,
         along=("component",),
         selections=("axis", "at", "species"),
-        conditions=(where.unsheared, where.walled_axis, where.has_species),
+        conditions=(where.unsheared, where.walled_axis, where.open_across, where.has_species),
         theory="flows.flux",
         power=0.5,
         drives=(where.never_steady,),
         relative_to="norm",
+    ),
+    "number": Named(
+        title="number of particles",
+        symbol="N",
+        definition="mean number of particles inside, between open faces",
+        units="1",
+        function="particle_number",
+        whole="never",
+        varying=True,
+        conditions=(where.unsheared, where.opened),
     ),
     "temperature": Named(
         title="temperature",
@@ -315,6 +330,7 @@ OBSERVABLES: dict[str, Named] = {
         units="energy",
         function="profile",
         arguments={"of": "temperature"},
+        varying=True,
         along=("position",),
         selections=("axis", "species"),
         conditions=(where.unsheared, where.has_axis, where.has_species, where.thermal),
@@ -453,6 +469,8 @@ def require_defined(name: str, scene: Scene, **selection: Any) -> None:
     and for a selection that the observable or the scene does not have."""
     one = OBSERVABLES[known(name)]
     require_selection(name, selection)
+    if not one.varying:
+        refuse_open(scene, where.VARYING)
     for condition in one.conditions:
         condition(scene, selection)
 
@@ -479,7 +497,8 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
 
 def require_steady_value(name: str, scene: Scene) -> None:
     """Raise SceneError, with the reason, for an observable that is 0 on average in the steady state of a
-    scene: no run makes it accurate relatively."""
+    scene: no run makes it accurate relatively; and where particles come and go, of which none is planned."""
+    refuse_open(scene, "changes the particles: the length of such a run is not planned; give a duration")
     for condition in OBSERVABLES[known(name)].drives:
         condition(scene, {})
 

@@ -9,9 +9,10 @@ from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.profiles import Means, with_freedom
-from gaspart.analysis.run import Source, open_run, selected
+from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
+from gaspart.scene.faces import FACES, Open
 
 
 def particle_flux(
@@ -25,22 +26,24 @@ def particle_flux(
     units 1 / time: positive towards larger coordinates.
 
     It is the change of the number of particles beyond the plane, exactly, however often each of them has
-    passed between frames: those that come back do not count. The plane is that of the whole container; where
-    interior walls lie in it, all pass their openings. source: a trajectory, by its path or open, or a
-    simulation; axis: "x", "y" or "z", by default the last one with walls; at: the place of the plane along
-    it, by default the middle; species: of one alone, by its number in the scene; start: the time from which
-    frames count (by default a quarter of the run; 0 of a gas that streams out from the start).
+    passed between frames: those that come back do not count, nor those that come and go through an open face
+    beyond. The plane is that of the whole container; where interior walls lie in it, all pass their openings.
+    source: a trajectory, by its path or open, or a simulation; axis: "x", "y" or "z", by default the last one
+    with walls; at: the place of the plane along it, by default the middle; species: of one alone, by its
+    number in the scene; start: the time from which frames count (by default a quarter of the run; 0 of a gas
+    that streams out from the start).
 
     Theory: 0 in a steady state without interior walls; of free flight through openings of walls in the plane
     n sqrt(k_B T / 2 pi m) times their area, with the density on both sides. Raises SceneError for a periodic
-    axis, which images pass, a plane outside the container, a file without all particles, and too few frames.
+    axis, which images pass, or another one than that of open faces, a plane outside the container, a file
+    without all particles, and too few frames.
     """
-    with open_run(source, start) as run:
+    with open_run(source, start, varying=True) as run:
         require_defined("flux", run.scene, axis=axis, at=at, species=species)
         number = walled_axis_of(run.scene, axis)
         place = 0.5 * run.scene.container.lengths[number] if at is None else float(at)
         members = np.flatnonzero(run.moving)[selected(run, species, None)]
-        beyond = (run.positions[:, members, number] > place).sum(axis=1)
+        beyond = (run.positions[:, members, number] > place).sum(axis=1) - _entered_beyond(run, number)
         if len(beyond) <= LEAST_INTERVALS:
             raise SceneError("frames", len(beyond), f"an error needs {LEAST_INTERVALS + 1} or more")
         found = correlated_mean(np.diff(beyond) / np.diff(run.time), LEAST_INTERVALS).estimate
@@ -48,3 +51,12 @@ def particle_flux(
         about = described("flux", run, number, place, members, beyond)
         means = Means(*(np.array([each]) for each in (found.value, found.error, found.freedom)))
         return with_freedom(observable("flux", along, means.values, means.errors, **about), means)
+
+
+def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:
+    """(T,) how many particles more have entered through the upper face of an axis than left; 0 of one that is
+    not open."""
+    upper = 2 * axis + 1
+    if not isinstance(run.scene.faces.get(FACES[upper]), Open):
+        return 0
+    return np.asarray(run.data["entries"].values[:, upper] - run.data["wall_hits"].values[:, upper])

@@ -54,7 +54,7 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     distance (`gaspart.theory.wall_pressure`). Raises SceneError without walls, for too few frames, and where
     particles rest in a scene with obstacles, which may carry them.
     """
-    with open_run(source, start, sheared=True) as run:
+    with open_run(source, start, sheared=True, varying=True) as run:
         require_defined("pressure", run.scene)
         blocks = min(_BLOCKS, len(run.time) - 1)
         if blocks < 4:

@@ -14,17 +14,19 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.conditions import SLIDING
+from gaspart.analysis.conditions import SLIDING, VARYING
 from gaspart.analysis.flow import Peculiar, about_the_flow, flow_axes
 from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
 from gaspart.scene.gas import Gas, Mixture
+from gaspart.scene.open_faces import is_open, refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_particle
 from gaspart.state.optional_tallies import tally_to_dict
+from gaspart.state.state import by_number
 from gaspart.state.tally import Tally
 from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.reading import open_trajectory
@@ -56,8 +58,8 @@ class Run:
 
     @property
     def count(self) -> int:
-        """N, of the scene."""
-        return self.scene.count
+        """N, of the scene; with open faces of all numbers that particles may have."""
+        return self.scene.capacity
 
     @property
     def dimension(self) -> int:
@@ -93,7 +95,7 @@ class Run:
 
     @cached_property
     def positions(self) -> np.ndarray:
-        """(T, N, d)."""
+        """(T, N, d); NaN where faces are open, of numbers that no particle has."""
         return self._vectors("coordinates").values.astype(float)
 
     @cached_property
@@ -111,19 +113,23 @@ class Run:
     @cached_property
     def masses(self) -> np.ndarray:
         """(N,), infinite for fixed particles; single particles come before species."""
-        fixed = per_particle(self.scene, "fixed").astype(bool)
-        return np.where(fixed, np.inf, per_particle(self.scene, "mass").astype(float))
+        fixed = self._each(per_particle(self.scene, "fixed")).astype(bool)
+        return np.where(fixed, np.inf, self._each(per_particle(self.scene, "mass")).astype(float))
 
     @cached_property
     def radii(self) -> np.ndarray:
         """(N,)."""
-        return per_particle(self.scene, "radius").astype(float)
+        return self._each(per_particle(self.scene, "radius")).astype(float)
+
+    def _each(self, values: np.ndarray) -> np.ndarray:
+        """(N,) values of the particles at the start, where others come of those, which are alike."""
+        return np.resize(values, self.count)
 
     @cached_property
     def species(self) -> np.ndarray:
         """(N,) numbers of species, as in the scene; single particles have the number after the last."""
         counts = [len(self.scene.particles), *(kind.count for kind in self.scene.species)]
-        return np.repeat([len(self.scene.species), *range(len(self.scene.species))], counts)
+        return self._each(np.repeat([len(self.scene.species), *range(len(self.scene.species))], counts))
 
     @cached_property
     def moving(self) -> np.ndarray:
@@ -176,6 +182,7 @@ class Run:
         """(T,) k_B T of each frame: twice the kinetic energy of flight about the mean motion (see `motion`)
         per degree of freedom; 0 if it is only rounding of the velocity of the centre of mass. Of a file that
         lacks particles, see `_of_all`. Raises SceneError as `freedoms`."""
+        refuse_open(self.scene, "changes the particles: there is no temperature of the whole run")
         lacking = self.is_subset or "velocities" not in self.data
         if lacking and (self.centred or "stress_sum" in self.data):
             return self._of_all
@@ -296,14 +303,14 @@ def require_collisions(run: Run) -> None:
 
 @contextmanager
 def open_run(
-    source: Source, start: float | None, pairs: bool = False, sheared: bool = False
+    source: Source, start: float | None, pairs: bool = False, sheared: bool = False, varying: bool = False
 ) -> Iterator[Run]:
     """The part of a source from the time `start` on; by default without its first quarter.
 
     A simulation is run again, from its start to the present time; with `pairs`, the collisions of each pair
-    of species are counted then. sheared: whether the observable has a meaning in a sheared gas. Raises
-    SceneError for a sheared gas where it has none, for fewer than two frames, and for what `open_trajectory`
-    refuses.
+    of species are counted then. sheared: whether the observable has a meaning in a sheared gas; varying:
+    whether it has one where faces are open. Raises SceneError where it has none, for fewer than two frames,
+    and for what `open_trajectory` refuses.
     """
     if isinstance(source, Simulation):
         opened = nullcontext(repeated(source, pairs))
@@ -326,6 +333,8 @@ def open_run(
         scene = Scene.from_dict(parse_yaml(data.attrs["scene"]))
         if not sheared:
             refuse_sheared(scene, SLIDING)
+        if not varying:
+            refuse_open(scene, VARYING)
         yield Run(scene, time[chosen], part)
 
 
@@ -346,16 +355,20 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
     for time in times:
         again.advance(until=time)
         state, tally = again.state, again.tally
-        places = {"coordinates": state.positions, "displacements": state.unwrapped}
+        places = {"coordinates": state.positions, "velocities": state.velocities}
+        places["displacements"] = state.unwrapped
+        places = {name: by_number(state, values, scene.capacity) for name, values in places.items()}
         extra = {} if state.piston is None else {"piston_position": state.piston[0]}
         if counter:
             counter.take()
             extra["pair_collisions"] = counter.counts.copy()
-        row = {**vars(tally), **places, "velocities": state.velocities, **extra, "time": again.time}
+        row = {**vars(tally), **places, **extra, "time": again.time}
         row["kinetic_energy"] = state.kinetic_energy
         rows.append({name: value for name, value in row.items() if value is not None})
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]
+    if is_open(scene):
+        del columns["displacements"]  # from no place from which all have started
     sums = {field.name: field.metadata.get("along", ()) for field in fields(Tally)}
     along = {**dict.fromkeys(("coordinates", "displacements", "velocities"), ("atom", "spatial")), **sums}
     along["pair_collisions"] = ("pair",)

@@ -91,7 +91,7 @@ def profile(
     Raises SceneError for an unknown property or axis, a species that does not move, and for too few frames.
     """
     one_of("of", of, having(function="profile"))
-    with open_run(source, start) as run:
+    with open_run(source, start, varying=True) as run:
         require_defined(of, run.scene, axis=axis, species=species)
         names = "xyz"[: run.dimension]
         k = names.index(names[-1] if axis is None else axis)

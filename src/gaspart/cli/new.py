@@ -22,7 +22,7 @@ _CHAPTERS = {
     "Gases and fluids": ("gas", "spheres", "rarefied", "brownian", "rough"),
     "Walls": ("chambers", "plates", "slit", "piston", "shock", "two_gases", "adsorption", "sticky"),
     "Gravity": ("atmosphere", "separation"),
-    "Heat and flow": ("heat", "metal", "shear", "channel", "gradient", "radiator"),
+    "Heat and flow": ("heat", "metal", "shear", "channel", "gradient", "radiator", "effusion"),
     "Crystals and packings": ("crystal", "melting", "packing"),
     "Grains": ("cooling", "hourglass", "shaken", "sheared", "incline"),
 }

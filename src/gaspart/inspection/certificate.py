@@ -5,9 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 
+from gaspart.analysis.occupancy import particle_numbers
 from gaspart.analysis.statistics import autocorrelation_time
 from gaspart.inspection.energy import energy_line
+from gaspart.scene.open_faces import is_open
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.opening import opened
 from gaspart.trajectory.reading import open_trajectory
@@ -25,7 +28,15 @@ def certificate(path: Path) -> list[str]:
         series = {name: np.asarray(file[name][:], dtype=float) for name in names}
     with open_trajectory(path) as data:
         drift = energy_line(scene, data)
-    return [drift, _contacts(series), _samples(scene, series)]
+        samples = _inside(scene, data) if is_open(scene) else _samples(scene, series)
+    return [drift, _contacts(series), samples]
+
+
+def _inside(scene: Scene, data: xr.Dataset) -> str:
+    """How many particles there were in the frames of a run with open faces, and the room for them."""
+    counts = particle_numbers(scene, data)
+    ends = f"{counts[0]} particles at the start, {counts[-1]} at the end"
+    return f"{ends}, {counts.min()} to {counts.max()} in between; room for {scene.capacity}"
 
 
 def _contacts(series: dict) -> str:

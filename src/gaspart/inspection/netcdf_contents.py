@@ -16,6 +16,7 @@ from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Given
 from gaspart.inspection.netcdf_size import needed_bytes
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.shear import fixed_images
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.amber import BOOKKEEPING
@@ -37,6 +38,7 @@ def read_netcdf(path: Path, given: Given) -> Contents:
     by_gaspart = _is_own(path)
     if by_gaspart:
         check_frames(path)
+        refuse_open(read_recipe(path).scene, "changes the particles; the checks are of those that stay")
     with opened(path) if by_gaspart else _foreign(path) as file:
         _check_convention(file, path)
         contents = _contents(file, given, path)

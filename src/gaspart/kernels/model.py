@@ -21,7 +21,7 @@ WELL_EDGES = 12  # WELL_EDGES more for the edges of the wells at the container's
 WALLS = 18  # and from here on the rows of interior walls
 NUMBER_BITS = 26  # of a particle's number where a search lists it beside its image
 IMAGE_BITS = 2  # above them, for each axis: the image, signed
-HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON = range(6)  # of `obstacles.face.RULES`
+HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON, OPEN = range(7)  # of `obstacles.face.RULES`
 PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # of Piston.motion and MovingWall.motion
 
 
@@ -181,14 +181,23 @@ class Ramp(NamedTuple):
     high: np.ndarray
 
 
+class Open(NamedTuple):
+    """Faces through which particles leave and enter. present (N,), 1 of particles that are inside, and 0 of
+    the others, which are at no place (NaN), at rest and in no box; entries (2d,), how many have entered
+    through each of the container's faces."""
+
+    present: np.ndarray
+    entries: np.ndarray
+
+
 class Faces(NamedTuple):
     """Faces with a kind. Of the container's faces (2d,): kind; level, the temperature, of one that varies
     that at the low end, or the momentum that sticks; depth and width of the well, 0 if there is none. Of the
     particles: place (N, d), -1 or 1 in the well of an axis' low or high face, or stuck to it; held (N, d),
     the energy kept there as vibration; draws (N,), how often random numbers were taken for it, under `key`
     (2,). sticky (2d,), which faces are, motion, piston, sliding, accommodation (2d,), the fraction of hits
-    after which velocities are drawn, ramp: None if no face is sticky, none vibrates, none is a piston, none
-    slides, all draw after every hit, and none varies along itself."""
+    after which velocities are drawn, ramp, open: None if no face is sticky, none vibrates, none is a piston,
+    none slides, all draw after every hit, none varies along itself, and none is open."""
 
     kind: np.ndarray
     level: np.ndarray
@@ -204,6 +213,7 @@ class Faces(NamedTuple):
     sliding: Sliding | None
     accommodation: np.ndarray | None
     ramp: Ramp | None
+    open: Open | None
 
 
 class WarmWalls(NamedTuple):

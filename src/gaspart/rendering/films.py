@@ -14,11 +14,12 @@ import numpy as np
 from gaspart.errors import SceneError, optional
 from gaspart.files import FileKind, begins_with, output_path, whole_file, writing
 from gaspart.keys.values import count_of, number
-from gaspart.rendering.frames import opened, particles_of
+from gaspart.rendering.frames import opened, particles_of, scene_of
 from gaspart.rendering.labels import Labels, time_format
 from gaspart.rendering.particles import FASTEST, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.rendering.shown import Film
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
@@ -143,6 +144,7 @@ def _checked(
     colours_of(first, colour)
     direction = checked_camera(camera, first.dimension)
     if trail is not None:
+        refuse_open(scene_of(trajectory), "changes the particles: a trail is of one that stays")
         if count_of("trail", trail) >= len(first.radii):
             raise SceneError("trail", trail, f"the trajectory has {len(first.radii)} particles")
         if first.dimension != 2:

@@ -20,6 +20,7 @@ from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, pictu
 from gaspart.rendering.shown import Picture
 from gaspart.scene.faces import Piston, Vibrating, pistons
 from gaspart.scene.moving_walls import moving_wall
+from gaspart.scene.open_faces import is_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import fixed_images
 from gaspart.scene.walls import Wall
@@ -106,25 +107,30 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
     shown = {name: source.variables[name][frame].values for name in names if name in source.variables}
     if "keep" in source.attrs:
         raise SceneError("keep", source.attrs["keep"], "a picture needs positions and velocities")
-    positions, velocities = shown["coordinates"].astype(float), shown["velocities"].astype(float)
-    scene = _scene(source.attrs["scene"])
+    inside = np.isfinite(shown["coordinates"]).all(axis=1)  # of particles that come and go
+    positions, velocities = (shown[name][inside].astype(float) for name in ("coordinates", "velocities"))
+    scene, stored = scene_of(source), len(inside)
     return DrawnParticles(
         positions=positions,
-        radii=source["radius"].values,
-        species=source["type"].values,
+        radii=source["radius"].values[inside],
+        species=source["type"].values[inside],
         speeds=np.sqrt((velocities**2).sum(axis=1)),
         lengths=shown["cell_lengths"][: positions.shape[1]],
         walls=_walls(scene, float(shown["time"]), shown.get("piston_position")),
-        masses=per_particle(scene, "mass")[: len(source["radius"])].astype(float),
-        fixed=per_particle(scene, "fixed")[: len(source["radius"])].astype(bool),
+        masses=np.resize(per_particle(scene, "mass"), scene.capacity)[:stored][inside].astype(float),
+        fixed=np.resize(per_particle(scene, "fixed"), scene.capacity)[:stored][inside].astype(bool),
         periodic=fixed_images(scene),
         parameters=parameters_of(scene),
     )
 
 
+def scene_of(trajectory: xr.Dataset) -> Scene:
+    """The scene of a trajectory, which is the same for all its frames."""
+    return _scene(trajectory.attrs["scene"])
+
+
 @lru_cache(maxsize=1)
 def _scene(text: str) -> Scene:
-    """The scene of a trajectory, which is the same for all its frames."""
     return Scene.from_dict(parse_yaml(text))
 
 
@@ -132,7 +138,9 @@ def parameters_of(scene: Scene) -> tuple[str, ...]:
     """The parameters of a scene that a picture of it does not show, as short texts."""
     kind = {2: "disc", 3: "sphere"}[scene.dimension]
     texts = [f"{scene.count} {kind}{'s' if scene.count != 1 else ''}"]
-    if not pistons(scene):  # the container would not be what they fill
+    if is_open(scene):
+        texts[0] += " at the start"
+    elif not pistons(scene):  # the container would not be what they fill
         texts.append(f"packing fraction {scene.packing_fraction:.3g}")
     if scene.gravity is not None:
         texts.append(f"gravity {math.hypot(*scene.gravity):.3g}")

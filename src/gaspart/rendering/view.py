@@ -17,9 +17,10 @@ from gaspart.errors import SceneError
 from gaspart.files import FileKind, output_path, writing
 from gaspart.keys.values import count_of
 from gaspart.rendering.camera import edges_of
-from gaspart.rendering.frames import opened, particles_of
+from gaspart.rendering.frames import opened, particles_of, scene_of
 from gaspart.rendering.particles import FASTEST, FIXED, DrawnParticles
 from gaspart.rendering.style import COLOURS
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
@@ -86,6 +87,8 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
                 f"a {type(found).__name__}",
                 "must be a trajectory or a simulation: a view needs frames",
             )
+        scene = found.scene if isinstance(found, Simulation) else scene_of(found)
+        refuse_open(scene, "changes the particles: a page shows those that stay; make a film")
         data = _with_names(found) if isinstance(found, Simulation) else found
         last = data.sizes["frame"] - 1
         if last < 0:

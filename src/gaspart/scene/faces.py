@@ -309,6 +309,45 @@ class Piston(Surface):
 
 
 @dataclass(frozen=True)
+class Open(Surface):
+    """An opening as wide as the face: a particle whose centre reaches it leaves, and is gone. With an
+    `activity` and a `temperature` particles of a reservoir enter there; without, there is a vacuum outside.
+
+    The reservoir is a gas at rest with the activity eta exp(mu_excess / k_B T), eta its packing fraction
+    (`theory.activity`; dilute, it is eta). That of the number density z sends z (k_B T / 2 pi m)^(1/2)
+    particles per area and time, evenly over the face, with the velocities of those that pass a plane in one
+    direction. Whichever would overlap a particle inside is turned away. The container with reservoirs of one
+    kind is then, in equilibrium, exactly the grand-canonical ensemble of centres between its faces: a step
+    in is the reversal of a step out, and both have the weight z^N exp(-E / k_B T). Needs one species, and
+    `centres_to_walls`: the density is the reservoir's some diameters away from a face, not beside it.
+    """
+
+    activity: float | None = field(
+        default=None, metadata=declared(positive("of the reservoir outside; without it a vacuum"))
+    )
+    temperature: float | None = field(
+        default=None, metadata=declared(positive("of the reservoir, which has an activity too"))
+    )
+
+    kind: ClassVar[str] = "open"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if (self.activity is None) != (self.temperature is None):
+            raise SceneError("temperature", self.temperature, "a reservoir has an activity and a temperature")
+
+    @property
+    def smooth(self) -> bool:
+        """No: particles that leave and enter have momentum along it."""
+        return False
+
+    @property
+    def temperatures(self) -> tuple[float, ...]:
+        """That of the reservoir, if there is one."""
+        return () if self.temperature is None else (self.temperature,)
+
+
+@dataclass(frozen=True)
 class LeesEdwards(Surface):
     """Periodic faces whose images slide (Lees & Edwards, J. Phys. C 5, 1921 (1972)): a gas without walls is
     sheared, u_x = `shear_rate` (y - L_y / 2).

@@ -140,6 +140,10 @@ EXCLUDED: dict[tuple[str, str], str] = {
     ("fixed", "lees_edwards"): "the images of fixed particles would slide",
     ("restitution", "vibrations"): "energy would be lost twice",
     ("centres_to_walls", "roughness"): "rough particles touch walls with their surfaces",
+    **dict.fromkeys(
+        ((name, "open") for name in FEATURES if name not in ("open", "thermal", "centres_to_walls")),
+        "reservoirs are of smooth, elastic particles of one size, between faces that are hard or thermal",
+    ),
 }
 """Pairs of features that no scene may have, and why."""
 

@@ -21,6 +21,7 @@ _DISTURBING = (
     "moving_wall",
     "lees_edwards",
     "sliding",
+    "open",
 )
 """Features with which there is no equilibrium at one temperature, or fixed particles in the way."""
 _STEADY = frozenset(("walls", "polydispersity", "centres_to_walls"))

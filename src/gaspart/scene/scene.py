@@ -39,6 +39,7 @@ from gaspart.scene.gas import Gas, Mixture, mixture_of
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.limits import Nearby, check_packing, check_region, check_room, rounding
 from gaspart.scene.moving_walls import moving_wall
+from gaspart.scene.open_faces import capacity, check_open_faces
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Particle, Species
 from gaspart.scene.thermostat import Thermostat
@@ -111,6 +112,7 @@ class Scene:
         check_walls(self)
         check_faces(self)
         check_features(self)
+        check_open_faces(self)
         check_driven(self)
         for n, kind in enumerate(self.species):
             if kind.count:
@@ -204,8 +206,13 @@ class Scene:
 
     @property
     def count(self) -> int:
-        """The number of particles."""
+        """The number of particles, with open faces at the start."""
         return sum(kind.count for kind in self.kinds)
+
+    @property
+    def capacity(self) -> int:
+        """The number of particles that there may be at any time: `count`, unless faces are open."""
+        return capacity(self)
 
     @property
     def vibrates(self) -> bool:

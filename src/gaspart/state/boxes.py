@@ -40,8 +40,9 @@ class Boxes:
         return int(self.per_side.prod())
 
     def coordinates(self, positions: np.ndarray) -> np.ndarray:
-        """(N, 3) box coordinates of positions (N, d); the outermost box for a position outside."""
-        boxes = np.zeros((len(positions), 3), dtype=np.int64)
+        """(N, 3) box coordinates of positions (N, d); the outermost box for a position outside, and the first
+        for none (NaN)."""
+        boxes, positions = np.zeros((len(positions), 3), dtype=np.int64), np.nan_to_num(positions)
         for k in range(positions.shape[1]):
             along = (positions[:, k] / self.widths[k]).astype(np.int64)
             boxes[:, k] = np.clip(along, 0, self.per_side[k] - 1)
@@ -68,7 +69,7 @@ def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float 
     than `narrowest` if larger particles are kept outside the boxes."""
     lengths = scene.container.lengths
     narrowest = narrowest_box(scene) if narrowest is None else narrowest
-    width = max(cube_side(lengths, per_particle * scene.count), narrowest)
+    width = max(cube_side(lengths, per_particle * scene.capacity), narrowest)
     return tuple(max(1, int(length / width)) for length in lengths)
 
 

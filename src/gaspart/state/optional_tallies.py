@@ -15,6 +15,7 @@ from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.driving import has_dragged_faces
 from gaspart.scene.impulses import require_impulses, require_pair_impulses, row_count
+from gaspart.scene.open_faces import is_open
 from gaspart.scene.stress import require_tallied
 
 if TYPE_CHECKING:
@@ -182,6 +183,13 @@ class WallShearTally(OptionalTally):
         return {"axis": scene.dimension}
 
 
+@dataclass(frozen=True)
+class EntryTally(OptionalTally):
+    """The particles that have entered through open faces."""
+
+    name: ClassVar[str] = "entries"
+
+
 ASKED: dict[str, type[OptionalTally]] = {
     tally.name: tally for tally in (StressTally, ImpulseTally, PairImpulseTally)
 }
@@ -190,7 +198,8 @@ ASKED: dict[str, type[OptionalTally]] = {
 
 def tallies_of(scene: Scene) -> tuple[OptionalTally, ...]:
     """Those that every run of a scene has, if its engine makes them."""
-    return (WallShearTally(),) if has_dragged_faces(scene) else ()
+    made = {WallShearTally(): has_dragged_faces(scene), EntryTally(): is_open(scene)}
+    return tuple(tally for tally, present in made.items() if present)
 
 
 def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:

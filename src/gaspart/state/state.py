@@ -22,8 +22,9 @@ class State:
     each particle's vibration, or None; piston (2,), its place along its axis and its velocity, and
     piston_face, the face of the container or the interior wall that it is, or None; of a sheared gas
     displaced, how far images above the container are displaced along x, and shear_rate, du_x / dy of the flow
-    that the velocities include, or None. The mass and moment of inertia of a fixed particle are infinite;
-    they count in no sum.
+    that the velocities include, or None; where faces are open, numbers (N,), which of the particles of the
+    run are inside, or None. The mass and moment of inertia of a fixed particle are infinite; they count in no
+    sum.
     """
 
     time: float
@@ -43,6 +44,7 @@ class State:
     piston_face: str | None = None
     displaced: float | None = None
     shear_rate: float | None = None
+    numbers: np.ndarray | None = None
 
     def __repr__(self) -> str:
         kind = "discs" if self.dimension == 2 else "spheres"
@@ -151,6 +153,16 @@ class State:
                 view.flags.writeable = False
                 setattr(state, key, view)
         return state
+
+
+def by_number(state: State, values: np.ndarray, capacity: int) -> np.ndarray:
+    """(capacity, ...) values (N, ...) of the particles of a state, each at its number in the run; NaN where
+    there is no particle. The same values without open faces."""
+    if state.numbers is None:
+        return values
+    every = np.full((capacity, *values.shape[1:]), np.nan)
+    every[state.numbers] = values
+    return every
 
 
 def _finite(values: np.ndarray) -> np.ndarray:

@@ -39,6 +39,10 @@ class Tally:
     walls, d), the momentum along each axis given to each thermal face by particles that leave it with all
     components drawn; wall_energy then includes the work that the face does.
 
+    If faces are open, otherwise None: entries (2d + interior walls,), of particles through each of them;
+    wall_hits are then those that have left there, wall_impulse the momentum along the normal that both carry
+    through, and wall_energy the energy of those that have left less that of those that have entered.
+
     If they were asked for, otherwise None: stress_sum (d, d), the time integral of the stress tensor times
     the volume, of m v v and, at a collision, of r dp, with r the vector from the second particle to the
     first and dp the momentum that this gains; collisional_stress_sum (d, d), the latter alone; heat_sum
@@ -78,6 +82,7 @@ class Tally:
     wall_shear: np.ndarray | None = field(
         default=None, metadata={"along": ("face", "axis"), "units": IMPULSE, "only": "wall_shear"}
     )
+    entries: np.ndarray | None = field(default=None, metadata={"along": ("face",), "only": "entries"})
     stress_sum: np.ndarray | None = field(
         default=None, metadata={"along": ("axis", "direction"), "units": ACTION, "only": "stress"}
     )

@@ -99,6 +99,7 @@ from gaspart.theory.mode_pairs import transport_uniform_mode as transport_unifor
 from gaspart.theory.modes import diffusion_modes as diffusion_modes
 from gaspart.theory.modes import sound_attenuation as sound_attenuation
 from gaspart.theory.modes import velocity_autocorrelation_modes as velocity_autocorrelation_modes
+from gaspart.theory.potential import activity as activity
 from gaspart.theory.potential import chemical_potential_uncertainty as chemical_potential_uncertainty
 from gaspart.theory.potential import excess_chemical_potential as excess_chemical_potential
 from gaspart.theory.potential import excess_free_energy as excess_free_energy

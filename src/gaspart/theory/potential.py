@@ -49,6 +49,12 @@ def chemical_potential_uncertainty(packing_fraction: Numbers, dimension: int) ->
     return compressibility_uncertainty(eta, dimension) + below
 
 
+def activity(packing_fraction: Numbers, dimension: int) -> Values:
+    """eta exp(mu_excess / k_B T), by `excess_chemical_potential` (same range, same shape); the inverse is
+    `packing_fraction_at`."""
+    return np.asarray(packing_fraction) * np.exp(excess_chemical_potential(packing_fraction, dimension))
+
+
 @checked
 def insertion_finite_size_correction(packing_fraction: Numbers, dimension: int, count: int) -> Values:
     """-ln P_N - mu_excess / (k_B T), to first order in 1/N: P_N is the chance that a random place in a

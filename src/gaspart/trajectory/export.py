@@ -65,13 +65,15 @@ def _snapshot(path: Path, frame: int) -> Snapshot:
             raise SceneError("frame", frame, f"the trajectory has {there}")
         frame %= there  # netCDF counts -1 from the allocated frames of an unfinished file
         check_frames(path, range(frame, frame + 1))
-        radii = np.asarray(file["radius"][:])
+        places = np.asarray(file["coordinates"][frame], dtype=float)
+        inside = np.isfinite(places).all(axis=1)  # of particles that come and go
+        masses = np.resize(per_particle(scene, "mass"), scene.capacity)[: len(places)]
         return Snapshot(
-            positions=np.asarray(file["coordinates"][frame], dtype=float),
-            velocities=np.asarray(file["velocities"][frame], dtype=float),
-            diameters=2.0 * radii,
-            masses=per_particle(scene, "mass")[: len(radii)].astype(float),
-            types=np.asarray(file["type"][:]),
+            positions=places[inside],
+            velocities=np.asarray(file["velocities"][frame], dtype=float)[inside],
+            diameters=2.0 * np.asarray(file["radius"][:])[inside],
+            masses=masses[inside].astype(float),
+            types=np.asarray(file["type"][:])[inside],
             lengths=np.asarray(file["cell_lengths"][frame], dtype=float),
             time=float(file["time"][frame]),
             dimension=scene.dimension,

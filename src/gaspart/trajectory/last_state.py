@@ -11,6 +11,7 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.scene.faces import GRADIENT
 from gaspart.scene.moving_walls import has_piston
+from gaspart.scene.open_faces import refuse_open
 from gaspart.state.given import state_from_arrays
 from gaspart.state.state import State
 from gaspart.trajectory.checkpoint import kept_beside
@@ -40,6 +41,7 @@ def last_state(path: str | Path) -> State:
         simulation = simulation_of(recipe)
         simulation.restore(checkpoint.arrays)
         return simulation.state.copy()
+    refuse_open(recipe.scene, f"changes the particles, and {path} has no checkpoint of its end")
     if recipe.stored_count < recipe.scene.count:
         rule = f"has {recipe.stored_count} of {recipe.scene.count} particles, and no checkpoint"
         raise SceneError("file", str(path), rule)

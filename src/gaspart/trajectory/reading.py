@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.scene.open_faces import is_open
+from gaspart.scene.scene import Scene
 from gaspart.state.tally import ENERGY, Tally
 from gaspart.trajectory import amber
 from gaspart.trajectory.correlator import stress_units
@@ -45,8 +47,10 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     and plots over frames have the time as their axis. A run with correlations has the dimension lag.
     Of discs that spin, `spins` is (frame, atom); of spheres (frame, atom, spatial).
     Lengths and times are in the scene's units, counters cumulative since time 0. Attributes state the scene
-    (YAML), engine and seed (JSON), and what follows from the scene: count, dimension, packing_fraction,
-    number_density. Close it, or use it in a `with` statement.
+    (YAML), engine and seed (JSON), and what follows from the scene: dimension and, unless faces are open,
+    count, packing_fraction, number_density. Where they are, atoms are numbers of particles, and coordinates
+    and velocities of a number that no particle has in a frame are NaN. Close it, or use it in a `with`
+    statement.
 
     Raises SceneError for a file that is unreadable, truncated, damaged in its header, or not written by
     gaspart; and, when values of a frame are read for the first time, if that frame is damaged: its checksum
@@ -68,8 +72,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
         raise
     scene = recipe.scene
     data = opened = xr.open_dataset(store, decode_times=False, drop_variables=_UNUSED)
-    attributes = {**data.attrs, "count": scene.count, "dimension": scene.dimension}
-    attributes |= {"packing_fraction": scene.packing_fraction, "number_density": scene.number_density}
+    attributes = {**data.attrs, **_following(scene)}
     if "spins" in data and scene.dimension == 2:
         data["spins"] = data["spins"].isel(spatial=2)
     data = data.isel(spatial=slice(scene.dimension)).set_coords(["time", "radius", "type"])
@@ -97,6 +100,12 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
 
     data.set_close(close)
     return data
+
+
+def _following(scene: Scene) -> dict[str, float]:
+    """Attributes that follow from a scene."""
+    names = ("dimension", *(() if is_open(scene) else ("count", "packing_fraction", "number_density")))
+    return {name: getattr(scene, name) for name in names}
 
 
 def _with_piston(data: xr.Dataset) -> xr.Dataset:

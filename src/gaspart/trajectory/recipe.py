@@ -15,6 +15,7 @@ from gaspart.files import open_regular
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.face_checks import check_piston_end
 from gaspart.scene.moving_walls import has_piston
+from gaspart.scene.open_faces import is_open, refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.state.given import state_at_time_zero, state_from_arrays
@@ -90,6 +91,9 @@ class Recipe:
             one_of("keep", self.keep, tuple(amber.KEPT))
             if self.until:
                 raise SceneError("keep", self.keep, "has no meaning with until, which measures what is there")
+        for key in ("follow", "correlations", "displacements", "pairs"):
+            if getattr(self, key):
+                refuse_open(self.scene, f"excludes {key}: the particles change")
         finest = self.correlations.interval if self.correlations else self.sample_interval
         object.__setattr__(self, "engine", self.engine.resolved(self.scene, finest))
         if self.engine.quantum:
@@ -151,7 +155,7 @@ class Recipe:
     @property
     def stored_count(self) -> int:
         """Number of particles in the file."""
-        return self.scene.count if self.follow is None else self.follow
+        return self.scene.capacity if self.follow is None else self.follow
 
     @property
     def asked(self) -> tuple[OptionalTally, ...]:
@@ -236,14 +240,17 @@ class Recipe:
         scene, versions = self.scene, provenance.versions()
         groups = [len(scene.species)] * len(scene.particles) + list(range(len(scene.species)))
         counts = [1] * len(scene.particles) + [kind.count for kind in scene.species]
-        types = np.repeat(groups, counts)[: self.stored_count]
-        radii = per_particle(scene, "radius")[: self.stored_count]
+        types, radii = (  # of particles that may come as well, which are all alike
+            np.resize(values, scene.capacity)[: self.stored_count]
+            for values in (np.repeat(groups, counts), per_particle(scene, "radius"))
+        )
         attributes = {
             "Conventions": "AMBER",
             "ConventionVersion": "1.0",
             "program": "gaspart",
             "programVersion": versions["gaspart_version"],
-            "title": f"{scene.count} hard {'discs' if scene.dimension == 2 else 'spheres'}",
+            "title": f"{scene.count} hard {'discs' if scene.dimension == 2 else 'spheres'}"
+            + (" at the start" if is_open(scene) else ""),
             "note": amber.NOTE,
             **self.attributes(),
             **versions,

@@ -14,7 +14,7 @@ import numpy as np
 from gaspart.errors import SceneError, SimulationError
 from gaspart.interruption import Deferral, deferred, set_note
 from gaspart.simulation import Simulation
-from gaspart.state.state import State
+from gaspart.state.state import State, by_number
 from gaspart.trajectory import amber
 from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
 from gaspart.trajectory.correlator import correlator_for
@@ -233,8 +233,8 @@ class Recording:
             "cell_angles": np.full(3, 90.0),
             "kinetic_energy": state.kinetic_energy,
             **{name: getattr(tally, name) for name in counted},
-            "coordinates": state.positions[followed],
-            "velocities": state.velocities[followed],
+            "coordinates": by_number(state, state.positions, self._recipe.scene.capacity)[followed],
+            "velocities": by_number(state, state.velocities, self._recipe.scene.capacity)[followed],
             **(self._correlator.sums() if self._correlator else {}),
             **{name: values[followed] for name, values in inner.items()},
             **({} if state.piston is None else {"piston": state.piston}),

@@ -16,6 +16,7 @@ from gaspart.analysis.run import Run
 from gaspart.scene.driving import driven_axes
 from gaspart.scene.faces import sliding_faces
 from gaspart.scene.moving_walls import moving_wall
+from gaspart.scene.open_faces import is_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
 from gaspart.scene.thermal_faces import face_temperatures
@@ -135,7 +136,7 @@ def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndar
 
 def _closed(run: Run) -> Expected | None:
     """Nothing passes on average in a steady state, which a start in a region is not."""
-    if any(kind.region is not None for kind in run.scene.species):
+    if is_open(run.scene) or any(kind.region is not None for kind in run.scene.species):
         return None
     return np.zeros(1), 0.0, "a steady state between walls"
 

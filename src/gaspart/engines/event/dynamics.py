@@ -17,6 +17,7 @@ from gaspart.engines.event.search import chosen_search, make_lists, neighbour_li
 from gaspart.engines.event.stalling import MANY, CollapsePart, check_clocks, check_events, check_progress
 from gaspart.engines.event.tally import EventTally, tally_parts
 from gaspart.engines.event_log import EventLog
+from gaspart.engines.features.open_faces import OpenPart, with_room
 from gaspart.engines.features.part import write_parts
 from gaspart.errors import SimulationError
 from gaspart.kernels.event import loop, prediction
@@ -48,6 +49,7 @@ class EventDynamics(Dynamics):
         boxes_per_side: int | tuple[int, ...] | None,
         tallies: Sequence[OptionalTally] = (),
     ) -> None:
+        state = with_room(scene, state)
         self._scene, self._reference, n = scene, state, state.count
         self._search = chosen_search(scene, search, boxes_per_side is not None)
         with_boxes = self._search == "boxes"
@@ -63,6 +65,9 @@ class EventDynamics(Dynamics):
         self._model, unit_mass = event_model(scene, state, seed, self._grid, largest)
         self._collapse = CollapsePart(self._model, n)
         self._parts = [*event_parts(scene, state, seed, self._model, unit_mass), self._collapse]
+        if self._model.faces and self._model.faces.open:
+            inside = self._model.faces.open
+            self._parts.append(OpenPart(scene, seed, inside, self._queue, self._boxes))
         self._parts += tally_parts(tallies, self._flights, self._model, unit_mass, scene, state)
         self._epochs = Epochs(scene, state.masses, sum(part.gained for part in self._parts))
         self._base, self._quiet = self._base_from(0.0), 0
@@ -142,16 +147,18 @@ class EventDynamics(Dynamics):
             if log is not None:
                 log.take(self._start)
             if reason == loop.STOP:
-                work -= 1 + len(self._flights)  # what follows predicts all anew
+                work -= 1
                 if scheduled:
                     self._clock = end
                     if part.apply_event(self._particles, self._model, self._tally.arrays, self._start):
                         begun -= self._renew_epoch()
                         self._predict()
+                        work -= len(self._flights)
                     continue
                 if not ends_epoch:
                     self._clock = stop
                     return
+                work -= len(self._flights)  # all is predicted anew
                 begun -= self._next_epoch(endless=until == np.inf)
             else:
                 self._clock = max(self._clock, last)

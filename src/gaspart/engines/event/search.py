@@ -9,6 +9,7 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.kernels.model import NUMBER_BITS
 from gaspart.scene.geometry import ball_volume
+from gaspart.scene.open_faces import is_open
 from gaspart.state.boxes import make_boxes
 
 if TYPE_CHECKING:
@@ -49,6 +50,8 @@ def obstacle_to_lists(scene: Scene) -> str | None:
         return "interior walls"
     if scene.shear_rate is not None:
         return "sheared faces"
+    if is_open(scene):
+        return "open faces"
     if not _SMALLEST < scene.largest_radius < _LARGEST:
         return "particles of so extreme a size"
     if scene.count == 0:
@@ -64,9 +67,9 @@ def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
     Raises SceneError if lists are asked for, but the scene has something that they do not support; and if
     the particles are more than a search can number.
     """
-    if scene.count > 1 << NUMBER_BITS:
+    if scene.capacity > 1 << NUMBER_BITS:
         raise SceneError(
-            "species", scene.count, f"the event-driven engine has at most {1 << NUMBER_BITS} particles"
+            "species", scene.capacity, f"the event-driven engine has at most {1 << NUMBER_BITS} particles"
         )
     if search not in ("automatic", "lists"):
         return search

@@ -48,7 +48,9 @@ class EventDriven(Engine):
     name: ClassVar[str] = "event"
     title: ClassVar[str] = "event-driven"
     records_events: ClassVar[bool] = True
-    tallies: ClassVar[frozenset[str]] = frozenset(("stress", "impulses", "pair_impulses", "wall_shear"))
+    tallies: ClassVar[frozenset[str]] = frozenset(
+        ("stress", "impulses", "pair_impulses", "wall_shear", "entries")
+    )
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     neutral_settings: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
     first_segment: ClassVar[int] = 256  # events with crossings and predictions

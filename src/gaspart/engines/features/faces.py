@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from gaspart.engines.features.open_faces import opened
 from gaspart.engines.features.part import Part
 from gaspart.engines.features.piston import piston_of
 from gaspart.engines.features.vibrating import motion_of
@@ -88,6 +89,7 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
         sliding=None if velocities is None else Sliding(velocities, np.zeros((velocities.size, 2))),
         accommodation=accommodations(scene),
         ramp=ramp._replace(high=ramp.high / unit_mass) if ramp else None,
+        open=opened(scene, state),
     )
 
 

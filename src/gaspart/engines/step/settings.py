@@ -70,7 +70,7 @@ class TimeStepped(Engine):
     title: ClassVar[str] = "time-stepped"
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "fixed", "vibrations", "centres_to_walls", "polydispersity")
-    ) | {"accommodation", "ramp", *(kind for kind, face in FACE_KINDS.items() if not face.moves)}
+    ) | {"accommodation", "ramp", *(kind for kind, face in FACE_KINDS.items() if not face.moves)} - {"open"}
     excludes: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "gravity"), ("fixed", "gravity"))
     neutral_settings: ClassVar[tuple[str, ...]] = ("boxes_per_side", "near_boxes", "skin", "threads")
     counters: ClassVar[tuple[str, ...]] = (

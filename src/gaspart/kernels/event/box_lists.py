@@ -106,6 +106,14 @@ def remove(predictions, boxes, i):
 
 
 @inner_helper
+def withdraw(predictions, boxes, i, opened):
+    """Take a particle that is no longer in the container, where faces are open, out of its box."""
+    if opened is not None:
+        if not opened.present[i]:
+            remove(predictions, boxes, i)
+
+
+@inner_helper
 def move(predictions, boxes, i, axis, to):
     """Take a particle to another box along an axis."""
     remove(predictions, boxes, i)

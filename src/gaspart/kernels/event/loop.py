@@ -17,7 +17,7 @@ from numpy import int64
 
 from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.event.all_pairs import first_of_all
-from gaspart.kernels.event.box_lists import move
+from gaspart.kernels.event.box_lists import move, withdraw
 from gaspart.kernels.event.impulses import speed_on_arrival, tally_impulse
 from gaspart.kernels.event.islands import wake_island
 from gaspart.kernels.event.monitors import collapse_detected, is_full, record_event
@@ -130,6 +130,13 @@ def enter_opposite_box(particles, i, face, time, boxes, model, tally, lists):
 
 
 @inner_helper
+def empty_place(particles, i, boxes, faces):
+    """Take a particle that has left through an open face out of its box."""
+    if faces is not None:
+        withdraw(particles.predictions, boxes, i, faces.open)
+
+
+@inner_helper
 def process(particles, i, time, queue, boxes, model, tally):
     """Process the next event of a particle. Returns the two particles it happens to, or one and -1 - a face,
     and whether it is an event of the model: not the crossing of a box or a periodic face, nor an outdated
@@ -146,6 +153,7 @@ def process(particles, i, time, queue, boxes, model, tally):
             crossed = leave_box(particles, i, face, time, boxes, model.space, tally, boxes.lists)
         else:
             partner, happens = meet_obstacle(particles, i, face, time, model, tally)
+            empty_place(particles, i, boxes, model.faces)
             if not happens and face < BOX_FACES:
                 enter_opposite_box(particles, i, face, time, boxes, model, tally, boxes.lists)
     elif is_outdated(predictions, i):

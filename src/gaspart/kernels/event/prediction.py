@@ -6,7 +6,7 @@ from math import inf
 from numpy import int64
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
-from gaspart.kernels.event.box_lists import sort_in
+from gaspart.kernels.event.box_lists import sort_in, withdraw
 from gaspart.kernels.event.box_search import find_contact
 from gaspart.kernels.event.neighbour_lists import is_renewed_first, next_renewal, search_list
 from gaspart.kernels.event.oversized import search_oversized
@@ -72,17 +72,20 @@ def predict(particles, i, boxes, model, tally, now, number, crossed):
 
 
 @inner_helper
-def sort_all(predictions, boxes, lists):
+def sort_all(predictions, boxes, faces, lists):
     """Sort all particles into their boxes, unless there are neighbour lists."""
     if lists is None:
         sort_in(predictions, boxes)
+        if faces is not None:
+            for i in range(len(predictions)):
+                withdraw(predictions, boxes, i, faces.open)
 
 
 @kernel
 def begin(particles, queue, boxes, model, tally, now, anew):
     """Make the boxes' lists and the queue of all predictions, which are those of a checkpoint or made `anew`.
     Neighbour lists must have been made."""
-    sort_all(particles.predictions, boxes, boxes.lists)
+    sort_all(particles.predictions, boxes, model.faces, boxes.lists)
     for i in range(len(particles.flights)):
         mark_resting(particles.flights, i, model.space, model.gravity, boxes.resting)
     if anew:

@@ -6,8 +6,19 @@ from math import inf
 from numpy import int64
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
-from gaspart.kernels.model import BOX_FACES, HARD, NONE, PISTON, STICKY, THERMAL, THERMAL_NORMAL, VIBRATING
+from gaspart.kernels.model import (
+    BOX_FACES,
+    HARD,
+    NONE,
+    OPEN,
+    PISTON,
+    STICKY,
+    THERMAL,
+    THERMAL_NORMAL,
+    VIBRATING,
+)
 from gaspart.kernels.obstacles.hard import bounce
+from gaspart.kernels.obstacles.open_face import collide_open
 from gaspart.kernels.obstacles.piston import collide_piston, find_piston, is_piston
 from gaspart.kernels.obstacles.resting import come_to_rest
 from gaspart.kernels.obstacles.short_bounce import longest_rest, rest_on_floor
@@ -30,6 +41,7 @@ RULES = {
     "sticky": STICKY,
     "vibrating": VIBRATING,
     "piston": PISTON,
+    "open": OPEN,
 }
 """What happens to a particle at a face: the name, and the number in `Faces.kind`."""
 
@@ -140,6 +152,8 @@ def collide_special(flights, i, face, model, tally, law, faces):
         collide_moving(flights, i, face, model, tally, law, faces.motion)
     elif kind == PISTON:
         collide_piston(flights, i, face, model, tally, faces.piston)
+    elif kind == OPEN:
+        collide_open(flights, i, face, model, tally, law, faces.open)
     else:
         return False
     return True

@@ -1,0 +1,64 @@
+"""Open faces of the container, through which particles leave and enter: what they need, how many there may
+be."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from gaspart.errors import SceneError
+from gaspart.scene.faces import FACES, Open, faces_of
+from gaspart.scene.geometry import CLOSE_PACKING, ball_volume
+from gaspart.scene.thermal_faces import face_temperatures
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
+
+_SIGMAS = 10.0  # standard deviations of the number of an ideal gas for which there is room
+
+
+def is_open(scene: Scene) -> bool:
+    """Whether the number of particles varies."""
+    return bool(faces_of(scene, Open))
+
+
+def check_open_faces(scene: Scene) -> None:
+    """Raise SceneError for a scene with open faces in which it is not defined what enters, or when a particle
+    has left."""
+    for number, _ in faces_of(scene, Open):
+        face = f"faces.{FACES[number]}"
+        if not scene.centres_to_walls:
+            raise SceneError(face, "open", "is passed by centres of particles: needs centres_to_walls: true")
+        if len(scene.species) != 1 or scene.particles or not scene.count:
+            raise SceneError(face, "open", "needs particles of one species, and no single ones")
+
+
+def refuse_open(scene: Scene, rule: str) -> None:
+    """Raise SceneError, with a rule, for a scene with open faces."""
+    for number, face in faces_of(scene, Open):
+        raise SceneError(f"faces.{FACES[number]}", face.kind, rule)
+
+
+def number_density(scene: Scene, face: Open) -> float:
+    """z: that of the ideal gas that is in equilibrium with a reservoir; 0 of a vacuum."""
+    return (face.activity or 0.0) / ball_volume(scene.dimension, scene.species[0].radius)
+
+
+def capacity(scene: Scene) -> int:
+    """The number of particles for which there is room: those at the start, and with open faces as many as may
+    come in, 10 standard deviations above the mean.
+
+    Particles that repel one another are fewer than those of an ideal gas at the same activity, whose number
+    has the distribution of Poisson. The pressure inside is that of the strongest reservoir at most, and the
+    gas as cold as the coldest thing. There are never more than fit.
+    """
+    reservoirs = [face for _, face in faces_of(scene, Open) if face.temperature is not None]
+    if not reservoirs:
+        return scene.count
+    species, d = scene.species[0], scene.dimension
+    pressure = max(number_density(scene, face) * (face.temperature or 0.0) for face in reservoirs)
+    mean = pressure / min(face_temperatures(scene)) * scene.container.volume
+    most = scene.count + mean + _SIGMAS * math.sqrt(mean) + _SIGMAS
+    around = math.prod(length + 2.0 * species.radius for length in scene.container.lengths)
+    packed = CLOSE_PACKING[d] * around / ball_volume(d, species.radius)
+    return max(scene.count, math.ceil(min(most, packed)))

@@ -1,0 +1,327 @@
+"""Open faces: effusion, the grand-canonical ensemble, and flow between reservoirs, exactly."""
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import gaspart as gp
+from gaspart import theory
+from gaspart.errors import SimulationError
+
+LENGTHS = (8.0, 4.0, 4.0)
+POINT = 1e-3
+"""A radius with which hardly any particles collide."""
+PERIODIC = ("wall", "periodic", "periodic")
+
+
+def reservoir(density, temperature=1.0, radius=POINT):
+    """A face open to an ideal gas of particles of this radius."""
+    return gp.Open(density * 4.0 / 3.0 * math.pi * radius**3, temperature)
+
+
+def slit(faces, count=100, radius=POINT, temperature=1.0, lengths=LENGTHS, **more):
+    species = [gp.Species(count, radius, temperature=temperature, **more)]
+    return gp.Scene(gp.Container(lengths, PERIODIC), species, faces=faces, centres_to_walls=True)
+
+
+def blocks(simulation, number, duration, samples):
+    """(number, samples) particles inside at even times, and the tally of each of these blocks."""
+    counts, tallies = [], []
+    for _ in range(number):
+        simulation.reset_tally()
+        row = []
+        for _ in range(samples):
+            simulation.advance(duration=duration / samples)
+            row.append(simulation.state.count)
+        counts.append(row)
+        tallies.append(simulation.tally)
+    simulation.check_invariants()
+    return np.array(counts), tallies
+
+
+def agrees(values, expected, least):
+    """Whether the mean of blocks (K,) is `expected` within three standard errors, which are a part `least`
+    of it at most."""
+    error = np.std(values, ddof=1) / math.sqrt(len(values))
+    assert error < least * abs(expected)
+    return abs(np.mean(values) - expected) < 3.0 * error
+
+
+def test_effusion_into_a_vacuum():
+    """Behind the mirror at the far end stands its image: a free particle leaves once it has gone a way that
+    is evenly spread over 2L at the start, at a speed |v| of a normal distribution. The number of those that
+    stay is binomial."""
+    count = 4000
+    simulation = gp.Simulation(slit({"x_low": gp.Open()}, count), seed=1)
+    for time in (2.0, 8.0, 32.0, 128.0):
+        simulation.advance(until=time)
+        a = 2.0 * LENGTHS[0] / time
+        stays = math.erf(a / math.sqrt(2.0)) - math.sqrt(2.0 / math.pi) / a * -math.expm1(-0.5 * a * a)
+        spread = math.sqrt(count * stays * (1.0 - stays))
+        assert simulation.state.count == pytest.approx(count * stays, abs=3.0 * spread)
+        assert simulation.state.count == count - simulation.tally.wall_hits[0]
+    simulation.check_invariants()
+
+
+def test_a_stream_from_an_opening_is_hotter_than_the_gas():
+    """2 k_B T per particle, of variance 2 (k_B T)^2, at first, and the momentum (pi m k_B T / 2)^(1/2)."""
+    simulation = gp.Simulation(slit({"x_low": gp.Open()}, 8000, temperature=3.0), seed=2)
+    simulation.advance(duration=0.25)
+    left = simulation.tally.wall_hits[0]
+    energy, momentum = simulation.tally.wall_energy[0] / left, simulation.tally.wall_impulse[0] / left
+    assert left > 150
+    # those that come from within half the slit, so that slow ones are a little too rare: less than the error
+    assert energy == pytest.approx(6.0, abs=3.0 * 3.0 * math.sqrt(2.0 / left))
+    assert momentum == pytest.approx(
+        math.sqrt(1.5 * math.pi), abs=3.0 * math.sqrt(6.0 - 1.5 * math.pi) / math.sqrt(left)
+    )
+
+
+@cache
+def ideal():
+    """(40, 20) numbers of an ideal gas with the reservoirs of one gas at both ends, and tallies."""
+    density = 1.5
+    faces = {"x_low": reservoir(density), "x_high": reservoir(density)}
+    simulation = gp.Simulation(slit(faces, 150), seed=3)
+    simulation.advance(duration=50.0)
+    return density * math.prod(LENGTHS), *blocks(simulation, 40, 200.0, 20)
+
+
+def test_an_ideal_gas_has_the_distribution_of_poisson():
+    expected, counts, _ = ideal()
+    assert agrees(counts.mean(axis=1), expected, 0.005)
+    assert agrees(((counts - expected) ** 2).mean(axis=1), expected, 0.08)
+    third = ((counts - expected) ** 3).mean(axis=1)
+    assert abs(third.mean() - expected) < 3.0 * third.std(ddof=1) / math.sqrt(len(third))
+
+
+def test_as_many_enter_as_kinetic_theory_has_it():
+    """n (k_B T / 2 pi m)^(1/2) per area, in and out; momentum and energy as from a gas in equilibrium."""
+    expected, _, tallies = ideal()
+    density, area = expected / math.prod(LENGTHS), LENGTHS[1] * LENGTHS[2]
+    for face in (0, 1):
+        each = density * area * math.sqrt(0.5 / math.pi)
+        assert agrees([tally.entries[face] / tally.time for tally in tallies], each, 0.005)
+        assert agrees([tally.wall_hits[face] / tally.time for tally in tallies], each, 0.005)
+        assert agrees([tally.wall_impulse[face] / tally.time for tally in tallies], density * area, 0.005)
+    heat = [tally.wall_energy[:2].sum() for tally in tallies]
+    assert abs(np.mean(heat)) < 3.0 * np.std(heat, ddof=1) / math.sqrt(len(heat))
+
+
+def test_flow_between_two_reservoirs_without_collisions():
+    """What enters at one end leaves at the other: (z_1 T_1^(1/2) - z_2 T_2^(1/2)) / (2 pi m)^(1/2) of
+    particles, and 2 k_B T of energy with each."""
+    dense, thin = (2.0, 1.0), (0.5, 4.0)
+    faces = {"x_low": reservoir(*dense), "x_high": reservoir(*thin)}
+    simulation = gp.Simulation(slit(faces), seed=4)
+    simulation.advance(duration=100.0)
+    _, tallies = blocks(simulation, 40, 100.0, 1)
+    area = LENGTHS[1] * LENGTHS[2]
+    one, other = (z * math.sqrt(t / (2.0 * math.pi)) * area for z, t in (dense, thin))
+    for face, sign in ((0, 1.0), (1, -1.0)):
+        net = [sign * (tally.entries[face] - tally.wall_hits[face]) / tally.time for tally in tallies]
+        assert agrees(net, one - other, 0.02)
+    heat = [-tally.wall_energy[0] / tally.time for tally in tallies]
+    assert agrees(heat, 2.0 * (one * dense[1] - other * thin[1]), 0.05)
+
+
+FEW = gp.Scene(
+    gp.Container((1.5, 0.5), "wall"),
+    [gp.Species(1, 0.5, temperature=1.0)],
+    faces={"x_low": gp.Open(2.0 * math.pi / 4.0, 1.0), "y_high": gp.Open(2.0 * math.pi / 4.0, 1.0)},
+    centres_to_walls=True,
+)
+"""Room for the centres of two discs at most, and two reservoirs of z = 2."""
+
+
+@pytest.mark.parametrize("search", ["boxes", "pairs"])
+def test_two_discs_at_most(search):
+    """P(N) is proportional to z^N Q_N: Q_1 the area for a centre, Q_2 half that for two centres a diameter
+    apart or more, an integral over their separation."""
+    x, y = (np.linspace(-side, side, 4001) for side in FEW.container.lengths)
+    room = (1.5 - abs(x))[:, None] * (0.5 - abs(y)) * (np.hypot(x[:, None], y) > 1.0)
+    two = 0.5 * room.sum() * (x[1] - x[0]) * (y[1] - y[0])
+    weights = np.array([1.0, 2.0 * 0.75, 4.0 * two])
+    simulation = gp.Simulation(FEW, gp.EventDriven(search), seed=5)
+    counts, tallies = blocks(simulation, 40, 200.0 if search == "boxes" else 40.0, 100)
+    for number, expected in enumerate(weights / weights.sum()):
+        part = (counts == number).mean(axis=1)
+        assert abs(part.mean() - expected) < 3.0 * part.std(ddof=1) / math.sqrt(len(part))
+        assert expected > 0.02
+    assert counts.max() == 2 and sum(tally.collisions for tally in tallies) > 100
+
+
+def test_a_moderately_dense_gas_is_that_of_the_reservoir():
+    """In the middle of a slit the density is that of the reservoir, by the equation of state; on the open
+    face and on the hard one the momentum is its pressure, as the contact theorem has it."""
+    eta, radius, lengths = 0.15, 0.5, (9.0, 5.0, 5.0)
+    faces = {"x_low": gp.Open(float(theory.activity(eta, 3)), 1.0)}
+    scene = slit(faces, 60, radius, lengths=lengths)
+    simulation = gp.Simulation(scene, seed=6)
+    simulation.advance(duration=50.0)
+    middle, pressures = [], []
+    for _ in range(40):
+        simulation.reset_tally()
+        inside = 0
+        for _ in range(80):
+            simulation.advance(duration=1.0)
+            places = simulation.state.positions[:, 0]
+            inside += np.count_nonzero(abs(places - 4.5) < 1.5) / 80
+        middle.append(inside / (3.0 * 25.0))
+        pressures.append(simulation.tally.wall_impulse[:2] / (25.0 * simulation.tally.time))
+    simulation.check_invariants()
+    density = eta / (math.pi / 6.0)
+    pressure = density * float(theory.compressibility_factor(eta, 3))
+    assert agrees(middle, density, 0.01)
+    for face in (0, 1):
+        assert agrees(np.array(pressures)[:, face], pressure, 0.02)
+    assert abs(density - float(theory.activity(eta, 3)) / (math.pi / 6.0)) > 0.2 * density
+
+
+MIXED = {
+    "x_low": gp.Open(0.3, 2.0),
+    "x_high": gp.Open(0.1, 1.0),
+    "y_low": gp.Thermal(3.0),
+    "y_high": gp.Open(),
+}
+DISCS = gp.Scene(
+    gp.Container((6.0, 6.0)),
+    [gp.Species(12, 0.5, mass=2.0, temperature=1.0)],
+    faces=MIXED,
+    centres_to_walls=True,
+)
+"""Discs between two reservoirs, a vacuum and a thermal face."""
+
+
+def test_particles_and_energy_are_conserved_exactly():
+    simulation = gp.Simulation(DISCS, seed=7)
+    begun = simulation.state.energy
+    for _ in range(20):
+        simulation.advance(duration=5.0)
+        state, tally = simulation.state, simulation.tally
+        opened = [0, 1, 3]
+        assert state.count == 12 + tally.entries.sum() - tally.wall_hits[opened].sum()
+        assert state.energy + tally.wall_energy.sum() == pytest.approx(begun, rel=1e-12)
+        assert tally.entries[2] == tally.entries[3] == 0 < tally.entries[1]
+    assert tally.collisions > 50
+
+
+def same(one, other):
+    """Whether two simulations have the same bits."""
+    mine, its = ((it.state, it.tally, it.checkpoint()["entry_next"]) for it in (one, other))
+    fields = ("numbers", "positions", "velocities"), ("entries", "wall_hits", "wall_energy", "wall_impulse")
+    alike = [np.array_equal(mine[2], its[2])]
+    for n, names in enumerate(fields):
+        alike += [np.array_equal(getattr(mine[n], name), getattr(its[n], name)) for name in names]
+    return all(alike)
+
+
+@pytest.mark.parametrize("search", ["boxes", "direct", "pairs"])
+def test_bits_depend_neither_on_the_search_nor_on_where_a_run_is_split(search):
+    whole, parts = gp.Simulation(DISCS, seed=8), gp.Simulation(DISCS, gp.EventDriven(search), seed=8)
+    whole.advance(duration=40.0)
+    parts.advance(duration=0.7)
+    for _ in range(10):
+        parts.advance(max_events=3)
+        parts.advance(until=40.0, max_work=7)
+    middle = gp.Simulation(DISCS, gp.EventDriven(search), seed=8)
+    middle.restore(parts.checkpoint())
+    for one in (parts, middle):
+        one.advance(until=40.0)
+        assert same(whole, one)
+
+
+def test_units_of_powers_of_two_change_no_bit():
+    """Lengths times 4, times a half, masses times 8: temperatures times 512."""
+    faces = {"x_low": gp.Open(0.3, 1024.0), "x_high": gp.Open(0.1, 512.0)}
+    faces |= {"y_low": gp.Thermal(3.0 * 512.0), "y_high": gp.Open()}
+    species = [gp.Species(12, 2.0, mass=16.0, temperature=512.0)]
+    large = gp.Scene(gp.Container((24.0, 24.0)), species, faces=faces, centres_to_walls=True)
+    one, other = gp.Simulation(DISCS, seed=9), gp.Simulation(large, seed=9)
+    one.advance(duration=20.0)
+    other.advance(duration=10.0)
+    assert np.array_equal(4.0 * one.state.positions, other.state.positions)
+    assert np.array_equal(one.tally.entries, other.tally.entries) and one.tally.entries.any()
+    assert np.array_equal(512.0 * one.tally.wall_energy, other.tally.wall_energy)
+
+
+def test_numbers_of_particles_are_those_of_the_lowest_free_places():
+    simulation, before = gp.Simulation(DISCS, seed=10), 12
+    assert DISCS.capacity > 12 and simulation.state.count == 12
+    for state in simulation.replay("time", 1.0):
+        assert len(state.velocities) == len(state.radii) == len(state.spins) == state.count
+    while simulation.time < 20.0:
+        simulation.advance(max_events=1)
+        numbers = simulation.state.numbers
+        assert (np.diff(numbers) > 0).all() and numbers.max(initial=0) < DISCS.capacity
+    assert simulation.state.count < before or simulation.tally.entries.any()
+
+
+def test_an_empty_container_stays_empty():
+    simulation = gp.Simulation(slit({"x_low": gp.Open(), "x_high": gp.Open()}, 5), seed=1)
+    simulation.advance(duration=1e6)
+    assert simulation.state.count == 0 and simulation.state.energy == 0.0
+    simulation.check_invariants()
+    simulation.advance(duration=1e6)
+    assert simulation.tally.wall_hits[:2].sum() == 5 and simulation.time == 2e6
+
+
+def test_a_full_container_ends_the_run():
+    """Which never happens: the room is taken away."""
+    simulation = gp.Simulation(FEW, seed=1)
+    simulation._dynamics._model.faces.open.present[1:] = 1
+    simulation._dynamics._flights["position"][1:] = -50.0
+    with pytest.raises(SimulationError, match="no room for more than"):
+        simulation.advance(duration=1000.0)
+
+
+def test_files():
+    scene = gp.Scene.from_dict(DISCS.to_dict())
+    assert scene == DISCS and scene.faces["y_high"] == gp.Open()
+    assert scene.to_dict()["faces"]["x_low"] == {"kind": "open", "activity": 0.3, "temperature": 2.0}
+
+
+@pytest.mark.parametrize(
+    ("changes", "rule"),
+    [
+        ({"centres_to_walls": False}, "faces.x_low.*needs centres_to_walls: true"),
+        ({"gravity": (0.0, -1.0)}, "gravity.*excludes open faces"),
+        ({"restitution": gp.Restitution(0.9)}, "restitution.normal.*excludes open faces"),
+        ({"thermostat": gp.Thermostat(1.0, 0.1)}, "thermostat.*excludes open faces"),
+        ({"species": [gp.Species(2, 0.5), gp.Species(1, 0.4)]}, "particles of one species"),
+        ({"species": [gp.Species(0, 0.5)]}, "particles of one species"),
+        ({"species": [gp.Species(9, 0.5, polydispersity=0.1)]}, "polydispersity.*excludes open faces"),
+        ({"species": [gp.Species(9, 0.5, fixed=True)]}, "fixed.*excludes open faces"),
+        ({"particles": [gp.Particle((3.0, 3.0), (0.0, 0.0), 0.5)]}, "particles of one species"),
+        ({"faces": MIXED | {"y_low": gp.Piston(1.0, 1.0)}}, "excludes"),
+        ({"container": gp.Container((6.0, 6.0), ("periodic", "wall"))}, "a periodic axis has no faces"),
+    ],
+)
+def test_scenes_that_are_refused(changes, rule):
+    with pytest.raises(gp.SceneError, match=rule):
+        replace(DISCS, **changes)
+
+
+@pytest.mark.parametrize(
+    "settings", [{"activity": 0.1}, {"temperature": 1.0}, {"activity": -1.0, "temperature": 1.0}]
+)
+def test_reservoirs_that_are_refused(settings):
+    with pytest.raises(gp.SceneError, match="a reservoir has an activity and a temperature|must be positive"):
+        gp.Open(**settings)
+
+
+def test_what_is_not_defined_of_changing_particles():
+    simulation = gp.Simulation(DISCS, seed=1)
+    simulation.advance(duration=1.0)
+    with pytest.raises(gp.SceneError, match="events are not recorded"):
+        simulation.record_events = True
+    with pytest.raises(gp.SceneError, match="look at the states"):
+        simulation.properties("positions", at=[0.0])
+    for engine in (gp.TimeStepped(0.01), gp.DSMC(0.1, 1)):
+        with pytest.raises(gp.SceneError, match='faces.x_low.*needs the "event" engine'):
+            gp.Simulation(DISCS, engine)
+    with pytest.raises(gp.SceneError, match="neighbour lists do not support open faces"):
+        gp.Simulation(DISCS, gp.EventDriven("lists"))
