@@ -9,6 +9,7 @@ import gaspart as gp
 from gaspart import analysis
 from gaspart.inspection.certificate import certificate
 from gaspart.inspection.readers import read_frames
+from gaspart.rendering.live import LiveGas
 from gaspart.simulation import Simulation
 from gaspart.trajectory.export import export
 
@@ -203,6 +204,8 @@ def test_what_needs_particles_that_stay_is_refused(trajectory):
     for refused in (gp.view, analysis.by_species, read_frames):
         with pytest.raises(gp.SceneError, match="faces.x_low.*changes the particles"):
             refused(path)
+    with pytest.raises(gp.SceneError, match="faces.x_low.*a slider would state"):
+        LiveGas(DISCS)
     with pytest.raises(gp.SceneError, match="none is open"):
         closed = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(3, 0.5, temperature=1.0)]))
         closed.advance(duration=1.0)

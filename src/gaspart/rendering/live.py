@@ -12,6 +12,7 @@ from gaspart.engines import Engine
 from gaspart.errors import SceneError, SimulationError, optional
 from gaspart.rendering.frames import render
 from gaspart.rendering.shown import Picture
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.simulation import Simulation
 
@@ -30,7 +31,7 @@ class LiveGas:
     """A simulation that goes on from picture to picture, of a scene that may change.
 
     interval: the time between two pictures; size: (W, H) pixels. Other arguments as of `Simulation`.
-    Raises SceneError as that, and for a scene in which nothing moves or falls.
+    Raises SceneError as that, for open faces, and for a scene in which nothing moves or falls.
     """
 
     def __init__(
@@ -41,6 +42,7 @@ class LiveGas:
         size: tuple[int, int] = _SIZE,
     ) -> None:
         require_scene(scene)
+        refuse_open(scene, "changes the particles, whose packing fraction a slider would state")
         self.interval = scales(scene).crossing_time / _PICTURES
         if self.interval == float("inf"):
             raise SceneError("scene", scene, "nothing moves at the start, and nothing falls")
