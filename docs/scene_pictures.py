@@ -16,7 +16,7 @@ from gaspart.cli.new import templates
 
 WIDTH, HEIGHT = 640, 480  # pixels
 PALETTE = 128  # colours of a PNG file
-FILMED = ("piston", "shock", "two_gases", "hourglass", "shaken", "incline")
+FILMED = ("piston", "shock", "divided", "hourglass", "shaken", "incline")
 """Templates whose motion a picture does not show."""
 FILM_SIZE, FRAMES, RATE = (320, 240), 40, 12.5  # pixels, at least, per second
 

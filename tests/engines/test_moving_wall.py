@@ -27,7 +27,7 @@ def across(place, width, mass, axis=0):
     return gp.Wall(*map(tuple, ends), mass=mass)
 
 
-def two_gases(left=(20, 4.0), right=(20, 1.0), mass=20.0, lengths=(16.0, 6.0), place=8.0, radius=0.4):
+def divided(left=(20, 4.0), right=(20, 1.0), mass=20.0, lengths=(16.0, 6.0), place=8.0, radius=0.4):
     """(count, temperature) on either side of a wall across x."""
     (x, y), container = lengths, gp.Container(lengths, ("wall", "periodic"))
     species = [
@@ -142,7 +142,7 @@ def test_energy_and_momentum_are_conserved_and_all_searches_agree(scene, seed):
 
 def test_time_runs_backwards():
     """Rounding grows by collisions, of which each particle has a few."""
-    scene = two_gases(mass=5.0)
+    scene = divided(mass=5.0)
     there = gp.Simulation(scene, EVENT, seed=2)
     there.advance(until=1.5)
     turned = there.state.copy()
@@ -157,11 +157,11 @@ def test_time_runs_backwards():
 
 def test_splits_and_checkpoints_change_no_bit():
     names = "state.positions", "state.velocities", "state.piston", "tally.wall_energy", "tally.wall_impulse"
-    check_restored(two_gases(), (0.1, 0.37, 5.0, 40.0, 100.0, 300.0), *names)
+    check_restored(divided(), (0.1, 0.37, 5.0, 40.0, 100.0, 300.0), *names)
 
 
 def test_a_trajectory_has_its_motion_from_which_another_run_goes_on(tmp_path):
-    scene = two_gases()
+    scene = divided()
     scene.to_file(tmp_path / "scene.yaml")
     assert gp.Scene.from_file(tmp_path / "scene.yaml") == scene
     gp.run(scene, EVENT, 3, 20.0, 0.5, tmp_path / "first.nc")
@@ -224,7 +224,7 @@ def test_its_place_has_the_distribution_of_statistical_mechanics():
 def test_a_heavy_wall_begins_to_move_by_the_difference_of_the_pressures():
     """Of points, n k_B T (P = 4 and 1): the momentum M u after a time t is (P_1 - P_2) A t, whose scatter is
     known: m^2 (2 v)^2 of each hit, 4 m n A t <|v|^3>, with the distribution of the normal velocity."""
-    scene = two_gases((400, 4.0), (400, 1.0), mass=1e7, lengths=(20.0, 10.0), place=10.0, radius=1e-3)
+    scene = divided((400, 4.0), (400, 1.0), mass=1e7, lengths=(20.0, 10.0), place=10.0, radius=1e-3)
     time, runs, pressures = 0.5, 120, np.array([4.0 * 4.0, 4.0 * 1.0])
     gained = []
     for seed in range(runs):
@@ -250,7 +250,7 @@ def test_a_wall_drifts_to_the_hot_gas_although_the_pressures_are_equal():
     mass, width, lengths, time, runs = 20.0, 100.0, (90.0, 50.0), 21.0, 1600
     linear, temperatures = np.array([2.0, 8.0]), np.array([4.0, 1.0])  # particles per length of the container
     counts = np.round(linear * lengths).astype(int).tolist()
-    scene = two_gases((counts[0], 4.0), (counts[1], 1.0), mass, (sum(lengths), width), lengths[0], 5e-3)
+    scene = divided((counts[0], 4.0), (counts[1], 1.0), mass, (sum(lengths), width), lengths[0], 5e-3)
     moved, squares = [], []
     for seed in range(runs):
         sim = gp.Simulation(scene, gp.EventDriven(boxes_per_side=1), seed=seed)
@@ -269,7 +269,7 @@ def test_a_wall_drifts_to_the_hot_gas_although_the_pressures_are_equal():
 
 
 def test_what_a_wall_that_moves_does_not_go_with_is_refused():
-    scene = two_gases()
+    scene = divided()
     with pytest.raises(gp.SceneError, match='walls.*needs the "event" engine'):
         gp.Simulation(scene, gp.TimeStepped(0.01))
     (wall,) = scene.walls
@@ -298,11 +298,11 @@ def test_what_a_wall_that_moves_does_not_go_with_is_refused():
         with pytest.raises(gp.SceneError, match="mass"):
             replace(wall, mass=mass)
     with pytest.raises(gp.SceneError, match=r"walls\[0\].mass = 20.0: .* needs particles on both sides"):
-        gp.Simulation(two_gases(right=(0, 1.0)), EVENT)
+        gp.Simulation(divided(right=(0, 1.0)), EVENT)
 
 
 def test_a_given_state_must_have_the_same_piston():
-    scene = two_gases()
+    scene = divided()
     state = gp.Simulation(scene, EVENT, seed=1).initial_state
     with pytest.raises(gp.SceneError, match=r"is the face that is the piston, walls\[0\] in the scene"):
         gp.Simulation(scene, EVENT, initial=replace(state, piston_face="x_high"))
@@ -319,7 +319,7 @@ def test_a_given_state_must_have_the_same_piston():
 def test_the_gases_may_be_between_thermal_faces():
     """Heat flows through the wall only as it moves: from the hot face to the cold one."""
     faces = {"x_low": gp.Thermal(4.0), "x_high": gp.Thermal(1.0)}
-    sim = gp.Simulation(replace(two_gases(mass=1.0), faces=faces), EVENT, seed=1)
+    sim = gp.Simulation(replace(divided(mass=1.0), faces=faces), EVENT, seed=1)
     sim.advance(until=600.0)
     sim.check_invariants()
     given = sim.tally.wall_energy

@@ -28,8 +28,8 @@ RESULT = "the machine code of both engines for the scene, with and without the s
 KEYS: dict[str, Kind] = {}
 FEATURES = {
     "accommodation", "collapse", "duration", "faces", "gravity", "impulses", "law", "masses", "motion",
-    "moving", "oversized", "pace", "pairs", "piston", "ramp", "record", "row", "rules", "shear", "sliding",
-    "sticky", "stress", "support", "velocity", "vibrations", "viscous", "walls", "warm",
+    "moving", "opened", "oversized", "pace", "pairs", "piston", "ramp", "record", "row", "rules", "shear",
+    "sliding", "sticky", "stress", "support", "velocity", "vibrations", "viscous", "walls", "warm",
 }  # fmt: skip
 """Arguments of the kernels that are None for a plain gas."""
 COUNTED_ENGINES = ("event", "step")

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from gaspart.reproduction.families.cores.measure import speed_up
+from gaspart.reproduction.families.cores.model import speed_up
 
 SERIAL, OVERHEAD = 0.05, 800.0
 

@@ -3,7 +3,7 @@ from reproduction.families.cores.data import OVERHEAD, SERIAL, measured
 from reproduction.families.drawn import Points, draw, follows, lines, shows
 
 from gaspart.reproduction.families.cores.figure import cores
-from gaspart.reproduction.families.cores.measure import SLABS, speed_up
+from gaspart.reproduction.families.cores.model import SLABS, speed_up
 
 
 def of(ds, *rows, x="run_count"):

@@ -8,7 +8,8 @@ import xarray as xr
 from numba import config
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.cores.measure import _model, cores, speed_up
+from gaspart.reproduction.families.cores.measure import _model, cores
+from gaspart.reproduction.families.cores.model import speed_up
 from gaspart.reproduction.families.shared.timings import SYSTEMATIC
 from gaspart.reproduction.jobs.measure_cost import measure_cost
 from gaspart.reproduction.points.point import Point

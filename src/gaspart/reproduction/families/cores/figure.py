@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
-from gaspart.reproduction.families.cores.measure import SLABS, speed_up
+from gaspart.reproduction.families.cores.model import SLABS, speed_up
 from gaspart.reproduction.table import Row, Table
 
 _PANELS = {"DSMC": "DSMC", "time-stepped": "steps", "event-driven": "events"}

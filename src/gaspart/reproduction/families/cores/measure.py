@@ -12,21 +12,16 @@ from itertools import compress
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 from scipy.optimize import nnls
 
 from gaspart.analysis.estimate import Estimate
+from gaspart.reproduction.families.cores.model import SLABS
 from gaspart.reproduction.families.shared.timings import SYSTEMATIC, median, weights
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, prefixed, table
 
 ENGINES = {"event": "event-driven", "step": "time-stepped", "dsmc": "DSMC"}
 """The names of engines in the figure."""
-SLABS = {"DSMC, Enskog": 8**3 * 64}
-"""The engine of which threads share collisions by slabs of cells, and the number of particles from which on
-two threads have one each at a time (docs/dsmc.md). Fewer do not share them, and more threads share them
-unevenly, which Amdahl's law does not know."""
-
 _KNOWN = 0.15  # the relative uncertainty up to which speeds are fitted
 
 
@@ -52,14 +47,6 @@ def cores(points: list[Point], settings: dict) -> xr.Dataset:
     gases = [gas for _, same in threads.by("engine") for _, gas in same.by("packing_fraction")]
     models = table("model", gases, _model, units={"overhead": "particles"})
     return prefixed(run=runs, model=models).assign_attrs(cores=available, waiting=waiting)
-
-
-def speed_up(cores: ArrayLike, count: ArrayLike, serial: float, overhead: float) -> np.ndarray:
-    """Amdahl's law (AFIPS Conf. Proc. 30, 483 (1967)), 1 / (s + (1 - s) / p + N_0 / N) for p cores and N
-    particles. serial: the share s of the work that one core does alone; overhead: N_0, the number of
-    particles whose work on one core takes the time in which threads are begun and waited for."""
-    shared, waited = (1.0 - serial) / np.asarray(cores), overhead / np.asarray(count)
-    return np.asarray(1.0 / (serial + shared + waited))
 
 
 def _job(point: Point) -> dict:
