@@ -1,7 +1,7 @@
 """What several cores gain: threads of one run, and equal runs at once.
 
 Each job times them in turn with one run on one core, by the wall's clock. Equal runs at once wait for nothing
-but a core, so the time for which they wait tells what other programs took of the cores: of p cores as much is
+but a core, so the time for which they wait is what other programs took of the cores: of p cores as much is
 part of the uncertainty of each speed on p cores.
 """
 
