@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import LeesEdwards, Vibrating
+from gaspart.scene.faces import LeesEdwards, Piston, Surface, Vibrating
+from gaspart.scene.open_faces import is_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.thermal_faces import face_temperatures
 
@@ -37,6 +38,13 @@ def at_temperature(scene: Scene) -> bool:
 
 
 def keeps_energy(scene: Scene) -> bool:
-    """Whether a run keeps the energy of its start."""
+    """Return True if a run keeps the energy of its start, or its enthalpy under a piston with a load."""
     law = scene.restitution
-    return not is_driven(scene) and (law is None or not law.dissipative)
+    loses = law is not None and law.dissipative
+    driven = any(face.moves and not is_loaded(face) for face in scene.faces.values())
+    return not (driven or loses or scene.thermostat is not None or at_temperature(scene) or is_open(scene))
+
+
+def is_loaded(face: Surface) -> bool:
+    """Return True if a face is a piston with a mass and an external pressure."""
+    return isinstance(face, Piston) and face.speed is None

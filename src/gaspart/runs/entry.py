@@ -12,7 +12,13 @@ from gaspart.engines import Engine, chosen
 from gaspart.errors import SceneError
 from gaspart.files import is_same_file, output_path
 from gaspart.keys.values import count_of
-from gaspart.runs.ending import Accuracy, default_sample_interval, require_end, require_measurable
+from gaspart.runs.ending import (
+    Accuracy,
+    default_sample_interval,
+    require_end,
+    require_measurable,
+    require_reachable,
+)
 from gaspart.runs.replicas import record_together, resume_together
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.state.optional_tallies import OptionalTally, impulse_tallies, pair_impulse_tallies
@@ -88,7 +94,11 @@ def run(
     tallies = *_tallies(impulses, wanted, scene, engine), *pair_impulse_tallies(pair_impulses)
     recipe = Recipe(*settings, pairs, _start(initial, scene, path, replicas), tallies, keep=keep)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    return _record(in_replicas(recipe, replicas), _required(path), options, examined)
+    recipes = in_replicas(recipe, replicas)
+    if wanted is not None and at_most is None and initial is None:
+        for asked in wanted.accuracies:
+            require_reachable(asked, scene, replicas)
+    return _record(recipes, _required(path), options, examined)
 
 
 def _engine_of(scene: object, engine: Engine | str | None) -> Engine:

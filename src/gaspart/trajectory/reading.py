@@ -30,6 +30,8 @@ _REDUCED = {
 _UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum", *amber.INITIAL]
 """Variables of a file that `open_trajectory` does not read: names of axes, what detects damage, and what
 belongs to its recipe."""
+GIVEN_START = "given_start"
+"""Attribute of an open trajectory that starts from a given state."""
 _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "units" in field.metadata} | {
     "kinetic_energy": ENERGY,
     "vibrations": ENERGY,
@@ -48,7 +50,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     Of discs that spin, `spins` is (frame, atom); of spheres (frame, atom, spatial).
     Lengths and times are in the scene's units, counters cumulative since time 0. Attributes state the scene
     (YAML), engine and seed (JSON), and what follows from the scene: dimension and, unless faces are open,
-    count, packing_fraction, number_density. Where they are, atoms are numbers of particles, and coordinates
+    count, packing_fraction, number_density; given_start: 1 if the run starts from a given state. Where they are, atoms are numbers of particles, and coordinates
     and velocities of a number that no particle has in a frame are NaN. Close it, or use it in a `with`
     statement.
 
@@ -73,6 +75,8 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     scene = recipe.scene
     data = opened = xr.open_dataset(store, decode_times=False, drop_variables=_UNUSED)
     attributes = {**data.attrs, **_following(scene)}
+    if recipe.initial is not None:
+        attributes[GIVEN_START] = 1
     if "spins" in data and scene.dimension == 2:
         data["spins"] = data["spins"].isel(spatial=2)
     data = data.isel(spatial=slice(scene.dimension)).set_coords(["time", "radius", "type"])
