@@ -15,10 +15,10 @@ small: its 95 % intervals would cover the true value in 88 to 94 % of runs. Two 
 Of replicas, which are independent, the value is the mean, and the error follows from those of each, by which
 degrees of freedom add up. They are examined when all have so many frames.
 
-Where a run keeps the energy of its start, which its seed draws, what the run shows of itself is the error for
-this energy: other seeds scatter by more (`gaspart.accuracy.scatter`). The mean of replicas is of no single
-energy, so that its error has the scatter of the starts in it. No longer run reduces this part. Noise has to be
-as small as what the part leaves of the required accuracy, or as the accuracy itself if nothing is left.
+Where a run keeps the energy of its start, which its seed draws, the run shows only the error for this
+energy: other seeds scatter by more (`gaspart.accuracy.scatter`). The mean of replicas is of no single energy,
+so that its error has the scatter of the starts in it. No longer run reduces this part. Noise has to be as
+small as what the part leaves of the required accuracy, or as the accuracy itself if nothing is left.
 
 Both were measured with autoregressive series (`tests/accuracy/test_until.py`); for fixed widths and
 independent samples the first is the problem of Chow and Robbins, Ann. Math. Stat. 36, 457 (1965).

@@ -94,11 +94,7 @@ def run(
     tallies = *_tallies(impulses, wanted, scene, engine), *pair_impulse_tallies(pair_impulses)
     recipe = Recipe(*settings, pairs, _start(initial, scene, path, replicas), tallies, keep=keep)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    recipes = in_replicas(recipe, replicas)
-    if wanted is not None and at_most is None and initial is None:
-        for asked in wanted.accuracies:
-            require_reachable(asked, scene, replicas)
-    return _record(recipes, _required(path), options, examined)
+    return _record(_in_replicas(recipe, replicas), _required(path), options, examined)
 
 
 def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
@@ -117,6 +113,16 @@ def _tallies(
 
     each = (Target(scene, asked.observable, asked.face).tallies(engine) for asked in wanted.accuracies)
     return next(filter(None, each), ())
+
+
+def _in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
+    """Return the recipes of the replicas of a run. Raises SceneError as `in_replicas`, and for an accuracy
+    that their mean never reaches."""
+    recipes, until = in_replicas(recipe, replicas), recipe.until
+    if until is not None and until.at_most is None and recipe.initial is None:
+        for asked in until.accuracies:
+            require_reachable(asked, recipe.scene, replicas)
+    return recipes
 
 
 def _record(
