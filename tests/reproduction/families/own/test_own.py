@@ -75,7 +75,7 @@ def simulated(tmp_path_factory):
     planned = check(CONFIG)
     folder = tmp_path_factory.mktemp("own")
     points = [
-        type(point).from_dict({**point.to_dict(), "root": str(folder)})
+        type(point).from_dict(point.to_dict(), str(folder / point.path))
         for point in figure_points(CONFIG, "my_gas", planned)
     ]
     for point in points:
