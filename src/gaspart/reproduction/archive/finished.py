@@ -121,7 +121,11 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
 def _project_of(folder: Path) -> Path | None:
     """Return the nearest folder with a workflow, from `folder` upwards; None if there is none."""
     return next(
-        (place for place in (folder, *folder.parents) if any((place / name).is_file() for name in _WORKFLOWS)),
+        (
+            place
+            for place in (folder, *folder.parents)
+            if any((place / name).is_file() for name in _WORKFLOWS)
+        ),
         None,
     )
 
