@@ -77,7 +77,8 @@ def test_the_frames_of_a_run_ask_no_scene(tmp_path, monkeypatch):
     numbers = []
     for frames in (4, 64):
         calls.clear()
-        path = gp.run(gp.Scene(BOX, [DISCS]), gp.EventDriven(), 1, 1.0, 1.0 / frames, tmp_path / f"{frames}.nc")
+        path = tmp_path / f"{frames}.nc"
+        gp.run(gp.Scene(BOX, [DISCS]), gp.EventDriven(), 1, 1.0, 1.0 / frames, path)
         with open_trajectory(path) as data:
             assert data.sizes["frame"] == frames + 1
         numbers.append(len(calls))
