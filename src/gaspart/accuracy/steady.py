@@ -5,7 +5,6 @@ from __future__ import annotations
 from gaspart.errors import SceneError
 from gaspart.scene.faces import LeesEdwards, Vibrating
 from gaspart.scene.scene import Scene
-from gaspart.scene.thermal_faces import face_temperatures
 
 
 def require_steady(scene: Scene) -> None:
@@ -33,7 +32,7 @@ def is_driven(scene: Scene) -> bool:
 
 def at_temperature(scene: Scene) -> bool:
     """Whether a face or an interior wall gives particles the velocities of a temperature."""
-    return bool(face_temperatures(scene))
+    return bool(scene.face_temperatures)
 
 
 def keeps_energy(scene: Scene) -> bool:

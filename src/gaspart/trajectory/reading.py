@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.open_faces import is_open
 from gaspart.scene.scene import Scene
 from gaspart.state.tally import ENERGY, Tally
 from gaspart.trajectory import amber
@@ -104,7 +103,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
 
 def _following(scene: Scene) -> dict[str, float]:
     """Attributes that follow from a scene."""
-    names = ("dimension", *(() if is_open(scene) else ("count", "packing_fraction", "number_density")))
+    names = ("dimension", *(() if scene.is_open else ("count", "packing_fraction", "number_density")))
     return {name: getattr(scene, name) for name in names}
 
 
