@@ -16,9 +16,8 @@ import numpy as np
 from gaspart import theory
 from gaspart.accuracy.column import Column, pulled
 from gaspart.accuracy.conditions import kinetic_temperature
-from gaspart.accuracy.steady import is_loaded, keeps_energy
+from gaspart.accuracy.steady import keeps_energy
 from gaspart.accuracy.target import Target
-from gaspart.scene.faces import Piston
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.trajectory.reading import GIVEN_START
@@ -122,11 +121,10 @@ def _of_observable(target: Target, deviation: float) -> float:
     power = target.declared.power
     kinetic = sum(one.count * one.initial_temperature(scene.dimension) for one in scene.kinds)
     mean = 0.5 * scene.dimension * kinetic
-    for face in filter(is_loaded, scene.faces.values()):
+    for _, piston in scene.pistons:
         if target.observable == "pressure":
             return 0.0  # the load
-        assert isinstance(face, Piston) and face.pressure is not None
-        mean += face.pressure * scene.container.volume
+        mean += (piston.pressure or 0.0) * scene.container.volume
         power = max(power, _STRATIFIED)
     if not scene.gravity:
         return power * deviation / mean if mean else 0.0

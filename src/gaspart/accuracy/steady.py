@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import LeesEdwards, Piston, Surface, Vibrating
-from gaspart.scene.open_faces import is_open
+from gaspart.scene.faces import LeesEdwards, Vibrating
 from gaspart.scene.scene import Scene
-from gaspart.scene.thermal_faces import face_temperatures
 
 
 def require_steady(scene: Scene) -> None:
@@ -34,17 +32,12 @@ def is_driven(scene: Scene) -> bool:
 
 def at_temperature(scene: Scene) -> bool:
     """Whether a face or an interior wall gives particles the velocities of a temperature."""
-    return bool(face_temperatures(scene))
+    return bool(scene.face_temperatures)
 
 
 def keeps_energy(scene: Scene) -> bool:
     """Return True if a run keeps the energy of its start, or its enthalpy under a piston with a load."""
-    law = scene.restitution
-    loses = law is not None and law.dissipative
-    driven = any(face.moves and not is_loaded(face) for face in scene.faces.values())
-    return not (driven or loses or scene.thermostat is not None or at_temperature(scene) or is_open(scene))
-
-
-def is_loaded(face: Surface) -> bool:
-    """Return True if a face is a piston with a mass and an external pressure."""
-    return isinstance(face, Piston) and face.speed is None
+    loaded = [piston for _, piston in scene.pistons if piston.pressure is not None]
+    moved = any(face.moves for face in scene.faces.values() if face not in loaded)
+    exchanged = moved or at_temperature(scene) or scene.thermostat is not None or scene.is_open
+    return not exchanged and not scene.dissipates

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.open_faces import is_open
 from gaspart.state.tally import ENERGY, Tally
 from gaspart.trajectory import amber
 from gaspart.trajectory.correlator import stress_units
@@ -107,7 +106,7 @@ def _following(recipe: Recipe) -> dict[str, float]:
     """Return the attributes that follow from a scene and its start."""
     scene = recipe.scene
     given = {GIVEN_START: 1} if recipe.initial is not None else {}
-    names = ("dimension", *(() if is_open(scene) else ("count", "packing_fraction", "number_density")))
+    names = ("dimension", *(() if scene.is_open else ("count", "packing_fraction", "number_density")))
     return {name: getattr(scene, name) for name in names} | given
 
 
