@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass
 
 from gaspart import theory
-from gaspart.engines.dsmc.rates import moving_kinds, rates, square_of
+from gaspart.engines.dsmc.rates import rates, square_of
 from gaspart.scene.face_checks import piston_end
-from gaspart.scene.faces import Open, faces_of
+from gaspart.scene.faces import Open
 from gaspart.scene.open_faces import attempt_rate
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
@@ -125,14 +125,14 @@ def scales(scene: Scene) -> Scales:
         packing_fraction=scene.packing_fraction,
         end=0.5 * piston_end(scene),  # at which there is no room left
         walled=not all(scene.container.periodic),
-        attempts=sum(attempt_rate(scene, number, face) for number, face in faces_of(scene, Open)),
+        attempts=sum(attempt_rate(scene, number, face) for number, face in scene.faces_of(Open)),
     )
 
 
 def _few_kinds(scene: Scene) -> list[Species | Particle]:
     """The kinds of particles that move; of very many one that stands for all, of their mean volume, mass and
     energy."""
-    kinds, d = moving_kinds(scene), scene.dimension
+    kinds, d = list(scene.moving_kinds), scene.dimension
     if len(kinds) <= _KINDS:
         return kinds
     count = sum(kind.count for kind in kinds)

@@ -13,8 +13,8 @@ from gaspart.errors import SimulationError
 from gaspart.kernels import model as kernels
 from gaspart.kernels.event.entry import schedule_first
 from gaspart.kernels.obstacles.open_face import NUMBERS
-from gaspart.scene.faces import Open, faces_of
-from gaspart.scene.open_faces import attempt_rate, is_open
+from gaspart.scene.faces import Open
+from gaspart.scene.open_faces import attempt_rate
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
@@ -40,7 +40,7 @@ def with_room(scene: Scene, state: State) -> State:
 
 def opened(scene: Scene, state: State) -> kernels.Open | None:
     """The kernels' `Open` of a state with all numbers; None without open faces."""
-    if not is_open(scene):
+    if not scene.is_open:
         return None
     present = np.isfinite(state.positions[:, 0]).astype(np.uint8)
     blocks = -(-len(present) // NUMBERS)
@@ -52,7 +52,7 @@ def reservoirs_of(
 ) -> kernels.Reservoirs | None:
     """The gases behind open faces; None if there is a vacuum behind all of them."""
     rates, widths = np.zeros((2, 2 * scene.dimension))
-    for number, face in faces_of(scene, Open):
+    for number, face in scene.faces_of(Open):
         if face.temperature is not None:
             widths[number] = math.sqrt(face.temperature / scene.species[0].mass)
             rates[number] = attempt_rate(scene, number, face)

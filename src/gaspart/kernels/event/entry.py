@@ -1,7 +1,8 @@
 """Particles of reservoirs outside of open faces, which try to enter.
 
-All attempts at all faces are one Poisson process, the n-th of which has the random words of the counter n:
-when the next one happens, where and how fast depend on nothing else, and whether it succeeds on what is inside.
+All attempts at all faces are one Poisson process. Attempt n has the random words of the counter n: where it
+happens, how fast, and how long after it the next one happens depend on nothing else. Whether it succeeds
+depends on what is inside.
 """
 
 from math import inf

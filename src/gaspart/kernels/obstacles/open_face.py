@@ -1,7 +1,7 @@
 """Open faces: a particle that comes to one leaves the container, and its number is vacant.
 
-A particle that enters takes the lowest vacant number. Numbers are counted in blocks, so that the search for it
-is short, and depends on nothing but which particles are inside.
+A particle that enters takes the lowest vacant number: vacant numbers are counted in blocks, so that the
+search for it is short, and its result depends on nothing but which particles are inside.
 """
 
 from math import nan
