@@ -157,7 +157,8 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     ratio = carried / (gases.seconds[-1] * settings["naive_count"])
     naive = naive.rename(count="naive_count", **_names("naive", naive))
     parts = table("part", settings["source_figures"], _regime, gases)
-    return xr.merge([cheapest, naive, listed(lists, cheapest), parts], join="outer", compat="no_conflicts").assign(
+    merged = [cheapest, naive, listed(lists, cheapest), parts]
+    return xr.merge(merged, join="outer", compat="no_conflicts").assign(
         **entries({
             "work_exponent": trend(gases.count, gases.count * gases.work),
             "extrapolated_seconds": (carried.value, carried.error),
