@@ -17,7 +17,6 @@ from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Given
 from gaspart.inspection.netcdf_size import needed_bytes
 from gaspart.scene.open_faces import refuse_open
-from gaspart.scene.shear import fixed_images
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.amber import BOOKKEEPING
 from gaspart.trajectory.opening import check_frames, open_descriptor, opened
@@ -263,7 +262,7 @@ def _add_scene(contents: Contents, path: Path) -> None:
     free = not any(kind.fixed for kind in scene.kinds)
     alike = len({kind.mass for kind in scene.kinds}) == 1  # of all, also where the file has only a part
     d, frames, count = scene.dimension, len(contents.positions), contents.positions.shape[1]
-    contents.boundary = tuple("periodic" if periodic else "wall" for periodic in fixed_images(scene))
+    contents.boundary = tuple("periodic" if periodic else "wall" for periodic in scene.image_axes)
     contents.flat = d == 2
     contents.lengths = np.broadcast_to(scene.container.lengths, (frames, d))
     contents.masses = per_particle(scene, "mass")[:count].astype(float)

@@ -46,7 +46,7 @@ def equipartition(points: list[Point], settings: dict) -> xr.Dataset:
     its error. Over `walls` and `moment`: wall_time, wall_translation, wall_rotation, with errors; over
     `walls`: wall_dimension, wall_inertia, exchange and wall_ratio (see `_walls`) and their errors.
     """
-    between = [point for point in points if not all(point.scene.container.periodic)]
+    between = [point for point in points if not point.scene.is_periodic]
     points = [point for point in points if point not in between]
     rough = [point for point in points if law(point).tangential == 1.0]
     cooled = [point for point in points if point not in rough]
