@@ -72,19 +72,32 @@ def _check(given: argparse.Namespace) -> None:
                 raise SceneError(key, getattr(given, key), "has a meaning for trajectories only")
         checks, scales = _written(given.file, given.tolerance)
     else:
-        from gaspart.inspection.checks import judge
-        from gaspart.inspection.readers import read_frames
-
-        stated = given.radius, given.lengths, given.boundary, given.time_step, given.origin
-        frames = read_frames(given.file, *stated)
-        kind = "discs" if frames.dimension == 2 else "spheres"
-        print_line(f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames")
-        checks, scales = judge(frames, given.tolerance), []
+        title, checks = _judged(given)
+        print_line(title)
+        scales = []
     for check in checks:
         print_line(check)
     print_lines(scales)
     if any(check.passed is False for check in checks):
         raise CheckFailed
+
+
+def _judged(given: argparse.Namespace) -> tuple[str, list]:
+    """The checks of a trajectory, and a line that names its particles."""
+    from gaspart.inspection.checks import judge
+    from gaspart.inspection.open_runs import judge_open
+    from gaspart.inspection.readers import is_open_run, read_frames
+
+    stated = {key: getattr(given, key) for key in ("radius", "lengths", "boundary", "time_step", "origin")}
+    if is_open_run(given.file):
+        for key, value in stated.items():
+            if value is not None:
+                raise SceneError(key, value, "has no meaning for a run of gaspart with open faces")
+        return judge_open(Path(given.file), given.tolerance)
+    frames = read_frames(given.file, **stated)
+    kind = "discs" if frames.dimension == 2 else "spheres"
+    title = f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames"
+    return title, judge(frames, given.tolerance)
 
 
 def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:

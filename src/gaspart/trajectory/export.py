@@ -27,7 +27,10 @@ EXPORT_FORMATS = {
 
 @dataclass(frozen=True)
 class Snapshot:
-    """One frame: positions and velocities (N, 3), diameters, masses and types (N,), lengths (3,), time."""
+    """One frame: positions and velocities (N, 3), diameters, masses and types (N,), lengths (3,), time.
+
+    sizes: the different diameters of each type, also of one without a particle in the frame.
+    """
 
     positions: np.ndarray
     velocities: np.ndarray
@@ -37,6 +40,7 @@ class Snapshot:
     lengths: np.ndarray
     time: float
     dimension: int
+    sizes: list[np.ndarray]
 
 
 def export(trajectory: str | Path, path: str | Path, frame: int = -1, overwrite: bool = False) -> Path:
@@ -68,15 +72,17 @@ def _snapshot(path: Path, frame: int) -> Snapshot:
         places = np.asarray(file["coordinates"][frame], dtype=float)
         inside = np.isfinite(places).all(axis=1)  # of particles that come and go
         masses = np.resize(per_particle(scene, "mass"), scene.capacity)[: len(places)]
+        diameters, types = 2.0 * np.asarray(file["radius"][:]), np.asarray(file["type"][:])
         return Snapshot(
             positions=places[inside],
             velocities=np.asarray(file["velocities"][frame], dtype=float)[inside],
-            diameters=2.0 * np.asarray(file["radius"][:])[inside],
+            diameters=diameters[inside],
             masses=masses[inside].astype(float),
-            types=np.asarray(file["type"][:])[inside],
+            types=types[inside],
             lengths=np.asarray(file["cell_lengths"][frame], dtype=float),
             time=float(file["time"][frame]),
             dimension=scene.dimension,
+            sizes=[np.unique(diameters[types == n]) for n in range(int(types.max()) + 1)],
         )
 
 
@@ -89,7 +95,7 @@ def _write_gsd(path: Path, snapshot: Snapshot) -> None:
     sides = np.where([False, False, flat], 0.0, snapshot.lengths)
     frame.configuration.box = [*sides, 0.0, 0.0, 0.0]
     frame.particles.N = len(snapshot.positions)
-    frame.particles.types = [f"species_{n}" for n in range(int(snapshot.types.max()) + 1)]
+    frame.particles.types = [f"species_{n}" for n in range(len(snapshot.sizes))]
     frame.particles.typeid = snapshot.types
     frame.particles.type_shapes = _shapes(snapshot)
     frame.particles.position = snapshot.positions - 0.5 * sides
@@ -102,11 +108,9 @@ def _write_gsd(path: Path, snapshot: Snapshot) -> None:
 
 def _shapes(snapshot: Snapshot) -> list[dict]:
     """The sphere of each type, {} if its particles differ: a file without any size means a diameter of 1."""
-    shapes: list[dict] = []
-    for n in range(int(snapshot.types.max()) + 1):
-        sizes = np.unique(snapshot.diameters[snapshot.types == n]).tolist()
-        shapes.append({"type": "Sphere", "diameter": sizes[0]} if len(sizes) == 1 else {})
-    return shapes
+    return [
+        {"type": "Sphere", "diameter": float(sizes[0])} if len(sizes) == 1 else {} for sizes in snapshot.sizes
+    ]
 
 
 def _write_data(path: Path, snapshot: Snapshot) -> None:
@@ -118,7 +122,7 @@ def _write_data(path: Path, snapshot: Snapshot) -> None:
         f"gaspart: {count} particles at time {snapshot.time!r}; atom_style sphere",
         "",
         f"{count} atoms",
-        f"{int(snapshot.types.max()) + 1} atom types",
+        f"{len(snapshot.sizes)} atom types",
         "",
     ]
     for axis, start, side in zip("xyz", low, snapshot.lengths, strict=True):
