@@ -88,8 +88,8 @@ def test_the_correlation_time_of_a_markov_series(memory):
 @pytest.mark.parametrize(("period", "decay"), [(20, 0.97), (50, 0.98), (100, 0.99), (200, 0.995)])
 @pytest.mark.parametrize("white", [0.0, 1.0])
 def test_the_correlation_time_of_an_oscillation_longer_than_the_order_of_the_fit(period, decay, white):
-    """Of an autoregressive series of order 2, and of the same beside as much white noise, which hides a period
-    of six times the order: the time is then too long, and the error too large by less than 2."""
+    """Of an autoregressive series of order 2, and of the same beside as much white noise, which hides
+    a period of six times the order: the time is then too long, and the error too large by less than 2."""
     first, second = 2.0 * decay * math.cos(2.0 * math.pi / period), -(decay**2)
     variance = (1.0 - second) / ((1.0 + second) * ((1.0 - second) ** 2 - first**2))
     exact = 1.0 / (1.0 - first - second) ** 2 / variance
