@@ -36,6 +36,8 @@ def at_temperature(scene: Scene) -> bool:
 
 
 def keeps_energy(scene: Scene) -> bool:
-    """Whether a run keeps the energy of its start."""
-    law = scene.restitution
-    return not is_driven(scene) and (law is None or not law.dissipative)
+    """Return True if a run keeps the energy of its start, or its enthalpy under a piston with a load."""
+    loaded = [piston for _, piston in scene.pistons if piston.pressure is not None]
+    moved = any(face.moves for face in scene.faces.values() if face not in loaded)
+    exchanged = moved or at_temperature(scene) or scene.thermostat is not None or scene.is_open
+    return not exchanged and not scene.dissipates

@@ -35,7 +35,9 @@ def price_of_features(points: list[Point], settings: dict) -> xr.Dataset:
     dataset = table("point", list(groups.values()), _row)
     for point in points:
         if point.job == "count_instructions":
-            dataset = dataset.merge(xr.load_dataset(point.path).rename(engine="kernel"))
+            dataset = dataset.merge(
+                xr.load_dataset(point.path).rename(engine="kernel"), join="outer", compat="no_conflicts"
+            )
     return dataset
 
 
