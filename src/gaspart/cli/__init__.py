@@ -10,6 +10,7 @@ import argparse
 import errno
 import os
 import sys
+import warnings
 from collections.abc import Iterable, Sequence
 from importlib import import_module
 from typing import TextIO
@@ -126,6 +127,20 @@ def _complain(text: str, code: int) -> int:
         except OSError:  # full or closed: only the exit code is left
             _discard(stream)
     return code
+
+
+def show_warnings_in_a_line() -> None:
+    """Print the warnings of gaspart without the line of Python that gives them, until the process ends."""
+    print_with_place = warnings.showwarning
+
+    def show(message: Warning | str, *place: object, **more: object) -> None:
+        text = str(message)
+        if text.startswith("gaspart: "):
+            _complain(f"warning: {text.removeprefix('gaspart: ')}", 0)
+        else:
+            print_with_place(message, *place, **more)  # type: ignore[arg-type]
+
+    warnings.showwarning = show
 
 
 def _discard(stream: TextIO) -> None:
