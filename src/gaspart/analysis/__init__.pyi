@@ -18,9 +18,11 @@ from gaspart.analysis.pressure import collision_rate as collision_rate
 from gaspart.analysis.pressure import compressibility_factor as compressibility_factor
 from gaspart.analysis.pressure import wall_pressure as wall_pressure
 from gaspart.analysis.species import by_species as by_species
+from gaspart.analysis.structure import density as density
 from gaspart.analysis.structure import order_parameter as order_parameter
 from gaspart.analysis.structure import profile as profile
 from gaspart.analysis.structure import speed_distribution as speed_distribution
+from gaspart.analysis.structure import temperature as temperature
 from gaspart.analysis.structure_factors import partial_structure_factors as partial_structure_factors
 from gaspart.analysis.structure_factors import structure_factor as structure_factor
 from gaspart.analysis.transport import bulk_viscosity as bulk_viscosity
@@ -29,3 +31,16 @@ from gaspart.analysis.transport import shear_viscosity as shear_viscosity
 from gaspart.analysis.transport import thermal_conductivity as thermal_conductivity
 from gaspart.analysis.wall_fluxes import heat_flux as heat_flux
 from gaspart.analysis.wall_fluxes import wall_shear as wall_shear
+
+Z = compressibility_factor
+pressure = wall_pressure
+pair_rates = pair_collision_rates
+msd = mean_squared_displacement
+D = diffusion_coefficient
+vacf = velocity_autocorrelation
+speeds = speed_distribution
+velocity = velocity_profile
+flux = particle_flux
+number = particle_number
+order = order_parameter
+viscosity = shear_viscosity

@@ -416,13 +416,30 @@ TOO_SHORT = ("frames", "duration", "collisions", "wall_hits", "start", "D")
 """Keys of the errors of an analysis that a longer run may not have."""
 
 
+ALIASES: dict[str, str] = {
+    "P": "pressure",
+    "diffusion": "D",
+    "g(r)": "rdf",
+    "S(k)": "structure_factor",
+    "viscosity": "shear_viscosity",
+    "conductivity": "thermal_conductivity",
+    **{
+        declared.function: name
+        for name, declared in OBSERVABLES.items()
+        if declared.function != name and not declared.arguments
+    },
+}
+"""Other names of observables, among them those of their functions in `gaspart.analysis`."""
+
+
 def known(name: object) -> str:
-    """The name of an observable. Raises SceneError for any other value."""
-    if not isinstance(name, str) or name not in OBSERVABLES:
-        here = [one for one, declared in OBSERVABLES.items() if declared.function == name]
-        rule = f"is called {here[0]} here" if here else unknown_word(name, OBSERVABLES, "observable")
-        raise SceneError("observable", name, rule)
-    return name
+    """Return the name of an observable, given by its name or an alias. Raises SceneError for other values."""
+    if isinstance(name, str):
+        if name in OBSERVABLES:
+            return name
+        if name in ALIASES:
+            return ALIASES[name]
+    raise SceneError("observable", name, unknown_word(name, (*OBSERVABLES, *ALIASES), "observable"))
 
 
 def having(**traits: Any) -> tuple[str, ...]:

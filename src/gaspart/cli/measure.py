@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.analysis.measuring import measure, until_time
-from gaspart.analysis.observables import OBSERVABLES, selecting, selections
+from gaspart.analysis.observables import ALIASES, OBSERVABLES, known, selecting, selections
 from gaspart.cli.arguments import (
     Parser,
     UsageError,
@@ -60,7 +60,7 @@ def add_measure(parser: Parser) -> None:
     parser.description = f"{parser.description}\n\nobservables:\n{listed(meanings)}"
     add = parser.add_argument
     add_trajectory(parser)
-    words = (*OBSERVABLES, _FIELD)
+    words = (*OBSERVABLES, *ALIASES, _FIELD)
     add("words", nargs="+", choices=_Words(words), metavar="NAME", help="one of the observables above")
     text = "time from which frames count; default: a quarter of the run"
     add("--start", type=real(least=0.0), metavar="T", help=text)
@@ -113,7 +113,7 @@ def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:
         )
     if late := [word for word in names if _is_file(word)]:
         raise UsageError(f"{late[0]!r}: files stand before the names of observables")
-    return files, names
+    return files, [name if name == _FIELD else known(name) for name in names]
 
 
 def _measure(given: argparse.Namespace) -> None:
