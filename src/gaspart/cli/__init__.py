@@ -29,6 +29,7 @@ _COMMANDS = {
     "info": ("info", "contents and quality of a trajectory, and how to reproduce it"),
     "measure": ("measure", "observables of a trajectory, with uncertainties and theory"),
     "render": ("render", "a picture (.png) or a film (.mp4, .gif) of a trajectory"),
+    "film": ("render", "a film (.mp4, .gif) of a trajectory"),
     "films": ("films", "films of the scenes of the gallery, such as for slides"),
     "view": ("view", "an interactive page (.html) of a trajectory"),
     "collisions": ("collisions", "run a scene and write a data set of its collisions"),
