@@ -60,7 +60,7 @@ rule animations:
 
 rule journal:
     input:
-        expand("<results>/figures/journal/{figure}.{kind}", figure=FIGURES, kind=["pdf", "png"]),
+        expand("<results>/figures/journal/{figure}.pdf", figure=FIGURES),
 
 
 rule points:
@@ -75,4 +75,3 @@ rule all:
         "<results>/tables/claims.csv",
         "<results>/report.html",
         rules.animations.input,
-        rules.journal.input,

@@ -68,6 +68,19 @@ OBSERVABLES: dict[str, Named] = {
         by_impulses=True,
         ends_runs=True,
     ),
+    "force": Named(
+        title="force",
+        definition="force on each wall",
+        units="energy / length",
+        function="wall_force",
+        varying=True,
+        whole="never",
+        along=("face",),
+        conditions=(where.walled, where.unsheared),
+        theory="equilibrium.wall_force",
+        power=1.0,
+        ends_runs=True,
+    ),
     "heat_flux": Named(
         title="heat flux",
         symbol="q",
@@ -431,6 +444,9 @@ ALIASES: dict[str, str] = {
 }
 """Other names of observables, among them those of their functions in `gaspart.analysis`."""
 
+PRESSING = ("pressure", "force")
+"""What particles do to all walls, by the impulses that they give."""
+
 
 def known(name: object) -> str:
     """Return the name of an observable, given by its name or an alias. Raises SceneError for other values."""
@@ -507,7 +523,7 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
     pressure, of others those at a temperature."""
     if "face" not in OBSERVABLES[name].along:
         return ()
-    if name == "pressure":
+    if name in PRESSING:
         return scene.container.walls
     return tuple(key.replace("_", " ") for key, face in scene.faces.items() if face.temperatures)
 
