@@ -8,6 +8,7 @@ reference page and the completion of a shell read these declarations, and no oth
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from gaspart.analysis import conditions as where
@@ -431,7 +432,6 @@ TOO_SHORT = ("frames", "duration", "collisions", "wall_hits", "start", "D")
 
 ALIASES: dict[str, str] = {
     "P": "pressure",
-    "diffusion": "D",
     "g(r)": "rdf",
     "S(k)": "structure_factor",
     "viscosity": "shear_viscosity",
@@ -455,7 +455,8 @@ def known(name: object) -> str:
             return name
         if name in ALIASES:
             return ALIASES[name]
-    raise SceneError("observable", name, unknown_word(name, (*OBSERVABLES, *ALIASES), "observable"))
+    words = (*OBSERVABLES, *get_close_matches(str(name), ALIASES, n=1))
+    raise SceneError("observable", name, unknown_word(name, words, "observable"))
 
 
 def having(**traits: Any) -> tuple[str, ...]:

@@ -60,7 +60,7 @@ def add_measure(parser: Parser) -> None:
     parser.description = f"{parser.description}\n\nobservables:\n{listed(meanings)}"
     add = parser.add_argument
     add_trajectory(parser)
-    words = (*OBSERVABLES, *ALIASES, _FIELD)
+    words = (*OBSERVABLES, _FIELD)
     add("words", nargs="+", choices=_Words(words), metavar="NAME", help="one of the observables above")
     text = "time from which frames count; default: a quarter of the run"
     add("--start", type=real(least=0.0), metavar="T", help=text)
@@ -93,7 +93,7 @@ class _Words(tuple):
     """The names of observables, of which a shell completes one. Files may stand among the words too."""
 
     def __contains__(self, word: object) -> bool:
-        return super().__contains__(word) or _is_file(str(word))
+        return super().__contains__(word) or word in ALIASES or _is_file(str(word))
 
 
 def _is_file(word: str) -> bool:
