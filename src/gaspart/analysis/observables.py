@@ -231,6 +231,7 @@ OBSERVABLES: dict[str, Named] = {
         units="time / length",
         function="speed_distribution",
         along=("speed",),
+        ends="fastest",
         conditions=(where.unsheared, where.grouped),
         theory="equilibrium.speeds",
         scatter="particles",
