@@ -12,6 +12,7 @@ from gaspart.cli.arguments import (
     print_line,
     print_lines,
     real,
+    run_files,
     set_command,
     several,
 )
@@ -66,37 +67,43 @@ def _corner(text: str) -> str | tuple[float, ...]:
 
 
 def _check(given: argparse.Namespace) -> None:
-    if Path(given.file).suffix in (".yaml", ".yml"):
+    healthy = [_is_healthy(given, str(file)) for file in run_files(given.file)]
+    if not all(healthy):
+        raise CheckFailed
+
+
+def _is_healthy(given: argparse.Namespace, file: str) -> bool:
+    """Print the checks of a file; return False if one fails."""
+    if Path(file).suffix in (".yaml", ".yml"):
         for key in ("radius", "lengths", "boundary", "origin", "time_step"):
             if getattr(given, key) is not None:
                 raise SceneError(key, getattr(given, key), "has a meaning for trajectories only")
-        checks, scales = _written(given.file, given.tolerance)
+        checks, scales = _written(file, given.tolerance)
     else:
-        title, checks = _judged(given)
+        title, checks = _judged(file, given)
         print_line(title)
         scales = []
     for check in checks:
         print_line(check)
     print_lines(scales)
-    if any(check.passed is False for check in checks):
-        raise CheckFailed
+    return all(check.passed is not False for check in checks)
 
 
-def _judged(given: argparse.Namespace) -> tuple[str, list]:
-    """The checks of a trajectory, and a line that names its particles."""
+def _judged(file: str, given: argparse.Namespace) -> tuple[str, list]:
+    """Check a trajectory. Returns a line that names its particles, and the checks."""
     from gaspart.inspection.checks import judge
     from gaspart.inspection.open_runs import judge_open
     from gaspart.inspection.readers import is_open_run, read_frames
 
     stated = {key: getattr(given, key) for key in ("radius", "lengths", "boundary", "time_step", "origin")}
-    if is_open_run(given.file):
+    if is_open_run(file):
         for key, value in stated.items():
             if value is not None:
                 raise SceneError(key, value, "has no meaning for a run of gaspart with open faces")
-        return judge_open(Path(given.file), given.tolerance)
-    frames = read_frames(given.file, **stated)
+        return judge_open(Path(file), given.tolerance)
+    frames = read_frames(file, **stated)
     kind = "discs" if frames.dimension == 2 else "spheres"
-    title = f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames"
+    title = f"{file}: {frames.count} {kind} in {len(frames.positions)} frames"
     return title, judge(frames, given.tolerance)
 
 
