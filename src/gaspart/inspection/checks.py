@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis.counters import compressibility_factor
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.pressure import compressibility_factor
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.inspection.conserved import judge_conserved
 from gaspart.inspection.contact_value import FIT_ERROR, WIDTH, contact_values

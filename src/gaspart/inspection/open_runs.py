@@ -43,7 +43,7 @@ def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Ch
 
 
 def _frames(scene: Scene, data: xr.Dataset) -> Frames:
-    """Return the frames of a run; positions and velocities of absent particles are NaN."""
+    """Return the frames of a run; absent particles have no position (NaN), and are at rest."""
     lengths = np.array(scene.container.lengths)
     positions, velocities = (data[name].values.astype(float) for name in ("coordinates", "velocities"))
     return Frames(
@@ -51,7 +51,7 @@ def _frames(scene: Scene, data: xr.Dataset) -> Frames:
         lengths=lengths,
         radii=data["radius"].values.astype(float),
         periodic=scene.container.periodic,
-        velocities=velocities,
+        velocities=np.nan_to_num(velocities),
         time=data["time"].values,
         resolution=float(np.finfo(np.float32).eps * lengths.max()),
         scene=scene,
