@@ -18,19 +18,22 @@ from gaspart.analysis.room import left_by_obstacles
 from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
-from gaspart.keys.values import count_of, one_of
+from gaspart.keys.values import count_of, number, one_of
 
 _CONSTANT = 1e-5  # relative change of an energy that is attributed to rounding
 FASTEST = 4.0
 """The histogram of speeds ends at this many thermal speeds sqrt(k_B T / m)."""
 
 
-def speed_distribution(source: Source, bins: int = 40, start: float | None = None) -> Observable:
+def speed_distribution(
+    source: Source, bins: int = 40, start: float | None = None, fastest: float | None = None
+) -> Observable:
     """Density of the speeds of moving particles, (speed,), in time / length, of all frames together.
 
-    source: a trajectory, by its path or open, or a simulation; bins: up to four thermal speeds; start: the
-    time from which frames count (by default a quarter of the run). Velocities are those about the local flow
-    where the gas flows, otherwise about the centre of mass where that is conserved (see
+    source: a trajectory, by its path or open, or a simulation; bins: up to the speed `fastest`, by default
+    four thermal speeds; start: the time from which frames count (by default a quarter of the run). Velocities
+    are those about the local flow where the gas flows, otherwise about the centre of mass where that is
+    conserved (see
     `gaspart.analysis.flow`), times sqrt(M / (M - m)), M the mass of those whose mean is taken off. The error
     is the scatter of groups of particles. Theory: Maxwell's, of the run's own temperature; of one species at
     a constant kinetic energy the exact one for their number; none where the gas flows, whose temperature is
@@ -44,7 +47,10 @@ def speed_distribution(source: Source, bins: int = 40, start: float | None = Non
             raise SceneError("temperature", temperature, "particles at rest have no distribution")
         squares, free = run.motion.velocities**2, run.motion.freedom
         known = np.broadcast_to((free > 0.0).all(axis=2), squares.shape[:2])  # not alone in its cell
-        grid = Grid.line(0.0, FASTEST * np.sqrt(temperature / masses.min()), bins)
+        end = FASTEST * np.sqrt(temperature / masses.min())
+        if fastest is not None:
+            end = number("fastest", fastest, "must be positive and finite", above=0.0)
+        grid = Grid.line(0.0, end, bins)
         edges = grid.edges[0]
         speeds = np.sqrt((squares / np.where(free > 0.0, free, 1.0)).sum(axis=2))
         cells = np.where(known, grid.cells(speeds[..., None]), -1)

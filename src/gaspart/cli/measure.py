@@ -20,6 +20,7 @@ from gaspart.cli.arguments import (
     listed,
     print_line,
     real,
+    run_files,
     set_command,
     several,
 )
@@ -42,6 +43,7 @@ _EXAMPLES = """examples:
   gaspart measure run.nc vacf -o vacf.png
   gaspart measure run.nc msd -o msd.csv --start 10
   gaspart measure run-1.nc run-2.nc run-3.nc D   # replicas: mean and scatter
+  gaspart measure run.nc D          # the same, of a run with --replicas
   gaspart measure run.nc D --per-axis
   gaspart measure run.nc D --particles 0 --lag 2    # of one tracer, at a lag
   gaspart measure run.nc density --axis x
@@ -117,7 +119,8 @@ def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:
 
 
 def _measure(given: argparse.Namespace) -> None:
-    files, names = _sorted(given)
+    stated, names = _sorted(given)
+    files = [str(file) for name in stated for file in run_files(name)]
     write = _writer(given, names)
     asked = {key: getattr(given, key) for key in selections()}
     selection = {key: value for key, value in asked.items() if value is not None}

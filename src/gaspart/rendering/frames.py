@@ -99,7 +99,7 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
     frames = source.sizes["frame"]
     if not -frames <= count_of("frame", frame, least=-frames) < frames:
         raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
-    names = ("coordinates", "velocities", "cell_lengths", "time", "piston_position")
+    names = ("coordinates", "velocities", "time", "piston_position")
     # Of these alone: xarray takes milliseconds for a frame of the whole.
     shown = {name: source.variables[name][frame].values for name in names if name in source.variables}
     if "keep" in source.attrs:
@@ -112,7 +112,7 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
         radii=source["radius"].values[inside],
         species=source["type"].values[inside],
         speeds=np.sqrt((velocities**2).sum(axis=1)),
-        lengths=shown["cell_lengths"][: positions.shape[1]],
+        lengths=np.array(scene.container.lengths),
         walls=_walls(scene, float(shown["time"]), shown.get("piston_position")),
         masses=np.resize(per_particle(scene, "mass"), scene.capacity)[:stored][inside].astype(float),
         fixed=np.resize(per_particle(scene, "fixed"), scene.capacity)[:stored][inside].astype(bool),

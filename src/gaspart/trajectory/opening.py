@@ -14,7 +14,7 @@ from gaspart.scene.scene import Scene
 from gaspart.system import descriptor_path
 from gaspart.trajectory import amber
 from gaspart.trajectory.frames import CheckedFrames, damaged_frame, frame_count
-from gaspart.trajectory.partial import PARTIAL
+from gaspart.trajectory.partial import PARTIAL, replica_path
 
 if TYPE_CHECKING:
     import netCDF4
@@ -56,7 +56,10 @@ def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
                 raise ValueError(rule)
             yield file, header, frames
     except OSError as error:
-        raise SceneError("file", str(path), f"cannot be read: {error.strerror}") from None
+        rule = f"cannot be read: {error.strerror}"
+        if not path.exists() and (first := replica_path(path, 1)).exists():
+            rule = f"is a run of several replicas; name one of them, as {first.name}"
+        raise SceneError("file", str(path), rule) from None
     except ValueError as error:
         if isinstance(error, SceneError):
             raise
