@@ -56,13 +56,13 @@ def demands(figure: str, block: Mapping, dataset: xr.Dataset) -> Iterator[Demand
     """Find the demands of the claims of a figure that runs decide and that are decided."""
     before = budget.claims_of(figure, block, dataset)
     rows = list(_rows(dataset))
-    after = [budget.claims_of(figure, block, _enlarged(dataset, over, row)) for over, row, _ in rows]
+    after = [budget.claims_of(figure, block, _enlarged(dataset, place)) for place, _ in rows]
     for n, (claim, verdict) in enumerate(zip(before, judge(before), strict=True)):
         multiple = sufficient(claim)
         if not budget.is_decided_by_runs(claim) or not multiple <= 1.0 or verdict == "inconclusive":
             continue
         parts: dict[str, float] = {}
-        for (_, _, points), stated in zip(rows, after, strict=True):
+        for (_, points), stated in zip(rows, after, strict=True):
             grown = (stated[n].measured.error / claim.measured.error) ** 2 - 1.0
             for point in points:
                 part = max(grown, 0.0) / (_ENLARGED - 1.0) / len(points)
@@ -74,23 +74,24 @@ def demands(figure: str, block: Mapping, dataset: xr.Dataset) -> Iterator[Demand
         yield Demand(figure, claim.claim, parts, rest, 1.0 / (multiple * IN_HAND))
 
 
-def _rows(dataset: xr.Dataset) -> Iterator[tuple[str, int, list[str]]]:
-    """Each row of a measurement that states its points: dimension, number, points."""
+def _rows(dataset: xr.Dataset) -> Iterator[tuple[dict[str, int], list[str]]]:
+    """Find the rows of a measurement that state their points: place by dimension, points."""
     for name, column in dataset.variables.items():
-        if str(name).endswith(MADE_OF) and column.ndim == 1:
-            for row, text in enumerate(column.values):
-                yield str(column.dims[0]), row, str(text).splitlines()
+        if str(name).endswith(MADE_OF):
+            for place in np.ndindex(column.shape):
+                if isinstance(text := column.values[place], str):  # else a gap of a table with two dimensions
+                    yield dict(zip(map(str, column.dims), place, strict=True)), text.splitlines()
 
 
-def _enlarged(dataset: xr.Dataset, over: str, row: int) -> xr.Dataset:
+def _enlarged(dataset: xr.Dataset, place: Mapping[str, int]) -> xr.Dataset:
     """Return the data with enlarged uncertainties in a row."""
-    factor = np.ones(dataset.sizes[over])
-    factor[row] = math.sqrt(_ENLARGED)
-    scale = xr.DataArray(factor, dims=(over,))
+    factor = np.ones([dataset.sizes[over] for over in place])
+    factor[tuple(place.values())] = math.sqrt(_ENLARGED)
+    scale = xr.DataArray(factor, dims=tuple(place))
     changed = {
-        name: (dataset[name] * scale).transpose(*dataset[name].dims)
-        for name in dataset.data_vars
-        if str(name).endswith("_error") and over in dataset[name].dims
+        name: (column * scale).transpose(*column.dims)
+        for name, column in dataset.data_vars.items()
+        if str(name).endswith("_error") and set(place) <= set(column.dims)
     }
     return dataset.assign(changed)
 
