@@ -1,4 +1,4 @@
-"""Surprises of numba, Snakemake, scipy, xarray and freud: the code avoids them, each search finds a planted one.
+"""Surprises of numba, Snakemake, scipy, xarray and freud: code avoids them, each search finds a planted one.
 
 `findings/` shows each of these behaviours by itself.
 """
@@ -176,7 +176,7 @@ EXPLICIT = {
     "Steinhardt": {"average", "wl", "weighted", "wl_normalize"},
     "Hexatic": {"k", "weighted"},
 }
-"""Arguments whose defaults decide the result, or will change, by the name of the function of a module or object."""
+"""Arguments whose defaults decide the result, or will change, by the name of the function."""
 
 
 def left_to_defaults(text):
