@@ -5,6 +5,8 @@ Uncertainties are the scatter of consecutive stretches of the run, or of groups 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from gaspart.analysis.bins import Grid
@@ -119,13 +121,49 @@ def profile(
         return with_freedom(result, found)
 
 
+def density(source: Source, start: float | None = None, **selection: Any) -> Observable:
+    """Measure the density along an axis: `profile` of "density", with the same arguments.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(
+    ...     container=gp.Container(lengths=(10.0, 10.0)),
+    ...     species=[gp.Species(count=20, radius=0.5, temperature=1.0)],
+    ... )
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(20.0)
+    >>> gp.analysis.density(simulation, axis="x", bins=4).estimate.shape
+    (4,)
+    """
+    return profile(source, "density", start=start, **selection)
+
+
+def temperature(source: Source, start: float | None = None, **selection: Any) -> Observable:
+    """Measure the temperature along an axis: `profile` of "temperature", with the same arguments.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(
+    ...     container=gp.Container(lengths=(10.0, 10.0)),
+    ...     species=[gp.Species(count=20, radius=0.5, temperature=1.0)],
+    ... )
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(20.0)
+    >>> gp.analysis.temperature(simulation, axis="x", bins=4).estimate.shape
+    (4,)
+    """
+    return profile(source, "temperature", start=start, **selection)
+
+
 def order_parameter(source: Source, start: float | None = None) -> Observable:
     """Global bond order of a periodic scene, dimensionless: |<psi_6>| of discs, Q_6 of spheres.
 
     1 in a triangular lattice of discs, 0.5745 in a face-centred cubic one, small in a fluid (about
     1 / sqrt(12 N) for spheres). Raises SceneError for walls and for too few frames.
     """
-    from gaspart.analysis.order import global_steinhardt, hexatic
+    from gaspart.analysis.bond_order import global_steinhardt, hexatic
 
     with open_run(source, start) as run:
         require_defined("order", run.scene)

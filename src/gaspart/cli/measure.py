@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.analysis.measuring import measure, until_time
-from gaspart.analysis.observables import OBSERVABLES, selecting, selections
+from gaspart.analysis.observables import ALIASES, OBSERVABLES, known, selecting, selections
 from gaspart.cli.arguments import (
     Parser,
     UsageError,
@@ -95,7 +95,7 @@ class _Words(tuple):
     """The names of observables, of which a shell completes one. Files may stand among the words too."""
 
     def __contains__(self, word: object) -> bool:
-        return super().__contains__(word) or _is_file(str(word))
+        return super().__contains__(word) or word in ALIASES or _is_file(str(word))
 
 
 def _is_file(word: str) -> bool:
@@ -115,7 +115,7 @@ def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:
         )
     if late := [word for word in names if _is_file(word)]:
         raise UsageError(f"{late[0]!r}: files stand before the names of observables")
-    return files, names
+    return files, [name if name == _FIELD else known(name) for name in names]
 
 
 def _measure(given: argparse.Namespace) -> None:

@@ -63,7 +63,10 @@ def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
     except ValueError as error:
         if isinstance(error, SceneError):
             raise
-        raise SceneError("file", str(path), str(error)) from None
+        rule = str(error)
+        if path.suffix in (".yaml", ".yml"):
+            rule = f"must be a trajectory; run a scene first: gaspart run {path.name} -o {path.stem}.nc"
+        raise SceneError("file", str(path), rule) from None
 
 
 def open_netcdf(path: Path) -> netCDF4.Dataset:
