@@ -39,8 +39,9 @@ onstart:
 # The verdicts, unless the run was of a part, such as one figure. `make` prints them itself: Snakemake has no hook for
 # a run that finds nothing to do.
 onsuccess:
-    if "MAKELEVEL" not in os.environ and any(job.rule.name == "claims" for job in workflow.dag.jobs):
-        print(summary(f"{RESULTS}/tables/claims.csv"))
+    tables = [job.output[0] for job in workflow.dag.jobs if job.rule.name == "claims"]
+    if "MAKELEVEL" not in os.environ and tables:
+        print(summary(tables[0]))
 
 
 localrules:

@@ -16,7 +16,7 @@ from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys.values import count_of, number
 from gaspart.scene.face_checks import check_piston_end, piston_end
-from gaspart.scene.open_faces import is_open, refuse_open
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene, require_scene
 from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.given import check_apart, state_at_time_zero
@@ -88,7 +88,7 @@ class Simulation:
     def __repr__(self) -> str:
         kind = "discs" if self.scene.dimension == 2 else "spheres"
         reached = f"time {self.time:g}, {self._dynamics.tally.collisions} collisions"
-        count = self.state.count if is_open(self.scene) else self.scene.count
+        count = self.state.count if self.scene.is_open else self.scene.count
         return f"<Simulation of {count} {kind}, {self.engine.name} engine: {reached}>"
 
     def _repr_html_(self) -> str:

@@ -300,3 +300,20 @@ def test_means_of_groups_count_what_is_in_them_alike():
         ratios.append(error**2 * sum(sizes))
     assert np.mean(ratios) == pytest.approx(1.0, abs=3.0 * np.std(ratios) / math.sqrt(len(ratios)))
     assert statistics.means_of([1.0, 3.0], [4, 4])[1] == statistics.means_of([1.0, 3.0])[1]
+
+
+@pytest.mark.parametrize("error", [0.0, np.nan, np.inf])
+def test_a_curve_fit_refuses_errors_that_are_not_positive(error):
+    x, errors = np.linspace(0.1, 2.0, 20), np.full(20, 0.01)
+    values = 3.0 * np.exp(-x)
+
+    def law(x, amplitude, rate):
+        return amplitude * np.exp(-rate * x)
+
+    found, covariance = statistics.fit_curve(law, x, Estimate(values, errors), (1.0, 2.0))
+    assert found == pytest.approx([3.0, 1.0])
+    doubled = statistics.fit_curve(law, x, Estimate(values, 2.0 * errors), (1.0, 2.0))[1]
+    assert doubled == pytest.approx(4.0 * covariance, rel=1e-3)
+    errors[7] = error
+    with pytest.raises(ValueError, match="positive and finite"):
+        statistics.fit_curve(law, x, Estimate(values, errors), (1.0, 2.0))

@@ -39,8 +39,8 @@ if workflow.is_main_process:
     try:
         read_numbers(config, files)
         POINTS = check(config, files)
-        for kept in ("results", ".snakemake"):
-            folder = kept if os.path.exists(kept) else "."
+        for kept in (workflow.modifier.modify_path("results"), ".snakemake"):
+            folder = next(path for path in (kept, *Path(kept).parents) if os.path.exists(path))
             if not os.access(folder, os.W_OK):
                 problem = f"this user may not write to it, where the workflow keeps {kept}"
                 raise SceneError("folder", os.path.abspath(folder), problem)
@@ -65,6 +65,11 @@ pathvars:
 
 ANIMATIONS = [name for name, block in config.get("animations", {}).items() if block]
 FILMS = {name: config["animations"][name].get("figure", "") for name in ANIMATIONS}  # beside which figure
+
+
+def of_project(name):
+    """A file of this project, as an input: the prefix of a module is that of its results alone."""
+    return local(str(FOLDER / name))
 
 
 def share(paths):

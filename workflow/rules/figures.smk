@@ -36,16 +36,16 @@ rule report:
         columns=expand("<results>/figures/journal/{figure}.png", figure=FIGURES),
         datasets=expand("<results>/measurements/{figure}.nc", figure=FIGURES),
         captions=[
-            str(FOLDER / f"workflow/report/{figure}.rst") for figure in FIGURES if figure not in OWN_CAPTIONS
+            of_project(f"workflow/report/{figure}.rst") for figure in FIGURES if figure not in OWN_CAPTIONS
         ],
         claims="<results>/tables/claims.csv",
         films=expand("<results>/animations/{animation}.mp4", animation=ANIMATIONS),
         posters=expand("<results>/animations/{animation}.jpg", animation=ANIMATIONS),
-        template=str(FOLDER / "workflow/report/report.html.j2"),
-        style=str(FOLDER / "workflow/report/page.css"),
-        behaviour=[str(FOLDER / "workflow/report" / name) for name in ("page.js", "engines.js", "states.js")],
-        findings=str(FOLDER / "workflow/report/findings.yaml"),
-        references=str(FOLDER / "workflow/report/references.yaml"),
+        template=of_project("workflow/report/report.html.j2"),
+        style=of_project("workflow/report/page.css"),
+        behaviour=[of_project(f"workflow/report/{name}") for name in ("page.js", "engines.js", "states.js")],
+        findings=of_project("workflow/report/findings.yaml"),
+        references=of_project("workflow/report/references.yaml"),
     output:
         "<results>/report.html",
     log:

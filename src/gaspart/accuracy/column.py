@@ -16,7 +16,6 @@ from gaspart import theory
 from gaspart.engines.dsmc.rates import accessible
 from gaspart.scene.faces import Thermal
 from gaspart.scene.scene import Scene
-from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.state.state import State
 
 _POINTS = 1200
@@ -135,7 +134,7 @@ def pulled(scene: Scene) -> Pulled | None:
     hard walls, or ones at one temperature, that lose no energy."""
     pull = [(k, g) for k, g in enumerate(scene.gravity or ()) if g]
     kinds = [kind for kind in scene.kinds if kind.count]
-    law, thermal = scene.restitution, face_temperatures(scene)
+    law, thermal = scene.restitution, scene.face_temperatures
     if len(pull) != 1 or scene.thermostat is not None or scene.walls or not kinds:
         return None
     if law is not None and (law.dissipative or law.rough):

@@ -267,7 +267,7 @@ def _least(target: Target, engine: Engine, pilot: Pilot) -> float:
     correlations the frames that give an error."""
     scene, frequency = target.scene, target.frequency
     collisions = (EQUILIBRATED + LEAST) / frequency if frequency > 0.0 else 0.0
-    crossings = 0.0 if all(scene.container.periodic) else _CROSSINGS * target.crossing
+    crossings = 0.0 if scene.is_periodic else _CROSSINGS * target.crossing
     settled = _SETTLED * pilot.settled / EQUILIBRATION
     if target.correlated:
         sampled = target.schedule(engine, 0.0)[0]

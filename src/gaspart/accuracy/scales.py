@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from gaspart import theory
-from gaspart.engines.dsmc.rates import moving_kinds, rates, square_of
+from gaspart.engines.dsmc.rates import rates, square_of
 from gaspart.scene.face_checks import piston_end
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
@@ -113,7 +113,7 @@ def scales(scene: Scene) -> Scales:
 def _few_kinds(scene: Scene) -> list[Species | Particle]:
     """The kinds of particles that move; of very many one that stands for all, of their mean volume, mass and
     energy."""
-    kinds, d = moving_kinds(scene), scene.dimension
+    kinds, d = list(scene.moving_kinds), scene.dimension
     if len(kinds) <= _KINDS:
         return kinds
     count = sum(kind.count for kind in kinds)

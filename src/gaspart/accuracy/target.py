@@ -27,7 +27,6 @@ from gaspart.engines.dsmc.rates import rates
 from gaspart.errors import SceneError
 from gaspart.scene.faces import wall_of
 from gaspart.scene.scene import Scene
-from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import ImpulseTally, useful_impulses
@@ -122,7 +121,7 @@ class Target:
             for kind in scene.species
         ]
         squares += [sum(v * v for v in particle.velocity) for particle in scene.particles]
-        squares += face_temperatures(scene)
+        squares += scene.face_temperatures
         if scene.gravity:
             squares.append(max(map(abs, scene.gravity)) * min(scene.container.lengths))
         fastest = math.sqrt(max(squares))

@@ -11,14 +11,11 @@ from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
-from gaspart.scene.driving import has_dragged_faces
-from gaspart.scene.faces import FACES, Open, faces_of, sliding_faces, thermal_numbers
+from gaspart.scene.faces import FACES, Open
 from gaspart.scene.gas import plain_mixture
-from gaspart.scene.open_faces import is_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.stress import require_tallied
-from gaspart.scene.thermal_faces import face_temperatures
 
 Selection = Mapping[str, Any]
 GROUPS = 16
@@ -36,7 +33,7 @@ def unsheared(scene: Scene, selection: Selection) -> None:
 
 def opened(scene: Scene, selection: Selection) -> None:
     """Faces that are open."""
-    if not is_open(scene):
+    if not scene.is_open:
         raise SceneError(
             "faces", list(scene.faces), f"none is open: there are always {scene.count} particles"
         )
@@ -45,7 +42,7 @@ def opened(scene: Scene, selection: Selection) -> None:
 def open_across(scene: Scene, selection: Selection) -> None:
     """No open face along the selected axis, where particles would pass its plane outside the container."""
     axis = walled_axis_of(scene, selection.get("axis"))
-    for face, _ in faces_of(scene, Open):
+    for face, _ in scene.faces_of(Open):
         if face // 2 != axis:
             rule = f"is open: particles come and go on either side of a plane across {'xyz'[axis]}"
             raise SceneError(f"faces.{FACES[face]}", "open", rule)
@@ -62,7 +59,7 @@ def periodic_virial(scene: Scene, selection: Selection) -> None:
 
 
 def _periodic(scene: Scene, rule: str) -> None:
-    if not all(scene.container.periodic):
+    if not scene.is_periodic:
         raise SceneError("container.boundary", scene.container.boundary, rule)
 
 
@@ -75,13 +72,13 @@ def walled(scene: Scene, selection: Selection) -> None:
 
 def thermal_walls(scene: Scene, selection: Selection) -> None:
     """A face at a temperature."""
-    if not thermal_numbers(scene):
+    if not scene.thermal_numbers:
         raise SceneError("faces", list(scene.faces), "none is at a temperature, and takes heat")
 
 
 def dragged_walls(scene: Scene, selection: Selection) -> None:
     """Faces at a temperature that slide, or along which a force drives the gas."""
-    if not has_dragged_faces(scene):
+    if not scene.drags_faces:
         rule = "none is at a temperature and slides, or has a force along it: nothing drags them"
         raise SceneError("faces", list(scene.faces), rule)
 
@@ -119,7 +116,7 @@ def elastic(scene: Scene, selection: Selection) -> None:
 
 def all_move(scene: Scene, selection: Selection) -> None:
     """No fixed particles."""
-    if any(kind.fixed and kind.count for kind in scene.kinds):
+    if scene.has_fixed:
         raise SceneError("species.fixed", True, "the virial of fixed particles is not a pressure")
 
 
@@ -131,7 +128,7 @@ def some_move(scene: Scene, selection: Selection) -> None:
 
 def _moving(scene: Scene) -> int:
     """The number of particles that are not fixed."""
-    return sum(kind.count for kind in scene.kinds if not kind.fixed)
+    return scene.moving_count
 
 
 def thermal(scene: Scene, selection: Selection) -> None:
@@ -269,10 +266,9 @@ def shears(scene: Scene, selection: Selection) -> None:
 
 def heat_flows(scene: Scene, selection: Selection) -> None:
     """Faces or interior walls at two temperatures, or something that heats the gas or takes its energy."""
-    law = scene.restitution
-    heated = (law is not None and law.dissipative) or scene.thermostat is not None or _flows(scene)
+    heated = scene.dissipates or scene.thermostat is not None or _flows(scene)
     if (
-        len(face_temperatures(scene)) < 2
+        len(scene.face_temperatures) < 2
         and not heated
         and not any(face.moves for face in scene.faces.values())
     ):
@@ -288,7 +284,7 @@ def velocity_flows(scene: Scene, selection: Selection) -> None:
 def _flows(scene: Scene) -> bool:
     periodic = scene.container.periodic
     along = any(g and around for g, around in zip(scene.gravity or (), periodic, strict=False))
-    return bool(along or scene.shear_rate or sliding_faces(scene))
+    return bool(along or scene.shear_rate or scene.sliding_faces)
 
 
 def never_steady(scene: Scene, selection: Selection) -> None:

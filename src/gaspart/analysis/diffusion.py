@@ -21,7 +21,6 @@ from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import number
-from gaspart.scene.faces import mean_velocity
 
 LINEAR_FROM = 12.0
 """Collisions per particle, from which on the mean-squared displacement grows evenly, if there is a D."""
@@ -134,7 +133,7 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, int,
 def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
     """(d,) along which axes the total momentum of the moving particles is kept for so many frames: where it
     is conserved, and where more than half of it is left, as with a few obstacles among many particles."""
-    velocities = run.velocities[:, run.moving] - np.array(mean_velocity(run.scene))
+    velocities = run.velocities[:, run.moving] - np.array(run.scene.frame_velocity)
     momentum = np.einsum("tnd,n->td", velocities, run.masses[run.moving])
     left = (momentum[lag:] * momentum[:-lag]).mean(axis=0)
     return run.conserved | (run.periodic & (left > 0.5 * (momentum**2).mean(axis=0)))

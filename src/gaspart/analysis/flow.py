@@ -22,9 +22,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.analysis.bins import Grid
-from gaspart.analysis.room import moving_axes
-from gaspart.scene.faces import Open, faces_of, sliding_faces
-from gaspart.scene.open_faces import is_open
 from gaspart.scene.shear import flow
 
 if TYPE_CHECKING:
@@ -78,19 +75,10 @@ def _about_known(run: Run) -> np.ndarray:
 
 
 def flow_axes(run: Run) -> list[int]:
-    """The axes along which the velocity of the gas may vary; none if it moves as a whole only."""
-    if moving := moving_axes(run):
-        return moving
-    if opened := {number // 2 for number, _ in faces_of(run.scene, Open)}:
-        return sorted(opened)
-    across = {number // 2 for number, _ in sliding_faces(run.scene)}
-    pulls = run.scene.gravity or (0.0,) * run.dimension
-    driven = any(pull and periodic for pull, periodic in zip(pulls, run.periodic, strict=True))
-    if not across and (driven or any(wind(run))):
-        across = set(np.flatnonzero(~run.periodic).tolist()) or {0}
-    if across and (run.scene.walls or not run.moving.all()):  # obstacles
-        across = set(range(run.dimension))
-    return sorted(across)
+    """The axes along which the velocity of the gas may vary: those of the scene (`Facts.flow_axes`), or those
+    of a wind; none if it moves as a whole only."""
+    scene = run.scene
+    return list(scene.flow_axes or (scene.resolved_axes() if wind(run).any() else ()))
 
 
 def wind(run: Run) -> np.ndarray:
@@ -114,7 +102,7 @@ def about_the_flow(run: Run, along: Mapping[int, int] | None = None) -> Peculiar
     across = run.flow_axes
     if not across:
         return about_the_whole(run)
-    changes = bool(moving_axes(run)) or is_open(run.scene)
+    changes = run.scene.flow_changes
     stated = dict(along or {})
     axes = across if changes else sorted({*across, *stated})
     return about_cells(run, {axis: stated.get(axis, _number(run, axes, changes)) for axis in axes}, changes)

@@ -22,7 +22,6 @@ from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
-from gaspart.scene.faces import mean_velocity
 
 MOST_FRAMES = 1000
 """That are correlated of each group; of a longer run, every second or third ..."""
@@ -175,7 +174,7 @@ def groups_of(
         raise SceneError("count", len(masses), "a single particle keeps its velocity")
     free = np.where(about, np.sqrt(masses.sum() / np.where(others > 0.0, others, 1.0))[:, None], 1.0)
 
-    frame, time = np.array(mean_velocity(run.scene)), run.time[::stride, None, None]
+    frame, time = np.array(run.scene.frame_velocity), run.time[::stride, None, None]
 
     def parts(values: np.ndarray, drift: np.ndarray) -> list[np.ndarray]:
         values = values - drift

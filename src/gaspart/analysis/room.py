@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import Vibrating, faces_of, pistons
-from gaspart.scene.moving_walls import moving_wall
+from gaspart.scene.faces import Vibrating
 
 if TYPE_CHECKING:
     from gaspart.analysis.run import Run
@@ -21,23 +20,16 @@ _GOLDEN = 0.6180339887498949
 _NUMBERS = 2_000_000  # of all intervals together
 
 
-def moving_axes(run: Run) -> list[int]:
-    """The axes along which a face or an interior wall moves, and the gas with it."""
-    faces = [*pistons(run.scene), *faces_of(run.scene, Vibrating)]
-    wall = moving_wall(run.scene)
-    return sorted({number // 2 for number, _ in faces} | ({wall.axis} if wall else set()))
-
-
 def sides(run: Run, times: np.ndarray) -> np.ndarray:
     """(S, d, 2) the lower and the upper end of the container along each axis at times (S,) of the run. A
     piston moves evenly between frames. Raises SceneError for frames without its place."""
     scene = run.scene
     found = np.zeros((len(times), run.dimension, 2))
     found[:, :, 1] = scene.container.lengths
-    for number, face in faces_of(scene, Vibrating):
+    for number, face in scene.faces_of(Vibrating):
         inwards = face.places(times)
         found[:, number // 2, number % 2] += -inwards if number % 2 else inwards
-    for number, _ in pistons(scene):
+    for number, _ in scene.pistons:
         if "piston_position" not in run.data:
             raise SceneError("source", "frames", "lack the place of the piston")
         place = np.interp(times, run.time, run.data["piston_position"].values)
@@ -55,7 +47,7 @@ def touched(run: Run, times: np.ndarray) -> np.ndarray:
 def mean_areas(run: Run) -> np.ndarray:
     """(T - 1, d) the area across each axis that centres can touch, its mean over each interval between
     frames: of a face that moves, over instants that are spread evenly, but not at its period."""
-    if not moving_axes(run):
+    if not run.scene.moving_axes:
         return np.broadcast_to(_across(touched(run, run.time[:1])), (len(run.time) - 1, run.dimension))
     intervals = len(run.time) - 1
     number = int(np.clip(_NUMBERS // intervals, *_INSTANTS))

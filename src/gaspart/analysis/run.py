@@ -20,7 +20,7 @@ from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
 from gaspart.scene.gas import Gas, Mixture
-from gaspart.scene.open_faces import is_open, refuse_open
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
@@ -239,7 +239,7 @@ class Run:
     @property
     def dissipates(self) -> bool:
         """Whether contacts lose energy."""
-        return self.scene.restitution is not None and self.scene.restitution.dissipative
+        return self.scene.dissipates
 
     @property
     def fluid(self) -> Gas | None:
@@ -367,7 +367,7 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
         rows.append({name: value for name, value in row.items() if value is not None})
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]
-    if is_open(scene):
+    if scene.is_open:
         del columns["displacements"]  # from no place from which all have started
     sums = {field.name: field.metadata.get("along", ()) for field in fields(Tally)}
     along = {**dict.fromkeys(("coordinates", "displacements", "velocities"), ("atom", "spatial")), **sums}

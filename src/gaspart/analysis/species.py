@@ -57,7 +57,9 @@ def by_species(source: Source, start: float | None = None) -> xr.Dataset:
     table = xr.Dataset(coords={"species": ("species", kinds, {"long_name": "number of the species"})})
     table["count"] = ("species", counts, {"units": "1", "long_name": "moving particles"})
     for name in ("temperature", "mean_speed", *_of_motion()):
-        table = table.merge(_column(name, [row.get(name) for row in rows]))
+        table = table.merge(
+            _column(name, [row.get(name) for row in rows]), join="outer", compat="no_conflicts"
+        )
     reasons = "; ".join(f"{what}: {reason}" for what, reason in missing.items())
     return table.assign_attrs(not_measured=reasons)
 
@@ -103,7 +105,7 @@ def _column(name: str, found: list[Observable | None]) -> xr.Dataset:
     columns = {}
     for key, values in parts.items():
         plain = [value.drop_vars("time", errors="ignore") for value in values]
-        column = xr.concat(plain, "species", join="outer")  # few particles have fewer lags
+        column = xr.concat(plain, "species", join="outer", compat="equals")  # few particles have fewer lags
         columns[key] = column.rename(key).assign_attrs(values[0].attrs)
     columns[name].attrs.update(known[0].estimate.attrs)
     columns[f"{name}_error"].attrs.update(known[0].error.attrs)

@@ -13,7 +13,6 @@ from gaspart.analysis.room import mean_areas
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
-from gaspart.scene.faces import sliding_faces, thermal_numbers
 from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 256
@@ -37,9 +36,9 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     """
     with open_run(source, start) as run:
         require_defined("heat_flux", run.scene)
-        faces = np.array(thermal_numbers(run.scene))
+        faces = np.array(run.scene.thermal_numbers)
         energy = _sums(run, "wall_energy")[:, faces].astype(float)
-        for number, face in sliding_faces(run.scene):
+        for number, face in run.scene.sliding_faces:
             work = _sums(run, "wall_shear")[:, number] @ np.array(face.velocity)
             energy[:, list(faces).index(number)] -= work
         found = _steady(run, faces, energy, _energies(run))
@@ -64,7 +63,7 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
     """
     with open_run(source, start) as run:
         require_defined("wall_shear", run.scene)
-        faces = np.array(thermal_numbers(run.scene, drawn=True))
+        faces = np.array(run.scene.drawing_numbers)
         axes = np.array([axis for axis in range(run.dimension) if (faces // 2 != axis).any()])
         given = _sums(run, "wall_shear")[:, faces][..., axes]
         parts = [_steady(run, faces, given[..., n], _momenta(run, axis)) for n, axis in enumerate(axes)]
@@ -142,8 +141,8 @@ def _momenta(run: Run, axis: int) -> list[np.ndarray]:
 def _about_faces(run: Run) -> np.ndarray:
     """(T, M, d) velocities about the mean one of the thermal faces: the same in any frame of reference."""
     frame = np.zeros(run.dimension)
-    for _, face in sliding_faces(run.scene):
-        frame += np.array(face.velocity) / len(thermal_numbers(run.scene))
+    for _, face in run.scene.sliding_faces:
+        frame += np.array(face.velocity) / len(run.scene.thermal_numbers)
     return np.asarray(run.velocities[:, run.moving] - frame)
 
 
@@ -151,5 +150,5 @@ def _with_moments(run: Run, carried: np.ndarray) -> list[np.ndarray]:
     """(T,) each: the sum of what particles carry (T, M), and its first moments across the thermal faces,
     about the middle."""
     places = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
-    across = sorted({number // 2 for number in thermal_numbers(run.scene)})
+    across = sorted({number // 2 for number in run.scene.thermal_numbers})
     return [carried.sum(axis=1), *((carried * places[..., axis]).sum(axis=1) for axis in across)]

@@ -47,6 +47,8 @@ def add_check(parser: Parser) -> None:
     )
     text = "periodic or wall, of all axes or one for each, as periodic,periodic,wall; default: as in the file"
     add("--boundary", type=_words, metavar="NAME[,...]", help=text)
+    text = "lower corner of the container, or the word centre if its middle is at 0, as --origin=-5,-5,-5"
+    add("--origin", type=_corner, metavar="X,Y[,Z]", help=text)
     text = "time of a step (GSD) or between frames (netCDF, XYZ)"
     add("--time-step", type=real(above=0.0), metavar="T", help=text)
     add("--tolerance", type=real(least=0.0), metavar="X", help="allowed overlap, as a fraction of a diameter")
@@ -58,9 +60,14 @@ def _words(text: str) -> str | tuple[str, ...]:
     return words[0] if len(words) == 1 else words
 
 
+def _corner(text: str) -> str | tuple[float, ...]:
+    """A word, or numbers with commas between."""
+    return text if text.isalpha() else tuple(several(real())(text))
+
+
 def _check(given: argparse.Namespace) -> None:
     if Path(given.file).suffix in (".yaml", ".yml"):
-        for key in ("radius", "lengths", "boundary", "time_step"):
+        for key in ("radius", "lengths", "boundary", "origin", "time_step"):
             if getattr(given, key) is not None:
                 raise SceneError(key, getattr(given, key), "has a meaning for trajectories only")
         checks, scales = _written(given.file, given.tolerance)
@@ -68,7 +75,8 @@ def _check(given: argparse.Namespace) -> None:
         from gaspart.inspection.checks import judge
         from gaspart.inspection.readers import read_frames
 
-        frames = read_frames(given.file, given.radius, given.lengths, given.boundary, given.time_step)
+        stated = given.radius, given.lengths, given.boundary, given.time_step, given.origin
+        frames = read_frames(given.file, *stated)
         kind = "discs" if frames.dimension == 2 else "spheres"
         print_line(f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames")
         checks, scales = judge(frames, given.tolerance), []

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 _FIELD = "field"
 """The name by which a property in cells is asked for, which is not one observable."""
+_SEEDS = "seeds"
+"""Attribute of an observable of a single run with the remark on its energy."""
 _ROWS = 12  # of a curve that are printed
 _TITLE = "# gaspart measure"
 _TABLE = FileKind("a table written by gaspart measure", begins_with(_TITLE.encode()))
@@ -126,8 +128,8 @@ def _measure(given: argparse.Namespace) -> None:
             _print_curve(name, observable)
         else:
             _print_scalar(name, observable)
-        if "note" in observable.attrs:
-            print_line(f"({observable.attrs['note']})")
+        for note in (observable.attrs[key] for key in ("note", _SEEDS) if key in observable.attrs):
+            print_line(f"({note})")
         write(observable)
 
 
@@ -168,7 +170,19 @@ def _measured(
                     found = _measure_field(trajectory, times, selection | field)
                 else:
                     found = measure(trajectory, name, *times, **selection)
+                    found.attrs |= _of_seeds(trajectory, name)
             yield name, found
+
+
+def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:
+    """Return the remark that other seeds have other energies, if they have."""
+    from gaspart.accuracy.scatter import scatter_of_run
+    from gaspart.cli.stated_run import other_seeds
+
+    if not OBSERVABLES[name].power:
+        return {}
+    scatter = scatter_of_run(trajectory, name).value
+    return {_SEEDS: other_seeds(scatter)} if scatter else {}
 
 
 def _measure_field(

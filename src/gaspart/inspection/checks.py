@@ -21,7 +21,7 @@ from gaspart.inspection.samples import (
     first_relaxed_frame,
     path,
 )
-from gaspart.inspection.speeds import judge_speeds, why_not_speeds
+from gaspart.inspection.speeds import SPEEDS, judge_speeds, why_not_speeds
 from gaspart.inspection.verdict import Check, compared
 from gaspart.state.overlaps import deepest_overlap
 
@@ -34,12 +34,21 @@ COARSEST = 0.1
 MOST_FRAMES = 200
 """Number of frames, evenly spaced, that are searched for overlaps and contact values."""
 _LEAST_FRAMES = 16
+_PRESSURE, _DIFFUSION = "pressure Z", "diffusion coefficient D"
 
 
 def judge(frames: Frames, tolerance: float | None = None) -> list[Check]:
     """All checks of a trajectory. tolerance: allowed overlap, as a fraction of a diameter."""
-    checks = [*judge_places(frames, tolerance), *judge_conserved(frames), *judge_speeds(frames)]
-    return [*checks, _pressure(frames), _diffusion(frames)]
+    checks = [*judge_places(frames, tolerance), *judge_conserved(frames)]
+    if reason := frames.no_identity or _acting(checks):
+        return [*checks, *(Check(name, None, reason) for name in (*SPEEDS, _PRESSURE, _DIFFUSION))]
+    return [*checks, *judge_speeds(frames), _pressure(frames), _diffusion(frames)]
+
+
+def _acting(checks: list[Check]) -> str | None:
+    """The reason why nothing is known of equilibrium: a check found more than elastic contacts."""
+    names = [check.name for check in checks if check.acts]
+    return f"something acts on the particles (see {' and '.join(names)})" if names else None
 
 
 def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:
@@ -58,6 +67,8 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
     """The deepest overlap of two particles, as a part of their contact distance."""
     if frames.sampled:
         return Check("overlaps", None, "contacts are sampled, so that particles may overlap")
+    if frames.no_identity and frames.diameter is None and frames.radii_by_frame is None:
+        return Check("overlaps", None, frames.no_identity)
     deepest, where = 0.0, 0
     for n in seen:
         one = frames.at(n)
@@ -80,6 +91,8 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
     places, lengths = frames.positions[:, :, walls], lengths[..., walls]
     out = float(np.maximum(-places, places - lengths).max()) / (2.0 * float(frames.radii.min()))
     text = "all centres are inside" if out <= 0.0 else f"a centre is {out:.2g} diameters outside"
+    if out > 0.0 and (np.abs(places) <= 0.5 * lengths).all():
+        text += "; all are inside if 0 is the centre of the container: give --origin centre"
     return Check("container", out <= _tolerated(frames, tolerance), text)
 
 
@@ -90,13 +103,13 @@ def _pressure(frames: Frames) -> Check:
     nothing is left of a lattice (its order decays by exp(-k^2 <r^2> / 2d)); and those between which they
     have moved across the shells that are counted.
     """
-    name = "pressure Z"
+    name = _PRESSURE
     if reason := _no_pressure(frames):
         return Check(name, None, reason)
     gas = frames.gas
     assert gas is not None, "see `_no_pressure`"
     eta, d = gas.packing_fraction, gas.dimension
-    way, spacing = path(frames), _spacing(frames)
+    way, spacing = path(frames), frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
         return Check(name, None, _unmoved(way, spacing))
@@ -136,11 +149,6 @@ def _no_pressure(frames: Frames) -> str | None:
     return None
 
 
-def _spacing(frames: Frames) -> float:
-    """Distance of neighbours."""
-    return float((np.prod(frames.lengths) / frames.count) ** (1.0 / frames.dimension))
-
-
 def _unmoved(way: np.ndarray, distance: float) -> str:
     """The reason why a run is not relaxed."""
     there = math.sqrt(float((way[-1] ** 2).sum(axis=1).mean()))
@@ -151,10 +159,10 @@ def _unmoved(way: np.ndarray, distance: float) -> str:
 
 def _diffusion(frames: Frames) -> Check:
     """D of spheres by their mean-squared displacement against theory."""
-    name = "diffusion coefficient D"
+    name = _DIFFUSION
     if reason := why_not_speeds(frames) or why_not(frames):
         return Check(name, None, reason)
-    way, spacing = path(frames), _spacing(frames)
+    way, spacing = path(frames), frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
         return Check(name, None, _unmoved(way, spacing))

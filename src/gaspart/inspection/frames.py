@@ -26,7 +26,8 @@ class Frames:
     far as the file knows; resolution: by how much a position may be off, as a length; isolated: whether the
     file states that it is plain; part: whether there are more particles than the file has; sampled: whether
     contacts were sampled, so that particles may overlap; engine and scene: by which a file of gaspart was
-    made.
+    made; no_velocities: the reason why there are none; reordered: the first frame that lists its particles in
+    another order than the one before, without ids to restore it, or None.
     """
 
     positions: np.ndarray
@@ -45,6 +46,8 @@ class Frames:
     radii_by_frame: np.ndarray | None = None
     engine: Engine | None = None
     scene: Scene | None = None
+    no_velocities: str = "the file has no velocities"
+    reordered: int | None = None
 
     @property
     def count(self) -> int:
@@ -55,6 +58,18 @@ class Frames:
     def dimension(self) -> int:
         """2 or 3."""
         return self.positions.shape[2]
+
+    @property
+    def spacing(self) -> float:
+        """Distance of neighbours."""
+        return float((np.prod(self.lengths) / self.count) ** (1.0 / self.dimension))
+
+    @property
+    def no_identity(self) -> str | None:
+        """The reason why particles cannot be followed from frame to frame; None if they can."""
+        if self.reordered is None:
+            return None
+        return f"rows are in another order in frame {self.reordered}, and there are no ids to follow them by"
 
     @property
     def diameter(self) -> float | None:

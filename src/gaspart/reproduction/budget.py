@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
 from gaspart.files import whole_file
+from gaspart.reproduction import job_time
 from gaspart.reproduction.claims.claim import Claim
 from gaspart.reproduction.claims.judging import judge, sufficient
 from gaspart.reproduction.config import checked
@@ -123,23 +124,16 @@ def _shown(block: Mapping, planned: Mapping[str, Mapping[str, Point]]) -> list[t
 
 
 def _seconds(results: Path, point: tuple[str, str]) -> float:
-    """The processor time of a point's job. Raises SceneError if it was not made."""
+    """Return the processor time of a point's job. Raises SceneError if it was not made."""
     for rule in ("simulate", "compute"):
-        file = results / "benchmarks" / rule / point[0] / f"{point[1]}.tsv"
-        if file.is_file():
-            return _time(file)
-    raise SceneError("results", str(results / "benchmarks"), f"has no time of the point {'/'.join(point)}")
+        if (spent := job_time.seconds(results, rule, *point)) is not None:
+            return spent
+    raise SceneError("results", str(results / "logs"), f"has no time of the point {'/'.join(point)}")
 
 
 def _made(results: Path, figure: str) -> float:
-    """The processor time of what is made of a figure's points: numbers, picture."""
-    files = (results / "benchmarks" / rule / f"{figure}.tsv" for rule in ("measure", "draw"))
-    return sum(_time(file) for file in files if file.is_file())
-
-
-def _time(file: Path) -> float:
-    with file.open(encoding="utf-8") as lines:
-        return sum(float(row["cpu_time"]) for row in csv.DictReader(lines, delimiter="\t"))
+    """Return the processor time of the jobs that make a figure of its points: numbers, verdicts, picture."""
+    return sum(job_time.seconds(results, rule, figure) or 0.0 for rule in ("measure", "judge", "draw"))
 
 
 def _claims(figure: str, block: Mapping, dataset: xr.Dataset) -> Sequence[Claim]:

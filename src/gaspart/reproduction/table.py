@@ -162,7 +162,8 @@ def _spread(row: Mapping[str, Any]) -> dict[str, Any]:
 def prefixed(**tables: xr.Dataset) -> xr.Dataset:
     """Tables with different rows in one data set, by the names of their dimensions: the column `volume` along
     `path` is the variable `path_volume`."""
-    return xr.merge(part.rename({name: f"{over}_{name}" for name in part}) for over, part in tables.items())
+    renamed = (part.rename({name: f"{over}_{name}" for name in part}) for over, part in tables.items())
+    return xr.merge(renamed, join="outer", compat="no_conflicts")
 
 
 def from_rows(

@@ -92,6 +92,26 @@ def require_end(asked: Requirement, scene: Scene, at_most: float | None, given: 
             raise SceneError("until", asked.name, rule) from None
 
 
+def require_reachable(asked: Requirement, scene: Scene, replicas: int) -> None:
+    """Raise SceneError for an accuracy that the mean of replicas, each of its seed, never reaches, since the
+    energies of their starts scatter."""
+    if replicas == 1:
+        return
+    from gaspart.accuracy.scatter import start_scatter  # loads the analysis, which few runs need
+    from gaspart.accuracy.target import Target
+
+    starts = start_scatter(Target(scene, asked.observable, asked.face))
+    if starts.value / math.sqrt(replicas) < asked.accuracy:
+        return
+    enough = math.ceil(2.0 * (starts.value / asked.accuracy) ** 2)
+    rule = (
+        f"the energies of the starts alone scatter the mean of {replicas} replicas by "
+        f"{100.0 * starts.value / math.sqrt(replicas):.2g} %: {starts.remedy}; {enough} replicas would "
+        "suffice, or give a longest duration (at_most)"
+    )
+    raise SceneError("until", f"{asked.name}={asked.accuracy:g}", rule)
+
+
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
     """The mean time between two collisions of a particle, or else to cross the container, to two digits, as a
     multiple of the engine's steps and the samples of correlations. Raises SceneError if nothing moves."""

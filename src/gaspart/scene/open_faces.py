@@ -7,9 +7,8 @@ import math
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, Open, faces_of
+from gaspart.scene.faces import FACES, Open
 from gaspart.scene.geometry import CLOSE_PACKING, ball_volume
-from gaspart.scene.thermal_faces import face_temperatures
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -17,15 +16,10 @@ if TYPE_CHECKING:
 _SIGMAS = 10.0  # standard deviations of the number of an ideal gas for which there is room
 
 
-def is_open(scene: Scene) -> bool:
-    """Whether the number of particles varies."""
-    return bool(faces_of(scene, Open))
-
-
 def check_open_faces(scene: Scene) -> None:
     """Raise SceneError for a scene with open faces in which it is not defined what enters, or when a particle
     has left."""
-    for number, _ in faces_of(scene, Open):
+    for number, _ in scene.faces_of(Open):
         face = f"faces.{FACES[number]}"
         if not scene.centres_to_walls:
             raise SceneError(face, "open", "is passed by centres of particles: needs centres_to_walls: true")
@@ -35,7 +29,7 @@ def check_open_faces(scene: Scene) -> None:
 
 def refuse_open(scene: Scene, rule: str) -> None:
     """Raise SceneError, with a rule, for a scene with open faces."""
-    for number, face in faces_of(scene, Open):
+    for number, face in scene.faces_of(Open):
         raise SceneError(f"faces.{FACES[number]}", face.kind, rule)
 
 
@@ -52,12 +46,12 @@ def capacity(scene: Scene) -> int:
     has the distribution of Poisson. The pressure inside is that of the strongest reservoir at most, and the
     gas as cold as the coldest thing. There are never more than fit.
     """
-    reservoirs = [face for _, face in faces_of(scene, Open) if face.temperature is not None]
+    reservoirs = [face for _, face in scene.faces_of(Open) if face.temperature is not None]
     if not reservoirs:
         return scene.count
     species, d = scene.species[0], scene.dimension
     pressure = max(number_density(scene, face) * (face.temperature or 0.0) for face in reservoirs)
-    mean = pressure / min(face_temperatures(scene)) * scene.container.volume
+    mean = pressure / min(scene.face_temperatures) * scene.container.volume
     most = scene.count + mean + _SIGMAS * math.sqrt(mean) + _SIGMAS
     around = math.prod(length + 2.0 * species.radius for length in scene.container.lengths)
     packed = CLOSE_PACKING[d] * around / ball_volume(d, species.radius)

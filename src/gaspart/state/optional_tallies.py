@@ -13,9 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
-from gaspart.scene.driving import has_dragged_faces
 from gaspart.scene.impulses import require_impulses, require_pair_impulses, row_count
-from gaspart.scene.open_faces import is_open
 from gaspart.scene.stress import require_tallied
 
 if TYPE_CHECKING:
@@ -198,7 +196,7 @@ ASKED: dict[str, type[OptionalTally]] = {
 
 def tallies_of(scene: Scene) -> tuple[OptionalTally, ...]:
     """Those that every run of a scene has, if its engine makes them."""
-    made = {WallShearTally(): has_dragged_faces(scene), EntryTally(): is_open(scene)}
+    made = {WallShearTally(): scene.drags_faces, EntryTally(): scene.is_open}
     return tuple(tally for tally, present in made.items() if present)
 
 

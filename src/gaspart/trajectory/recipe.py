@@ -14,8 +14,7 @@ from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.face_checks import check_piston_end
-from gaspart.scene.moving_walls import has_piston
-from gaspart.scene.open_faces import is_open, refuse_open
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.state.given import state_at_time_zero, state_from_arrays
@@ -177,7 +176,7 @@ class Recipe:
             "spins": scene.rough and not self.keep,
             "vibrations": scene.vibrates and not self.keep,
             "displacements": self.displacements,
-            "piston": has_piston(scene),
+            "piston": scene.has_piston,
             "pair_collisions": self.pairs,
         }
         extra = [name for name, present in names.items() if present]
@@ -250,7 +249,7 @@ class Recipe:
             "program": "gaspart",
             "programVersion": versions["gaspart_version"],
             "title": f"{scene.count} hard {'discs' if scene.dimension == 2 else 'spheres'}"
-            + (" at the start" if is_open(scene) else ""),
+            + (" at the start" if scene.is_open else ""),
             "note": amber.NOTE,
             **self.attributes(),
             **versions,

@@ -11,8 +11,6 @@ from gaspart.analysis import bulk
 from gaspart.analysis.bulk import BOLTZMANN, ENSKOG
 from gaspart.analysis.expected.run import Expected, equation_of, partners, shift_of
 from gaspart.analysis.run import Run
-from gaspart.scene.moving_walls import moving_wall
-from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.trajectory.pairs import pairs_of
 
 
@@ -108,7 +106,7 @@ def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | N
 def temperature(run: Run) -> Expected | None:
     """The same everywhere in equilibrium."""
     scene = run.scene
-    if scene.faces or face_temperatures(scene) or run.dissipates or scene.thermostat or moving_wall(scene):
+    if scene.faces or scene.face_temperatures or run.dissipates or scene.thermostat or scene.moving_wall:
         return None
     return run.temperature, 0.0, "equilibrium"
 

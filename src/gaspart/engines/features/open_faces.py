@@ -11,8 +11,8 @@ import numpy as np
 from gaspart.engines.features.part import Part
 from gaspart.errors import SimulationError
 from gaspart.kernels import model as kernels
-from gaspart.scene.faces import Open, faces_of
-from gaspart.scene.open_faces import is_open, number_density
+from gaspart.scene.faces import Open
+from gaspart.scene.open_faces import number_density
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
@@ -44,7 +44,7 @@ def with_room(scene: Scene, state: State) -> State:
 
 def opened(scene: Scene, state: State) -> kernels.Open | None:
     """The kernels' `Open` of a state with all numbers; None without open faces."""
-    if not is_open(scene):
+    if not scene.is_open:
         return None
     present = np.isfinite(state.positions[:, 0]).astype(np.uint8)
     return kernels.Open(present, np.zeros(2 * scene.dimension, dtype=np.int64))
@@ -55,7 +55,7 @@ def reservoirs(scene: Scene, seed: int | tuple[int, ...]) -> Reservoirs | None:
     from gaspart.kernels.event.entry import Reservoirs
 
     rates, widths = np.zeros((2, 2 * scene.dimension))
-    for number, face in faces_of(scene, Open):
+    for number, face in scene.faces_of(Open):
         if face.temperature is not None:
             area = scene.container.volume / scene.container.lengths[number // 2]
             widths[number] = math.sqrt(face.temperature / scene.species[0].mass)

@@ -34,7 +34,7 @@ def usable_cache(version: str) -> Path | None:
         wanted: Path | None = cache_directory() / version
     except RuntimeError:
         wanted = None
-    why = _obstacle(wanted) if wanted else "there is no home for the kernel cache"
+    why = obstacle(wanted) if wanted else "there is no home for the kernel cache"
     if not why:
         return wanted
     found = None if os.environ.get("GASPART_CACHE") else _temporary(version)
@@ -54,7 +54,7 @@ def report_unwritable(directory: Path, error: OSError) -> None:
         warnings.warn(f"gaspart: {why}; compiling anew in every process ({_REMEDY})", stacklevel=3)
 
 
-def _obstacle(directory: Path) -> str:
+def obstacle(directory: Path) -> str:
     """Why kernels are not to be kept in a folder, which is made if it is missing; "" if they are."""
     try:
         directory.parent.mkdir(parents=True, exist_ok=True)
@@ -80,4 +80,4 @@ def _temporary(version: str) -> Path | None:
         private = _is_private(own.lstat())
     except OSError:
         return None
-    return own / version if private and not _obstacle(own / version) else None
+    return own / version if private and not obstacle(own / version) else None

@@ -51,8 +51,27 @@ def _own_content(path: str) -> bytes | None:
         return None
 
 
+_KERNELS = Path(__file__).parents[1]
+
+
 class KernelLocator(caching.UserProvidedCacheLocator):
-    """Where the files of a function are: a folder for each package, wherever that is installed."""
+    """Where the files of a function are: a folder for each package, wherever that is installed.
+
+    The digest of the sources, which names the cache, is all that functions of `kernels` need. numba also uses
+    the digest of the file, the number of the line and the bytecode: comments and docstrings change these.
+    """
+
+    def __init__(self, function: Callable, file: str) -> None:
+        super().__init__(function, file)
+        self.digested = Path(file).is_relative_to(_KERNELS)
+
+    def get_source_stamp(self) -> Any:
+        """Return what the file states beyond the digest of the sources."""
+        return None if self.digested else super().get_source_stamp()
+
+    def get_disambiguator(self) -> str:
+        """Return what tells functions of one name in a file apart: there are none in `kernels`."""
+        return "" if self.digested else super().get_disambiguator()
 
     @classmethod
     def get_suitable_cache_subpath(cls, py_file: str) -> str:
@@ -91,7 +110,7 @@ class KernelFiles(caching.IndexDataCacheFile):
         return shipped_content(f"{folder.parent.name}/{folder.name}/{self._name(for_many)}")
 
     def _name(self, key: tuple) -> str:
-        """key: types of arguments, processor, and digest of the bytecode. The stamp holds the options."""
+        """key: types of arguments, processor, and digests of bytecode. The stamp holds the options."""
         compiled = repr((self._version, self._source_stamp, key))
         digest = hashlib.sha256(compiled.encode()).hexdigest()
         return str(self._data_name_pattern.format(digest=digest[:24]))
@@ -114,6 +133,10 @@ class KernelCache(caching.FunctionCache):
         contents = self._impl
         stamp = contents.locator.get_source_stamp(), repr(sorted(options.items()))
         self._cache_file = KernelFiles(self.cache_path, contents.filename_base, stamp, contents.suffix)
+
+    def _index_key(self, sig: Any, codegen: Any) -> tuple:
+        types, system, (code, variables) = super()._index_key(sig, codegen)
+        return types, system, ("" if self._impl.locator.digested else code, variables)
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled for a signature. A warning where that fails, no error."""

@@ -17,6 +17,7 @@ from typing import Any, TypeVar, cast
 from gaspart.interruption import uninterrupted
 from gaspart.kernels.compile.cache import report_unwritable, usable_cache
 from gaspart.kernels.compile.loading import load_numba
+from gaspart.kernels.compile.sources import file_digests
 
 numba = load_numba()
 KNOWN = "0.68"
@@ -40,11 +41,15 @@ _KERNELS = Path(__file__).parents[1]
 
 @cache
 def source_digest() -> str:
-    """A short digest of every module of `kernels`: all compiled code is in it, and nothing else."""
+    """Return a short digest of every module of `kernels`, which hold all compiled code and nothing else.
+
+    Docstrings and comments do not change it.
+    """
+    paths = sorted(_KERNELS.rglob("*.py"))
     digest = hashlib.sha256()
-    for path in sorted(_KERNELS.rglob("*.py")):
+    for path, content in zip(paths, file_digests(paths), strict=True):
         digest.update(path.relative_to(_KERNELS).as_posix().encode())
-        digest.update(path.read_bytes())
+        digest.update(content.encode())
     return digest.hexdigest()[:16]
 
 

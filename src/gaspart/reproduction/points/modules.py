@@ -14,6 +14,7 @@ import re
 from functools import cache
 from pathlib import Path
 
+from gaspart.kernels.compile.sources import file_digests
 from gaspart.public import stated
 
 PACKAGE = Path(__file__).parents[2]
@@ -82,22 +83,17 @@ def _file(module: str) -> Path | None:
 
 @cache
 def digest(*roots: str | Path, others: tuple[Path, ...] = ()) -> str:
-    """A short digest of the files of a closure, and of other files: those of another installed package."""
-    total = hashlib.sha256()
-    for path in [*_in_order(closure(*roots)), *others]:
-        total.update(_content(path))
-    return total.hexdigest()[:12]
+    """A short digest of the files of a closure, and of other files: those of another installed package.
+    Docstrings and comments do not change it."""
+    return _digest_of([*_in_order(closure(*roots)), *others])
 
 
 @cache
 def kernel_digest(*roots: str | Path) -> str:
     """A short digest of the compiled modules in a closure that `warm` may compile: jobs that need equal ones
     share their stamps."""
-    total = hashlib.sha256()
-    for path in _in_order(closure(*roots) & closure("gaspart.reproduction.points.variants")):
-        if path.is_relative_to(PACKAGE / "kernels"):
-            total.update(_content(path))
-    return total.hexdigest()[:12]
+    needed = closure(*roots) & closure("gaspart.reproduction.points.variants")
+    return _digest_of([path for path in _in_order(needed) if path.is_relative_to(PACKAGE / "kernels")])
 
 
 def _in_order(paths: frozenset[Path]) -> list[Path]:
@@ -105,6 +101,10 @@ def _in_order(paths: frozenset[Path]) -> list[Path]:
     return sorted(paths, key=str)
 
 
-@cache
-def _content(path: Path) -> bytes:
-    return path.read_bytes()
+_contents: dict[Path, str] = {}
+
+
+def _digest_of(paths: list[Path]) -> str:
+    new = [path for path in paths if path not in _contents]
+    _contents.update(zip(new, file_digests(new), strict=True))
+    return hashlib.sha256("".join(_contents[path] for path in paths).encode()).hexdigest()[:12]

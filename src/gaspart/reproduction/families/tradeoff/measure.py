@@ -73,7 +73,9 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     long = [
         point for point in points if point.job == "simulate" and point.experiment not in settings["cells"]
     ]
-    dataset = dataset.assign(tables.table("steady", long, _steady, rows)).merge(frontier(dataset))
+    dataset = dataset.assign(tables.table("steady", long, _steady, rows)).merge(
+        frontier(dataset), join="outer", compat="no_conflicts"
+    )
     events = [one for one in timed if one["setting"] == "event"]
     dataset = dataset.assign(tables.table("timed", events, _timed))
     cells = cells_by_fraction(points, settings["cells"])
@@ -137,7 +139,7 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
             "accuracy": settings["accuracies"],
             "engine": ["event", "step"],
         },
-    ).merge(maps(points, settings, timed, every))
+    ).merge(maps(points, settings, timed, every), join="outer", compat="no_conflicts")
 
 
 def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:

@@ -1,0 +1,119 @@
+"""Digests of source files that docstrings and comments do not change.
+
+A Python file is represented by its syntax tree without docstrings. The text of the tree is our own, because
+`ast.dump` differs between versions of Python. To make it takes some 3 ms for a file, so the digests of all
+contents that were seen are stored in the cache folder.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import json
+import os
+import re
+import sys
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from gaspart.files import scratch_beside
+from gaspart.kernels.compile.cache import cache_directory, obstacle
+from gaspart.system import is_own
+
+STORE = "trees.json"
+MOST_STORED = 20_000
+"""Largest number of stored digests, some thirty versions of the package."""
+_DIGEST = re.compile(r"[0-9a-f]{32}")
+
+
+def file_digests(paths: Iterable[Path]) -> list[str]:
+    """Return the digest of each file: of the syntax tree of a Python file, of the bytes of any other file."""
+    stored, added, digests = _stored(), {}, []
+    for path in paths:
+        content = path.read_bytes()
+        digest = _digest(content)
+        if path.suffix == ".py":
+            key = _digest(b"%d.%d:" % sys.version_info[:2] + content)
+            if key not in stored:
+                stored[key] = added[key] = tree_digest(content)
+            digest = stored[key]
+        digests.append(digest)
+    if added:
+        _store(added)
+    return digests
+
+
+def tree_digest(source: bytes) -> str:
+    """Return the digest of the syntax tree of Python source, or of its bytes if it has none."""
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return _digest(source)
+    return _digest("\0".join(_words(tree)).encode("utf-8", "surrogatepass"))
+
+
+def _words(node: Any) -> Iterator[str]:
+    """Generate the text of a syntax tree, without empty fields, which other versions of Python may add."""
+    if isinstance(node, ast.AST):
+        yield f"({type(node).__name__}"
+        for name, value in ast.iter_fields(node):
+            if value is not None and value != []:
+                yield name
+                yield from _words(value)
+        yield ")"
+    elif isinstance(node, list):
+        yield "["
+        for item in node:
+            if not _is_text(item):
+                yield from _words(item)
+        yield "]"
+    else:
+        yield f"{type(node).__name__} {node!r}"
+
+
+def _is_text(node: Any) -> bool:
+    """Return True for a statement that is only a string: a docstring, also one of a constant."""
+    if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Constant):
+        return False
+    return isinstance(node.value.value, str)
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:32]
+
+
+@cache
+def _stored() -> dict[str, str]:
+    """Digests of trees by those of contents, from the cache folder, and those that this process has found."""
+    try:
+        with open(_folder() / STORE, "rb") as file:
+            content = json.load(file) if is_own(os.fstat(file.fileno())) else None
+    except (OSError, ValueError, RuntimeError):  # RecursionError is a RuntimeError
+        return {}
+    is_whole = isinstance(content, dict) and all(
+        isinstance(value, str) and _DIGEST.fullmatch(value) for value in content.values()
+    )
+    return content if is_whole else {}
+
+
+def _store(added: dict[str, str]) -> None:
+    """Add digests to those in the cache folder, if it can be written: `usable_cache` reports if it cannot."""
+    try:
+        folder = _folder()
+        _stored.cache_clear()
+        kept = [*(_stored() | added).items()][-MOST_STORED:]
+        with scratch_beside(folder / STORE) as scratch:
+            scratch.write_text(json.dumps(dict(kept)))
+            scratch.replace(folder / STORE)
+    except (OSError, RuntimeError):
+        pass
+
+
+def _folder() -> Path:
+    """Return the folder of the stored digests. Raises RuntimeError if others may write there, or none may."""
+    folder = cache_directory() / "sources"
+    if obstacle(folder):
+        raise RuntimeError
+    return folder
