@@ -94,6 +94,16 @@ def _speeds(kind):
     return {"exact": [1.0, 0.0]} if kind.equilibrium and not kind.falls else {}
 
 
+def _pressure_tensor(kind):
+    """Return n k_B T (Z - 1 / N) on the diagonal: of velocities about the centre of mass, as declared."""
+    case, (z, error) = kind.case, (_z(kind) or stored()[kind.name]["values"].get("Z", {"": (math.nan, 0)}))[""]
+    scale, names = case.count * kind.temperature / case.box.lengths.prod(), "xyz"[: kind.dimension]
+    if len(set(case.box.lengths)) > 1 or not math.isfinite(z):
+        return {}
+    diagonal = [scale * (z - 1.0 / case.count), scale * error]
+    return {a + b: diagonal if a == b else [0.0, 0.0] for a in names for b in names}
+
+
 class Short:
     """A gas of equal spheres at times that are short beside the time between collisions.
 
@@ -240,6 +250,7 @@ RULES = {
     "collision_rate": _collision_rate,
     "Z": _z,
     "pair_rates": _pair_rates,
+    "pressure_tensor": _pressure_tensor,
     "D": _diffusion,
     "mutual_diffusion": _mutual,
     "shear_viscosity": _short("shear"),

@@ -172,6 +172,8 @@ def unknown(observable, kind):
         return "no body can be inserted: too dense" if kind.name in ("discs_69",) else None
     if kind.moving_face and observable in ("density", "pressure"):
         return "areas and bins of the moment" if observable == "density" else None
+    if observable == "pressure_tensor" and len(set(kind.case.box.lengths)) > 1:
+        return "a box that is no cube may press its axes differently"
     if kind.many_sizes and observable == "contact_values":
         return "radii differ"
     return None

@@ -66,7 +66,7 @@ def contacts(case, configurations, every=4, trials=30, seed=0):
 
 
 def _by_gaps(case, group):
-    """Return the contacts of a group with faces, extrapolated; those with other groups are unknown."""
+    """Return the contacts of a group with faces and with itself, extrapolated; others are unknown."""
     d, kept = case.dimension, sample(case, 20_000, 8, 21)
     value, error = np.full((2, 1 + 2 * d + len(case.groups) + 1), np.nan)
     size = case.groups[group].radius
@@ -75,8 +75,13 @@ def _by_gaps(case, group):
         gap = (case.box.lengths[k] - x if s else x) - case.box.margin * size
         near = 0.2 * min(size, case.box.lengths.min() / 2.0)
         value[1 + 2 * k + s], error[1 + 2 * k + s] = at_contact(gap, near)
-    if case.groups[group].count == 1:
-        value[1 + 2 * d + group] = error[1 + 2 * d + group] = 0.0
+    own = 1 + 2 * d + group
+    value[own] = error[own] = 0.0
+    if case.groups[group].count > 1:
+        members = kept.groups == group
+        few = kept._replace(positions=kept.positions[:, members], radii=kept.radii[members])
+        pairs, scatter = scaled_pairs(case, few)[1]
+        value[own], error[own] = 2.0 * pairs, 2.0 * scatter
     if not len(case.fixed):
         value[-1] = error[-1] = 0.0
     return value, error

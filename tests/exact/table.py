@@ -73,12 +73,15 @@ def cell_of(observable, kind, engine="event", seed=runs.SEED, longer=1.0):
     if not parts:
         return Cell(*place, "wrong", "has no right value")
     data = runs.recorded(kind.name, engine, seed, longer)
-    deviations = {}
+    deviations, results = {}, {}
     for part, right in parts.items():
+        selection = selection_in(part)
         try:
-            deviations[part] = deviation_of(observable, kind, data, part, right)
+            key = str(selection)
+            results[key] = results[key] if key in results else measured(observable, data, **selection)
         except SceneError as error:
             return Cell(*place, "wrong", f"{part}: refused: {error.rule}")
+        deviations[part] = deviation_of(observable, kind, results[key], part, right)
     worst = max(deviations, key=lambda part: deviations[part][0])
     deviation, text = deviations[worst]
     state = "value" if deviation <= LIMIT else "wrong"
@@ -114,9 +117,8 @@ def selection_in(part):
     return found
 
 
-def deviation_of(observable, kind, data, part, right):
-    """Return by how much a part of an observable deviates, as a normal deviate, and the numbers as a text."""
-    result = measured(observable, data, **selection_in(part))
+def deviation_of(observable, kind, result, part, right):
+    """Return by how much a part of a result deviates, as a normal deviate, and the numbers as a text."""
     key = result.attrs["quantity"]
     value, error = result[key], result[f"{key}_error"]
     freedom = RUN_FREEDOM

@@ -77,6 +77,8 @@ def wall_values(kind, case, values, errors):
             if len(case.groups) == 1:
                 parts = np.array([total])
         force[face] = total
+        reached = sizes > 0.0  # none is of a gas behind a wall
+        parts, sizes = parts[reached], sizes[reached]
         pressure[face] = (parts[:, 0] / sizes).sum(), math.hypot(*(parts[:, 1] / sizes))
         if case.load and face == f"{'xyz'[case.box.axis]} high":
             force[face], pressure[face] = (case.load, 0.0), (case.pressure, 0.0)
@@ -119,17 +121,8 @@ def pair_values(kind, case, values, errors):
     found = {"collision_rate": {"": (total, scatter)}, "pair_rates": rates}
     if case.periodic.all() and case.empty and case.count > 1:
         z = 1.0 + virial / (d * case.count), spread / (d * case.count)
-        found |= {"Z": {"": z}, "contact_values": contact} | pressure_tensor(kind, case, *z)
+        found |= {"Z": {"": z}, "contact_values": contact}
     return found
-
-
-def pressure_tensor(kind, case, z, error):
-    """Return the pressure tensor of an isotropic container, by Z."""
-    scale, names = case.count * kind.temperature / case.box.lengths.prod(), "xyz"[: case.dimension]
-    if len(set(case.box.lengths)) > 1:
-        return {}
-    parts = {a + b: (scale * z, scale * error) if a == b else (0.0, 0.0) for a in names for b in names}
-    return {"pressure_tensor": parts}
 
 
 def values_of_gaps(kind, case, kept):
@@ -138,7 +131,6 @@ def values_of_gaps(kind, case, kept):
     if case.count > 1 and case.periodic.all():
         z, (pairs, error) = static.scaled_pairs(case, kept)
         found["Z"] = {"": z}
-        found |= pressure_tensor(kind, case, *z)
     elif case.count > 1:
         _, (pairs, error) = static.scaled_pairs(case, kept)
     share = 2.0 * math.sqrt(t / math.pi) * closed.speed_factor(kind.freedoms) / case.count
