@@ -30,10 +30,12 @@ include: "workflow/rules/animate.smk"
 
 
 # Snakemake wakes its scheduler once a second for every job that has ended (snakemake/snakemake#3744), to limit how
-# many start in a second: after a few hundred jobs that takes a core. On one machine no limit is needed.
+# many start in a second: after a few hundred jobs that takes a core. On one machine no limit is needed. There jobs are
+# copies of a process that has loaded their modules; Snakemake runs scripts by the command in sys.executable.
 onstart:
     if workflow.local_exec:
         workflow.scheduler.job_rate_limiter = None
+        sys.executable = job_server.start(sys.executable, SCRIPTS / "_client.py")
 
 
 # The verdicts, unless the run was of a part, such as one figure. `make` prints them itself: Snakemake has no hook for
@@ -58,7 +60,7 @@ rule animations:
 
 rule journal:
     input:
-        expand("<results>/figures/journal/{figure}.{kind}", figure=FIGURES, kind=["pdf", "png"]),
+        expand("<results>/figures/journal/{figure}.pdf", figure=FIGURES),
 
 
 rule points:
@@ -73,4 +75,3 @@ rule all:
         "<results>/tables/claims.csv",
         "<results>/report.html",
         rules.animations.input,
-        rules.journal.input,

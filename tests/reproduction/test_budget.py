@@ -32,12 +32,13 @@ print(job_time.stated())
 """
 
 
-def test_a_job_states_all_its_processor_time_and_that_of_its_children(tmp_path):
+def test_a_job_states_its_memory_and_its_processor_time_with_that_of_its_children(tmp_path):
     log = tmp_path / "logs/simulate/virial/eta=0.25.log"
     log.parent.mkdir(parents=True)
     with log.open("w") as file:
         subprocess.run([sys.executable, "-c", SPIN], stdout=file, check=True)
-    assert job_time.seconds(tmp_path, "simulate", "virial", "eta=0.25") >= 0.58
-    log.write_text("processor time of something: 1.0 s\n")
-    assert job_time.seconds(tmp_path, "simulate", "virial", "eta=0.25") is None
-    assert job_time.seconds(tmp_path, "simulate", "virial", "eta=0.2") is None
+    used = job_time.used(tmp_path, "simulate", "virial", "eta=0.25")
+    assert used.seconds >= 0.58 and 5.0 < used.memory < 500.0
+    log.write_text("processor time: 1.0 s of something\n")
+    assert job_time.used(tmp_path, "simulate", "virial", "eta=0.25") is None
+    assert job_time.used(tmp_path, "simulate", "virial", "eta=0.2") is None

@@ -159,11 +159,14 @@ def test_warming_again_reruns_nothing_else(smoke):
 
 
 def test_one_figure_and_the_named_targets_can_be_requested(fresh):
+    plan_of_all = fresh.plan(*SMOKE)
+    assert "draw_for_journal" not in plan_of_all
     plan = fresh.plan(*SMOKE, "--", "results/smoke/figures/virial_discs.png")
     assert plan["draw"] == plan["measure"] == 1
     assert "judge" not in plan
     assert "draw" not in fresh.plan(*SMOKE, "--", "claims")
     assert "report" in fresh.plan(*SMOKE, "--", "report")
+    assert fresh.plan(*SMOKE, "--", "journal")["draw_for_journal"] == plan_of_all["draw"]
 
 
 def test_the_full_reproduction_can_be_planned(fresh):

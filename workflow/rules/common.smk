@@ -19,6 +19,7 @@ sys.path.insert(0, str(ROOT / "src"))
 if " " in sys.executable:
     sys.executable = shlex.quote(sys.executable)
 
+from gaspart.reproduction import job_server
 from gaspart.reproduction.claims.captions import filled
 from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import check, explained

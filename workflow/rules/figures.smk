@@ -7,9 +7,8 @@ rule draw:
     output:
         png=flagged("<results>/figures/{figure}.png", "png"),
         svg=flagged("<results>/figures/{figure}.svg", "svg"),
-        # The same for a column of a journal. The report shows these pictures on narrow screens.
+        # The same for a column of a journal, which the report shows on narrow screens.
         journal_png="<results>/figures/journal/{figure}.png",
-        journal_pdf="<results>/figures/journal/{figure}.pdf",
     log:
         "<results>/logs/draw/{figure}.log",
     benchmark:
@@ -27,6 +26,15 @@ rule draw:
         caption=caption_of,
     script:
         "../scripts/draw.py"
+
+
+use rule draw as draw_for_journal with:
+    output:
+        journal_pdf="<results>/figures/journal/{figure}.pdf",
+    log:
+        "<results>/logs/draw_for_journal/{figure}.log",
+    benchmark:
+        "<results>/benchmarks/draw_for_journal/{figure}.tsv"
 
 
 rule report:

@@ -17,8 +17,8 @@ def run_times(results):
     spent, folder = {}, results / "logs"
     for path in sorted(folder.rglob("*.log")):
         rule, *names = path.relative_to(folder).with_suffix("").parts
-        if (seconds := job_time.seconds(results, rule, *names)) is not None:
-            spent.setdefault(rule, []).append(seconds)
+        if used := job_time.used(results, rule, *names):
+            spent.setdefault(rule, []).append(used.seconds)
     return [
         {"rule": rule, "jobs": len(times), "total": sum(times), "longest": max(times)}
         for rule, times in spent.items()

@@ -16,6 +16,7 @@ from gaspart.analysis.opening import particle_flux as particle_flux
 from gaspart.analysis.pairs import rdf as rdf
 from gaspart.analysis.pressure import collision_rate as collision_rate
 from gaspart.analysis.pressure import compressibility_factor as compressibility_factor
+from gaspart.analysis.pressure import wall_force as wall_force
 from gaspart.analysis.pressure import wall_pressure as wall_pressure
 from gaspart.analysis.species import by_species as by_species
 from gaspart.analysis.structure import order_parameter as order_parameter

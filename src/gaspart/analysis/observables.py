@@ -68,6 +68,19 @@ OBSERVABLES: dict[str, Named] = {
         by_impulses=True,
         ends_runs=True,
     ),
+    "force": Named(
+        title="force",
+        definition="force on each wall",
+        units="energy / length",
+        function="wall_force",
+        varying=True,
+        whole="never",
+        along=("face",),
+        conditions=(where.walled, where.unsheared),
+        theory="equilibrium.wall_force",
+        power=1.0,
+        ends_runs=True,
+    ),
     "heat_flux": Named(
         title="heat flux",
         symbol="q",
@@ -416,6 +429,10 @@ TOO_SHORT = ("frames", "duration", "collisions", "wall_hits", "start", "D")
 """Keys of the errors of an analysis that a longer run may not have."""
 
 
+PRESSING = ("pressure", "force")
+"""What particles do to all walls, by the impulses that they give."""
+
+
 def known(name: object) -> str:
     """The name of an observable. Raises SceneError for any other value."""
     if not isinstance(name, str) or name not in OBSERVABLES:
@@ -490,7 +507,7 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
     pressure, of others those at a temperature."""
     if "face" not in OBSERVABLES[name].along:
         return ()
-    if name == "pressure":
+    if name in PRESSING:
         return scene.container.walls
     return tuple(key.replace("_", " ") for key, face in scene.faces.items() if face.temperatures)
 

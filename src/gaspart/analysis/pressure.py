@@ -1,6 +1,10 @@
-"""Observables from the counters of a run: pressure and collision rate."""
+"""Observables from the counters of a run: force and pressure on walls, collision rate."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 
@@ -10,9 +14,9 @@ from gaspart.analysis.estimators import engine_class, estimator, knows_energies
 from gaspart.analysis.expected.described import described
 from gaspart.analysis.impulses import USUAL_BINS
 from gaspart.analysis.observable import Observable, observable, scalar
-from gaspart.analysis.observables import require_defined
+from gaspart.analysis.observables import name_of, require_defined
 from gaspart.analysis.profiles import Means, with_freedom
-from gaspart.analysis.room import mean_areas, touched
+from gaspart.analysis.room import face_areas, touched
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
@@ -40,52 +44,130 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
 
 
 def wall_pressure(source: Source, start: float | None = None) -> Observable:
-    """Pressure on each face of the container that is a wall, (face,): the momentum given to it per time and
-    per area that centres can touch at that time, between faces where they are: beside a piston or a vibrating
-    floor the area changes.
+    """Measure the pressure on each face of the container that is a wall.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        Pressure (face,) in [energy / length^d], with standard errors. Theory, if known: equal particles
+        between hard walls of one distance (`gaspart.theory.wall_pressure`). NaN where it is not known: on
+        side walls while particles rest, and, of particles of several sizes, on faces whose area changes as
+        others move.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no walls, for too few frames, if particles rest where obstacles may carry them, and
+        for particles of several sizes whose file has no tally per area.
+
+    Notes
+    -----
+    The sum over sizes a of the force F_a of their particles divided by the area A_a of the face
+    that their centres can reach, without those that fixed particles and interior walls cover
+    (`gaspart.scene.accessible`), at that time where faces move. By the contact theorem it is k_B T times the
+    density at contact, summed: n k_B T of the volume that is accessible in an ideal gas, and unchanged by a
+    particle that never touches the face. Across the axis of a piston with a load it is the force divided by
+    the area of the container, as the load is defined, so that the mean is the load. The force on a face has
+    no such convention: `wall_force`.
 
     Contacts of particles at rest are no events: they press a floor with what gravity gives the particles and
-    no event takes (`_rest_on_floors`). Their thrust on side walls is not known: NaN while particles rest.
+    no event takes. With impulses that the run has kept along an axis, the pressures across it are freed from
+    what fluctuates with them and is known exactly (`gaspart.analysis.controls`); the attribute `estimator`
+    says so.
 
-    With impulses that the run has kept along an axis, the pressures across it are freed from what fluctuates
-    with them and is known exactly (`gaspart.analysis.controls`); the attribute `estimator` says so.
-
-    source, start: as in `compressibility_factor`. Theory: that of equal particles between hard walls of one
-    distance (`gaspart.theory.wall_pressure`). Raises SceneError without walls, for too few frames, and where
-    particles rest in a scene with obstacles, which may carry them.
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    >>> sim.advance(duration=20.0)
+    >>> list(gp.analysis.wall_pressure(sim).face.values)
+    ['x low', 'x high', 'y low', 'y high']
     """
+    with _open_walls(source, start, "pressure") as (run, ends):
+        about = described("pressure", run, touched(run, run.time[:1])[0])
+        return _of_faces("wall_pressure", run, ends, about)
+
+
+def wall_force(source: Source, start: float | None = None) -> Observable:
+    """Measure the force on each face of the container that is a wall.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        Force (face,) outwards along the normal, in [energy / length], with standard errors. Side walls have
+        NaN while particles rest.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no walls, for too few frames, and if particles rest where obstacles may carry them.
+
+    Notes
+    -----
+    The momentum given to the face per time. It depends on no area; a pressure does (`wall_pressure`).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    >>> sim.advance(duration=20.0)
+    >>> gp.analysis.wall_force(sim).estimate.attrs["units"]
+    'energy / length'
+    """
+    with _open_walls(source, start, "force") as (run, ends):
+        return _of_faces("wall_force", run, ends, described("force", run))
+
+
+@contextmanager
+def _open_walls(source: Source, start: float | None, name: str) -> Iterator[tuple[Run, np.ndarray]]:
+    """Open a run and the ends (K + 1,) of the blocks of an observable of faces. Raises SceneError."""
     with open_run(source, start, sheared=True, varying=True) as run:
-        require_defined("pressure", run.scene)
+        require_defined(name, run.scene)
         blocks = min(_BLOCKS, len(run.time) - 1)
         if blocks < 4:
             raise SceneError("frames", len(run.time), "an error needs 5 or more")
-        ends = np.linspace(0, len(run.time) - 1, blocks + 1).astype(int)
-        faces, found = pressures_on_walls(run, ends)
-        freedoms = np.full(len(faces), blocks - 1.0)
-        improved = controlled_pressures(run)
-        for place, (_, regressors, each) in improved.items():
-            time = np.diff(run.time)
-            found[:, place] = series.over(each * time, ends) / series.over(time, ends)
-            freedoms[place] -= regressors
-        values, errors = means_of(found - found[0])  # no error of rounding at rest
-        result = observable(
-            "wall_pressure",
-            {"face": (faces, {"long_name": "face of the container"})},
-            values + found[0],
-            errors,
-            **described("pressure", run, touched(run, run.time[:1])[0]),
-        )
-        serves = knows_energies(engine_class(run), run.scene)
-        asked = ImpulseTally(str(faces[-1])[0], USUAL_BINS) if serves else None
-        of = "wall impulses", "wall impulses, with the known mean of the energy along an axis"
-        result.attrs |= estimator(run, *of, bool(improved), asked)
-        return with_freedom(result, Means(values, errors, freedoms)) if improved else result
+        yield run, np.linspace(0, len(run.time) - 1, blocks + 1).astype(int)
 
 
-def controlled_pressures(run: Run) -> dict[int, tuple[str, int, np.ndarray]]:
-    """The pressures on the walls of which the run has kept enough, by their place among all walls: the name
-    of each, the number of controls, and the pressure in each interval (T - 1,)."""
-    faces, each = pressures_on_walls(run, np.arange(len(run.time)))
+def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) -> Observable:
+    """The result of a function of this name, from blocks of a run."""
+    name = name_of(function)
+    faces, found = on_walls(run, ends, name)
+    freedoms = np.full(len(faces), len(found) - 1.0)
+    improved, time = controlled_on_walls(run, name), np.diff(run.time)
+    for place, (_, regressors, each) in improved.items():
+        found[:, place] = series.over(each * time, ends) / series.over(time, ends)
+        freedoms[place] -= regressors
+    values, errors = means_of(found - found[0])  # no error of rounding at rest
+    along = {"face": (faces, {"long_name": "face of the container"})}
+    result = observable(function, along, values + found[0], errors, **about)
+    serves = knows_energies(engine_class(run), run.scene)
+    asked = ImpulseTally(str(faces[-1])[0], USUAL_BINS) if serves else None
+    of = "wall impulses", "wall impulses, with the known mean of the energy along an axis"
+    result.attrs |= estimator(run, *of, bool(improved), asked)
+    return with_freedom(result, Means(values, errors, freedoms)) if improved else result
+
+
+def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.ndarray]]:
+    """The pressures or forces on the walls of which the run has kept enough, by their place among all walls:
+    the name of each, the number of controls, and the value in each interval (T - 1,)."""
+    faces, each = on_walls(run, np.arange(len(run.time)), name)
     groups, found = group_count(run) if run.has_states else 0, {}
     for place, face in enumerate(map(str, faces)) if groups else ():
         controls = wall_controls(run, "xyz".index(face[0]))
@@ -95,17 +177,21 @@ def controlled_pressures(run: Run) -> dict[int, tuple[str, int, np.ndarray]]:
     return found
 
 
-def pressures_on_walls(run: Run, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Names (W,) of the faces that are walls, and the pressures on them (K, W) between the frames `ends`
-    (K + 1,). Raises SceneError as `wall_pressure`."""
-    require_defined("pressure", run.scene)
-    d, time = run.dimension, np.diff(run.time)[:, None]
-    pressed = np.abs(series.over(series.face_pressures(run) * time, ends))
-    areas = np.repeat(mean_areas(run), 2, axis=1)
-    resting = _rest_on_floors(run, ends) * series.over(time / areas, ends) / series.over(time, ends)
-    chosen = np.repeat(~run.periodic, 2)
-    pressures = (pressed + resting) / series.over(time, ends)
-    return np.array(face_names(d))[chosen], pressures[:, chosen]
+def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Names (W,) of the faces that are walls, and the "pressure" or the "force" on them (K, W) between the
+    frames `ends` (K + 1,). Raises SceneError as `wall_pressure`."""
+    require_defined(name, run.scene)
+    time, walls = np.diff(run.time)[:, None], np.repeat(~run.periodic, 2)
+    impulses, resting = series.over(series.face_impulses(run), ends), _rest_on_floors(run, ends)
+    if name == "force":
+        given = impulses + resting
+    elif run.scene.has_unequal_areas:  # of what rests, the sizes are not known
+        given = series.over(series.face_pressures(run) * time, ends)
+        given += np.where((np.abs(resting) > _SLIGHT * impulses).any(axis=0), np.nan, 0.0)
+    else:
+        given = series.over(series.face_pressures(run) * time, ends)
+        given += resting * series.over(time / face_areas(run), ends) / series.over(time, ends)
+    return np.array(face_names(run.dimension))[walls], (given / series.over(time, ends))[:, walls]
 
 
 def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:

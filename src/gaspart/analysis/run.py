@@ -19,6 +19,7 @@ from gaspart.analysis.flow import Peculiar, about_the_flow, flow_axes
 from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
+from gaspart.scene.accessible import Accessible
 from gaspart.scene.gas import Gas, Mixture
 from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
@@ -143,6 +144,15 @@ class Run:
     def conserved(self) -> np.ndarray:
         """(d,) the axes along which the total momentum is."""
         return np.array(self.scene.conserved_axes)
+
+    @cached_property
+    def accessible(self) -> Accessible:
+        """The volume and the areas that centres can reach around the fixed particles of the run. Raises
+        SceneError if fixed species are not in the file."""
+        if not any(kind.fixed and kind.count for kind in self.scene.species):
+            return Accessible(self.scene)
+        fixed = ~self.moving
+        return Accessible(self.scene, (self.positions[0, fixed], self.radii[fixed]))
 
     @cached_property
     def motion(self) -> Peculiar:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.analysis.bins import Grid
-from gaspart.analysis.room import mean_areas
+from gaspart.analysis.room import per_area
 from gaspart.analysis.run import Run
 from gaspart.state.tally import compressibility_factor
 
@@ -38,12 +38,15 @@ def collision_rate(run: Run) -> np.ndarray:
     return np.asarray(2.0 * run.increments("collisions") / (run.moving.sum() * np.diff(run.time)))
 
 
+def face_impulses(run: Run) -> np.ndarray:
+    """(T - 1, 2d) momentum given to each face in each interval; 0 where there is no wall."""
+    return np.asarray(np.abs(run.increments("wall_impulse")[:, : 2 * run.dimension]))
+
+
 def face_pressures(run: Run) -> np.ndarray:
-    """(T - 1, 2d) momentum given to each face in each interval per time and per area that centres can touch,
-    its mean over the interval where faces move. NaN-free also where there is no wall: 0."""
-    areas = np.repeat(mean_areas(run), 2, axis=1)
-    impulses = run.increments("wall_impulse")[:, : 2 * run.dimension]
-    return np.asarray(impulses / (areas * np.diff(run.time)[:, None]))
+    """(T - 1, 2d) the same per time and area, as `analysis.wall_pressure` defines it; NaN where that is not
+    known."""
+    return per_area(run, face_impulses(run), "momentum_per_area") / np.diff(run.time)[:, None]
 
 
 @dataclass(frozen=True)

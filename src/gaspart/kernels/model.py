@@ -288,7 +288,8 @@ class Tally(NamedTuple):
     """counts (of `COUNTS`,); sums (of `SUMS`, 2) and by face and interior wall wall_impulse, wall_energy
     (faces + walls, 2), see `running_sum.add`; wall_hits (faces + walls,); worst (1,): the largest
     |r^2/sigma^2 - 1| at a contact; stress: an `event.stress.Stress`, impulses: an `event.impulses.Impulses`,
-    pair_impulses: an `event.pair_impulses.PairImpulses`, None if they are not wanted."""
+    pair_impulses: an `event.pair_impulses.PairImpulses`, None if they are not wanted; per_area: a
+    `physics.per_area.PerArea`, None unless particles of several sizes reach other areas of faces."""
 
     counts: np.ndarray
     sums: np.ndarray
@@ -299,6 +300,7 @@ class Tally(NamedTuple):
     stress: Any = None
     impulses: Any = None
     pair_impulses: Any = None
+    per_area: Any = None
 
 
 def empty_tally(walls: int) -> Tally:

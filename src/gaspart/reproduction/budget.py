@@ -126,14 +126,15 @@ def _shown(block: Mapping, planned: Mapping[str, Mapping[str, Point]]) -> list[t
 def _seconds(results: Path, point: tuple[str, str]) -> float:
     """Return the processor time of a point's job. Raises SceneError if it was not made."""
     for rule in ("simulate", "compute"):
-        if (spent := job_time.seconds(results, rule, *point)) is not None:
-            return spent
+        if used := job_time.used(results, rule, *point):
+            return used.seconds
     raise SceneError("results", str(results / "logs"), f"has no time of the point {'/'.join(point)}")
 
 
 def _made(results: Path, figure: str) -> float:
     """Return the processor time of the jobs that make a figure of its points: numbers, verdicts, picture."""
-    return sum(job_time.seconds(results, rule, figure) or 0.0 for rule in ("measure", "judge", "draw"))
+    jobs = (job_time.used(results, rule, figure) for rule in ("measure", "judge", "draw"))
+    return sum(used.seconds for used in jobs if used)
 
 
 def _claims(figure: str, block: Mapping, dataset: xr.Dataset) -> Sequence[Claim]:

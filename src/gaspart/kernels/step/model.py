@@ -88,7 +88,12 @@ class StepTally(NamedTuple):
     `kernels.physics.planes`, or None; pull, the acceleration along it; per_length, bins in a unit of length;
     turns, one over the number of bins if the axis is periodic, otherwise 0; row (N,), that of each particle,
     or None if there is one. They are not in a tuple of their own: numba passes no tuples in tuples to
-    threads."""
+    threads.
+
+    per_area (threads, 2d, 2, 2), by `add_whole`: the momentum along its normal and the heat that each face is
+    given, each times the least area of a face that centres of particles of any size can reach, divided by
+    that of the particle's size: share (sizes, 2d), with size (N,) of each particle. None unless these
+    differ."""
 
     counts: np.ndarray
     sums: np.ndarray
@@ -104,6 +109,9 @@ class StepTally(NamedTuple):
     per_length: float = 0.0
     turns: float = 0.0
     row: np.ndarray | None = None
+    per_area: np.ndarray | None = None
+    share: np.ndarray | None = None
+    size: np.ndarray | None = None
 
 
 class Found(NamedTuple):

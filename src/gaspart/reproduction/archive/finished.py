@@ -59,15 +59,14 @@ class Finished:
         return f"{self.results}/report.html"
 
     def outputs(self) -> Iterator[str]:
-        """The results that go into every archive as they are: figures, tables, measurements, films.
+        """Return the results that go into every archive as they are: figures, tables, measurements, films.
 
-        Figures for a column of a journal as .pdf only: as .png they are a third of all.
+        Figures for a column of a journal are not among them: they are a third of all.
         """
         folder = self.results
         yield f"{folder}/tables/claims.csv"
         for figure in self.figures:
             yield from (f"{folder}/figures/{figure}.{kind}" for kind in ("png", "svg"))
-            yield f"{folder}/figures/journal/{figure}.pdf"
             yield from (f"{folder}/claims/{figure}.csv", f"{folder}/measurements/{figure}.nc")
         for film, block in self.config.get("animations", {}).items():
             if block:

@@ -66,7 +66,7 @@ class ClaimData(NamedTuple):
 class JobTime(NamedTuple):
     """A row of `jobs.csv`: a job of the workflow, in s and MB; when it ended, in UTC.
 
-    cpu_seconds: as the job states it; "" for one that an older version made.
+    cpu_seconds, largest_memory: as the job states them; "" for one that an older version made.
     """
 
     rule: str
@@ -127,11 +127,11 @@ def job_times(run: Finished) -> list[JobTime]:
         if rule in ("simulate", "compute") and tuple(names) not in kept:
             continue
         with path.open(newline="", encoding="utf-8") as file:
-            used = next(csv.DictReader(file, delimiter="\t"))
+            timed = next(csv.DictReader(file, delimiter="\t"))
         ended = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
-        spent = job_time.seconds(run.root / run.results, rule, *names)
-        cpu = "" if spent is None else f"{spent:.2f}"
-        rows.append(JobTime(rule, "/".join(names), used["s"], cpu, used["max_rss"], ended))
+        own = job_time.used(run.root / run.results, rule, *names)
+        stated = (f"{own.seconds:.2f}", f"{own.memory:.1f}") if own else ("", "")
+        rows.append(JobTime(rule, "/".join(names), timed["s"], *stated, ended))
     return rows
 
 
