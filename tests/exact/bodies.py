@@ -83,7 +83,10 @@ class Case:
         """Add the bodies: species, then single ones; fixed ones apart."""
         d, axis, plane = self.dimension, self.box.axis, self.box.plane[0]
         still, self.groups = [], []
-        listed = [*(scene.get("species") or []), *({"count": 1, **one} for one in scene.get("particles") or [])]
+        listed = [
+            *(scene.get("species") or []),
+            *({"count": 1, **one} for one in scene.get("particles") or []),
+        ]
         for one in listed:
             if one.get("fixed"):
                 still.append((one["position"], one["radius"]))

@@ -1,4 +1,4 @@
-"""Closed formulas: fixed energy, free-molecular and ideal gases, billiards, two bodies, few bodies in reservoirs.
+"""Closed formulas: fixed energy, free-molecular and ideal gases, billiards, two bodies, bodies in reservoirs.
 
 k_B = 1; d dimension, N number of bodies, f degrees of freedom of a gas of fixed energy.
 """
@@ -17,7 +17,7 @@ def speed_factor(f):
 
 
 def santalo_rate(d, speed, surface, volume):
-    """Return hits per time of a point of constant speed in a billiard (Santalo): v S / (pi A), v S / (4 V)."""
+    """Return hits per time of a point of one speed in a billiard (Santalo), v S / (pi A) or v S / (4 V)."""
     return speed * surface / ((math.pi if d == 2 else 4.0) * volume)
 
 
@@ -33,7 +33,7 @@ def one_place_number(activity, room):
 
 
 def speed_density(d, speeds, mass, temperature, f):
-    """Return the density of speeds of a body: v^(d-1) (1 - m v^2 / (f kT))^((f-d)/2 - 1), Maxwell's for f None."""
+    """Return the density of speeds, v^(d-1) (1 - m v^2 / (f kT))^((f-d)/2 - 1), Maxwell's for f None."""
     if f is None:
         norm = 2.0 ** (d / 2.0 - 1.0) * math.gamma(d / 2.0) * (temperature / mass) ** (d / 2.0)
         return speeds ** (d - 1) * np.exp(-mass * speeds**2 / 2.0 / temperature) / norm
@@ -103,8 +103,10 @@ class FreeMolecular:
 
 
 def effusion(area, activities, masses, temperatures):
-    """Return the net flux between two reservoirs of points: A (z1 sqrt(T1 / 2 pi m) - z2 sqrt(T2 / 2 pi m))."""
-    low, high = (z * math.sqrt(t / 2.0 / math.pi / masses) for z, t in zip(activities, temperatures, strict=True))
+    """Return the net flux between reservoirs of points, A (z1 sqrt(T1 / 2 pi m) - z2 sqrt(T2 / 2 pi m))."""
+    low, high = (
+        z * math.sqrt(t / 2.0 / math.pi / masses) for z, t in zip(activities, temperatures, strict=True)
+    )
     return area * (low - high)
 
 
@@ -141,25 +143,3 @@ def _mean_square_cosine(a, mass, temperature, f):
     step = 1e-3 / math.sqrt(f * temperature / mass) * f**0.5
     above, at, below = (_mean_cosine(np.abs(a + s), mass, temperature, f) for s in (step, 0.0, -step))
     return -(above - 2.0 * at + below) / step**2
-
-
-def free_shear(count, d, volume, temperature):
-    """Return the Green-Kubo viscosity over the lag of points of fixed energy at rest: V <P_xy^2> / (k_B T)."""
-    f = d * (count - 1)
-    return (count - 1) * temperature * f / (f + 2.0) / volume
-
-
-def free_heat(count, d, volume, temperature, draws=200_000, seed=1):
-    """Return the Green-Kubo conductivity over the lag of such points, V <J_x^2> / (k_B T^2), and its error.
-
-    The mean over velocities of fixed energy, at rest, by direct sampling.
-    """
-    rng, found = np.random.default_rng(seed), []
-    f = d * (count - 1)
-    for _ in range(20):
-        v = rng.standard_normal((draws // 20, count, d))
-        v -= v.mean(axis=1, keepdims=True)
-        v *= np.sqrt(f * temperature / (v**2).sum(axis=(1, 2)))[:, None, None]
-        flux = 0.5 * np.einsum("snk,snj->sj", v**2, v)
-        found.append((flux**2).mean() / volume / temperature**2)
-    return float(np.mean(found)), float(np.std(found, ddof=1) / math.sqrt(20))

@@ -1,4 +1,4 @@
-"""The kinds of scenes of the table of exact values: what each contains, found from its file without gaspart."""
+"""The kinds of scenes of the table of exact values: what each contains, found without gaspart."""
 
 from functools import cache, cached_property
 from pathlib import Path
@@ -125,7 +125,7 @@ class Kind:
         """Number of components of the total momentum that are conserved."""
         if not self.case.empty:
             return 0
-        if self.thermal_faces or self.opened or self.rough and not self.case.periodic.all():
+        if self.thermal_faces or self.opened or (self.rough and not self.case.periodic.all()):
             return 0
         return int(self.case.periodic.sum())
 

@@ -91,12 +91,16 @@ def _number_inside(kind):
 
 
 def _speeds(kind):
-    return {"exact": [1.0, 0.0]} if kind.equilibrium and not kind.falls else {}
+    known_law = kind.equilibrium and (not kind.falls or kind.freedoms is None)
+    return {"exact": [1.0, 0.0]} if known_law else {}
 
 
 def _pressure_tensor(kind):
     """Return n k_B T (Z - 1 / N) on the diagonal: of velocities about the centre of mass, as declared."""
-    case, (z, error) = kind.case, (_z(kind) or stored()[kind.name]["values"].get("Z", {"": (math.nan, 0)}))[""]
+    case, (z, error) = (
+        kind.case,
+        (_z(kind) or stored()[kind.name]["values"].get("Z", {"": (math.nan, 0)}))[""],
+    )
     scale, names = case.count * kind.temperature / case.box.lengths.prod(), "xyz"[: kind.dimension]
     if len(set(case.box.lengths)) > 1 or not math.isfinite(z):
         return {}

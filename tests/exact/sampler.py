@@ -28,8 +28,9 @@ class Bodies(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """Course of a walk: activity of insertions (0 without), force on a piston (0 without), its farthest place,
-    whether a wall between two gases moves, number of sweeps, and sweeps between configurations that are kept."""
+    """Course of a walk: activity of insertions (0 without), force on a piston (0 without), its farthest
+    place, whether a wall between two gases moves, number of sweeps, and sweeps between configurations that
+    are kept."""
 
     activity: float
     load: float
@@ -160,9 +161,10 @@ def move_piston(positions, bodies, box, plan):
     if new > plan.farthest or abs(change) > PLANE_STEP * new:
         return
     box.lengths[box.axis] = new
-    if not all_fit(positions, bodies, box):
-        box.lengths[box.axis] = old
-    elif np.random.random() > math.exp(-plan.load * change / box.temperature) * old / new:
+    if (
+        not all_fit(positions, bodies, box)
+        or np.random.random() > math.exp(-plan.load * change / box.temperature) * old / new
+    ):
         box.lengths[box.axis] = old
 
 

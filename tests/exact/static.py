@@ -1,8 +1,9 @@
 """Static observables of sampled configurations, by definitions of their own in plain numpy.
 
-Contact densities are ratios of insertions, without extrapolation: for group a of N_a bodies, with the ensemble
-that lacks one of it, w(r) = exp(-u / kT) if a trial body is free at r, else 0, and n_a(r) = N_a <w(r)> /
-<integral of w>. Grand canonical: n(r) = z <w(r)>. Groups that cannot be inserted have fits of gaps.
+Contact densities are ratios of insertions, without extrapolation: for group a of N_a bodies, with the
+ensemble that lacks one of it, w(r) = exp(-u / kT) if a trial body is free at r, else 0, and
+n_a(r) = N_a <w(r)> / <integral of w>. Grand canonical: n(r) = z <w(r)>. Groups that cannot be inserted have
+fits of gaps.
 """
 
 import math
@@ -105,7 +106,9 @@ def at_contact(gaps, reach, weights=None):
 
 def forces_of_many(case, kept):
     """Return, for each face, force / kT and the sum of each body's force over the area it can reach."""
-    sides = np.where(case.periodic, case.box.lengths, case.box.lengths - 2.0 * case.box.margin * kept.radii[:, None])
+    sides = np.where(
+        case.periodic, case.box.lengths, case.box.lengths - 2.0 * case.box.margin * kept.radii[:, None]
+    )
     found = {}
     for face, (k, s) in case.walls.items():
         x = kept.positions[:, :, k]
@@ -222,7 +225,7 @@ def structure_factors(case, kept, highest, bins):
 
 
 def hexatic_order(case, positions):
-    """Return |mean over discs of the mean of exp(6 i theta) over Voronoi neighbours| of each configuration."""
+    """Return |mean over discs of the mean of exp(6 i theta) over Voronoi neighbours| by configuration."""
     found = []
     for x in positions:
         n = len(x)

@@ -1,13 +1,16 @@
 """The table of exact values: each observable in each kind of scene, under each engine that serves it.
 
 A cell is a value from a source that shares no code with gaspart, or a refusal by a rule of `rules`, which
-gaspart must make too, or it states why no exact value is known.
+gaspart must make too, or it states why no exact value is known. `PYTHONPATH=tests python -m exact.table`
+writes the table for the page of the site.
 """
 
+import csv
 import math
 import warnings
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 from exact import closed, runs
@@ -21,6 +24,8 @@ import gaspart as gp
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.errors import SceneError
 
+FILE = Path(__file__).parents[2] / "results/docs/exact_values.csv"
+COLUMNS = ("scene", "engine", "observable", "state", "deviation", "parts", "text")
 LIMIT = 4.0
 """Largest deviation of a value, as a normal deviate."""
 SPREAD = 1.6
@@ -133,14 +138,16 @@ def deviation_of(observable, kind, result, part, right):
         at, known_error = (np.array(right[name], float) for name in ("values", "errors"))
     else:
         at, known_error = right
-    if part and not special and not isinstance(right, dict) and part != "level":
+    if part and not special and "=" not in part and part != "level":
         value, error, freedom = (_at(part, one) for one in (value, error, freedom))
     if part == "lag 0" or part.startswith("first "):
         at_lag = int(part.split()[1])
         value, error = value[at_lag : at_lag + 1], error[at_lag : at_lag + 1]
     value, error = np.asarray(value, float), np.asarray(error, float)
     freedom = np.broadcast_to(np.asarray(freedom, float), value.shape)
-    return compared(value, error, freedom, np.broadcast_to(at, value.shape), np.broadcast_to(known_error, value.shape))
+    return compared(
+        value, error, freedom, np.broadcast_to(at, value.shape), np.broadcast_to(known_error, value.shape)
+    )
 
 
 def _at(part, values):
@@ -164,7 +171,8 @@ def compared(value, error, freedom, right, known_error):
         apart = np.abs(value - right).max() / max(np.abs(right).max(), EQUAL)
         return (0.0 if apart <= EQUAL else math.inf), f"{value.ravel()[0]:.6g}, right {right.ravel()[0]:.6g}"
     use = np.isfinite(value) & np.isfinite(right) & np.isfinite(total) & ~exact
-    if use.sum() < 0.5 * (np.isfinite(right) & ~(exact & (right == 0.0))).sum():
+    filled = np.isfinite(right) & ((right != 0.0) | (known_error > 0.0))
+    if use.sum() < 0.5 * filled.sum():
         return math.inf, "no value or no error in most places"
     with np.errstate(all="ignore"):
         ratio = np.where(use, (value - right) / total, 0.0)
@@ -233,3 +241,24 @@ SPECIAL = {
 def names():
     """Return (kind of scene, engine) of all runs."""
     return [(name, engine) for name, kind in kinds().items() for engine in runs.engines(kind)]
+
+
+def row_of(cell):
+    """Return the row of the table of a cell; the text is the reason, if it is not a value."""
+    valued = cell.state in ("value", "wrong")
+    texts = {"deviation": f"{cell.deviation:.1f}" if valued else "", "text": "" if valued else cell.text}
+    return {key: str(getattr(cell, key)) for key in COLUMNS} | texts
+
+
+def write():
+    """Write the file."""
+    found = [row_of(cell) for run in names() for cell in cells(*run)]
+    FILE.parent.mkdir(parents=True, exist_ok=True)
+    with FILE.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(found)
+
+
+if __name__ == "__main__":
+    write()

@@ -41,7 +41,8 @@ def test_a_loaded_piston_on_points_has_their_mean_length():
 
 def test_a_wall_between_points_is_where_the_numbers_of_both_sides_are():
     text = (
-        "{container: {lengths: [4, 2]}, centres_to_walls: true, walls: [{start: [2, 0], end: [2, 2], mass: 1}],"
+        "{container: {lengths: [4, 2]}, centres_to_walls: true,"
+        "walls: [{start: [2, 0], end: [2, 2], mass: 1}],"
         "species: [{count: 2, radius: 1.0e-9, region: [[0, 0], [2, 2]]},"
         "{count: 5, radius: 1.0e-9, region: [[2, 0], [4, 2]]}]}"
     )
@@ -105,7 +106,7 @@ def test_lattices_have_their_order():
     assert static.hexatic_order(plane, x[None])[0] == pytest.approx(1.0, abs=1e-6)
     cubic = case("{container: {lengths: [3, 3, 3], boundary: periodic}, species: []}")
     basis = np.array([[0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]])
-    x = np.concatenate([basis + [i, j, k] for i in range(3) for j in range(3) for k in range(3)])
+    x = np.concatenate([basis + np.array([i, j, k]) for i in range(3) for j in range(3) for k in range(3)])
     assert static.steinhardt_order(cubic, x[None])[0] == pytest.approx(0.57452, abs=1e-5)
 
 

@@ -40,7 +40,9 @@ def test_observables_have_their_exact_values(name, engine):
     listed = {cell for cell in known_wrong() if cell[:2] == (name, engine)}
     repaired = listed - set(wrong)
     assert not repaired, f"not wrong any more, to be taken off {WRONG.name}: {sorted(repaired)}"
-    new = [f"{key[2]}: {cell.text} ({cell.deviation:.1f})" for key, cell in wrong.items() if key not in listed]
+    new = [
+        f"{key[2]}: {cell.text} ({cell.deviation:.1f})" for key, cell in wrong.items() if key not in listed
+    ]
     assert not new, "\n".join(new)
 
 

@@ -80,7 +80,7 @@ def wall_values(kind, case, values, errors):
         reached = sizes > 0.0  # none is of a gas behind a wall
         parts, sizes = parts[reached], sizes[reached]
         pressure[face] = (parts[:, 0] / sizes).sum(), math.hypot(*(parts[:, 1] / sizes))
-        if case.load and face == f"{'xyz'[case.box.axis]} high":
+        if case.load and k == case.box.axis:  # both faces balance the load, by which the pressure is defined
             force[face], pressure[face] = (case.load, 0.0), (case.pressure, 0.0)
     if kind.moving_face:  # along the others, areas of the moment have no mean of their own
         across = [face for face in force if face[0] == "xyz"[case.box.axis]]
@@ -210,11 +210,12 @@ def rounded(thing):
 
 
 def drawn_radii(kind):
-    """Return the radii that a run of the kind draws, None if they are stated: data of the scene, no result."""
+    """Return the radii that a run of the kind draws, None if they are stated: part of the scene."""
     if not kind.many_sizes:
         return None
-    import gaspart as gp
     from exact.runs import SEED as RUN_SEED
+
+    import gaspart as gp
 
     return gp.Simulation(gp.Scene.from_dict(kind.scene), gp.EventDriven(), RUN_SEED).state.radii
 
