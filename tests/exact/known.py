@@ -35,8 +35,6 @@ def _velocity(kind):
     faces = [face["velocity"] for face in kind.faces.values() if face.get("velocity")]
     if faces:
         drift = faces[0]
-    if "drift" in kind.run:
-        return {}  # of the state that was drawn: the mean velocity of particles, not of mass
     return {"xyz"[k]: [drift[k], 0.0] for k in range(d)} if kind.equilibrium else {}
 
 
@@ -205,6 +203,14 @@ def _pressure(kind):
     return {}
 
 
+def _force(kind):
+    case, found = kind.case, {}
+    for face, (pressure, _) in _pressure(kind).items():
+        sides = case.box.lengths - 2.0 * case.groups[0].radius * ~case.periodic
+        found[face] = [pressure * float(np.delete(sides, "xyz".index(face[0])).prod()), 0.0]
+    return found
+
+
 def _collision_rate(kind):
     if kind.name == "lorentz":
         radii = kind.case.fixed_radii + kind.case.groups[0].radius
@@ -217,10 +223,6 @@ def _z(kind):
     if kind.name == "two_periodic":
         return _number(closed.two_body_z(2, 2.0 * kind.case.groups[0].radius, kind.case.box.lengths.prod()))
     return {}
-
-
-def _pair_rates(kind):
-    return {"0-0": [0.0, 0.0]} if kind.points else {}
 
 
 PLATES = ("plates_free", "plates_free_partial")
@@ -251,9 +253,9 @@ RULES = {
     "vacf": _vacf,
     "msd": _msd,
     "pressure": _pressure,
+    "force": _force,
     "collision_rate": _collision_rate,
     "Z": _z,
-    "pair_rates": _pair_rates,
     "pressure_tensor": _pressure_tensor,
     "D": _diffusion,
     "mutual_diffusion": _mutual,

@@ -202,7 +202,7 @@ PLANTS = [
     ),
     Plant("drift's share of heavy bodies", _MOTION, _FREE, "np.sqrt(others / others)", ("wind", "vacf")),
     Plant(
-        "species in each other's group",
+        "velocity of the faces added",
         _MOTION,
         "values - drift\n",
         "values + drift\n",

@@ -114,6 +114,10 @@ def _open_across(kind):
     return "bodies come and go beside the plane" if beside else None
 
 
+def _steady_flow(kind):
+    return "motion about a flow that changes with a moving face" if kind.moving_face else None
+
+
 _STATIC = (_closed, _unsheared, _periodic, _inside)
 UNDEFINED = {
     "Z": (*_STATIC, _elastic, _pair, _meets),
@@ -122,12 +126,12 @@ UNDEFINED = {
     "heat_flux": (_unsheared, _thermal_faces),
     "wall_shear": (_unsheared, _dragged),
     "collision_rate": (_closed, _meets),
-    "pair_rates": (_closed, _unsheared, _species),
+    "pair_rates": (_closed, _unsheared, _species, _meets),
     "contact_values": (*_STATIC, _elastic, _species, _one_size, _pair, _thermal),
-    "msd": (_closed, _unsheared, _groups),
-    "D": (_closed, _unsheared, _free_axis, _lasting),
+    "msd": (_closed, _unsheared, _groups, _steady_flow),
+    "D": (_closed, _unsheared, _free_axis, _lasting, _steady_flow),
     "mutual_diffusion": (*_STATIC, _elastic, _two_species, _lasting),
-    "vacf": (_closed, _unsheared, _groups),
+    "vacf": (_closed, _unsheared, _groups, _steady_flow),
     "speeds": (_closed, _unsheared, _groups),
     "rdf": (*_STATIC, _pair),
     "structure_factor": _STATIC,
@@ -155,6 +159,8 @@ DYNAMIC = (
     "thermal_conductivity",
 )
 """Observables of correlations in time."""
+BALANCES = ("wall_shear", "flux")
+"""Observables that balances of momentum and of bodies give, whatever collides."""
 OF_PARTICLES = ("msd", "vacf", "speeds")
 """Observables whose error is the scatter of bodies, which need not exchange energy."""
 LONG = ("D", "mutual_diffusion", "shear_viscosity", "bulk_viscosity", "thermal_conductivity")
@@ -172,15 +178,17 @@ def unknown(observable, kind):
         "short" in kind.run or (kind.name == "halves" and observable == "mutual_diffusion")
     ):
         return None  # the first terms in the time; D_12 of halves is the D of a particle
-    if kind.integrable and observable not in (*OF_PARTICLES, "pair_rates"):
+    if kind.integrable and observable not in OF_PARTICLES:
         return "each point keeps its speed: means over time are those of the start"
     if observable == "vacf" and kind.equilibrium:
         return None  # at lag 0
     if observable in DYNAMIC and not kind.points:
         return "correlations in time of bodies that collide have no closed form"
+    if observable in OF_PARTICLES and not kind.equilibrium:
+        return "flights between plates of two temperatures have no simple law"
     if observable in LONG:
         return "bodies that never collide have no transport coefficient"
-    if not kind.equilibrium and not kind.points:
+    if not kind.equilibrium and not kind.points and observable not in BALANCES:
         return "bodies that collide and are in no equilibrium have no closed form"
     if observable in ("rdf", "structure_factor", "partial_structure_factors", "order") and kind.points:
         return "points have no diameter by which distances are chosen"

@@ -16,7 +16,7 @@ from gaspart.trajectory.reading import open_trajectory
 
 SEED = 7
 LAGS = 8
-IMPULSE_BINS = 24
+IMPULSE_BINS = 40
 
 
 def engines(kind):

@@ -33,6 +33,10 @@ SPREAD = 1.6
 POINTS = 8
 """Points of a curve from which their spread is tested."""
 SAMPLER_FREEDOM, RUN_FREEDOM = 19.0, 15.0
+FREEDOM = 6.0
+"""Degrees of freedom of an error, below which it is too uncertain to be compared with."""
+LEAST = 0.25
+"""Part of the places with a value that must have an error."""
 EQUAL = 1e-6
 """Relative difference of values without an error."""
 
@@ -138,8 +142,9 @@ def deviation_of(observable, kind, result, part, right):
         at, known_error = (np.array(right[name], float) for name in ("values", "errors"))
     else:
         at, known_error = right
-    if part and not special and "=" not in part and part != "level":
-        value, error, freedom = (_at(part, one) for one in (value, error, freedom))
+    names_in = [word for word in part.split(",") if "=" not in word]
+    if names_in and not special and part != "level":
+        value, error, freedom = (_at(names_in, one) for one in (value, error, freedom))
     if part == "lag 0" or part.startswith("first "):
         at_lag = int(part.split()[1])
         value, error = value[at_lag : at_lag + 1], error[at_lag : at_lag + 1]
@@ -150,11 +155,11 @@ def deviation_of(observable, kind, result, part, right):
     )
 
 
-def _at(part, values):
-    """Return the values at the names of a part: "x low", "0-1", "y low,x"."""
+def _at(names_in, values):
+    """Return the values at the names of a part, such as "x low", "0-1" or "y low" and "x"."""
     if not hasattr(values, "dims"):
         return values
-    for name in part.split(","):
+    for name in names_in:
         for dim in values.dims:
             if name in [str(one) for one in values[dim].values]:
                 index = [str(one) for one in values[dim].values].index(name)
@@ -166,13 +171,13 @@ def _at(part, values):
 def compared(value, error, freedom, right, known_error):
     """Return the deviation of values from right ones, each with errors, and the worst of them as a text."""
     total = np.hypot(error, known_error)
-    exact = total == 0.0
+    exact = (total == 0.0) | ((known_error == 0.0) & (right == 0.0) & (value == 0.0))
     if exact.all():
         apart = np.abs(value - right).max() / max(np.abs(right).max(), EQUAL)
         return (0.0 if apart <= EQUAL else math.inf), f"{value.ravel()[0]:.6g}, right {right.ravel()[0]:.6g}"
-    use = np.isfinite(value) & np.isfinite(right) & np.isfinite(total) & ~exact
-    filled = np.isfinite(right) & ((right != 0.0) | (known_error > 0.0))
-    if use.sum() < 0.5 * filled.sum():
+    use = np.isfinite(value) & np.isfinite(right) & np.isfinite(total) & ~exact & ~(freedom < FREEDOM)
+    filled = np.isfinite(value) & np.isfinite(right) & ((right != 0.0) | (known_error > 0.0))
+    if use.sum() < max(1.0, LEAST * filled.sum()):
         return math.inf, "no value or no error in most places"
     with np.errstate(all="ignore"):
         ratio = np.where(use, (value - right) / total, 0.0)

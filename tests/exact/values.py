@@ -21,7 +21,7 @@ FILE = Path(__file__).with_name("values.json")
 SEED, CONFIGURATIONS, EVERY, TRIALS = 1, 12_000, 4, 16
 FEW = 6
 """Bodies of scenes that get five times as many configurations, which are cheap."""
-BINS, WAVE_BINS = 40, 60
+BINS, WAVE_BINS = 40, 30
 SHELLS, REACH = 60, 0.499
 """Bins of g(r), up to this part of the shortest side."""
 DENSE = ("discs_69",)
@@ -177,11 +177,15 @@ def periodic_values(case, kept):
         g, error = static.radial_distribution(case, few, furthest, SHELLS)
         found["rdf"] = {f"furthest={furthest!r},bins={SHELLS}": _curve(g, error)}
     if largest > 1e-3:
-        highest = 20.0 / largest
+        highest = float(10.0 / largest)
         numbers, s, error = static.structure_factors(case, few, highest, WAVE_BINS)
-        names = [f"{a}-{b}" for a in range(len(case.groups)) for b in range(a, len(case.groups))]
-        found["partial_structure_factors"] = {n: _curve(s[q], error[q], numbers) for q, n in enumerate(names)}
-        found["structure_factor"] = {"": _curve(s[-1], error[-1], numbers)}
+        which = f"highest={highest!r},bins={WAVE_BINS}"
+        pairs = [f"{a}-{b}" for a in range(len(case.groups)) for b in range(a, len(case.groups))]
+        parts = {f"{which},{pair}": _curve(s[q], error[q], numbers) for q, pair in enumerate(pairs)}
+        found |= {
+            "partial_structure_factors": parts,
+            "structure_factor": {which: _curve(s[-1], error[-1], numbers)},
+        }
     if case.count >= (7 if case.dimension == 2 else 13):
         order = static.hexatic_order if case.dimension == 2 else static.steinhardt_order
         found["order"] = {"": block_mean(order(case, kept.positions[:: len(kept.positions) // 600]))}
