@@ -174,6 +174,9 @@ runs, anew and with fixed seeds, and renews the table of this page, ``docs/refer
 repository repeats it every week. Each referee also judges a copy of the files with an error of 3 %, which it
 must find.
 
+Positions, velocities, energy, container, time and pairs are those that the recipes of :doc:`../tools` read,
+of a periodic gas, one between walls, discs, two species, one with open faces and one under a piston.
+
 *Distance* is between what gaspart and the referee say, with the largest one that is *allowed*: three
 standard errors (p-values as the Gaussian deviation of the same chance, after Bonferroni's correction
 where there are several), or a difference that single precision explains. *Planted* is the same distance
@@ -201,8 +204,8 @@ is one of 3 % in the measured pressure.
 
 """
 NOT_JUDGED = """\
-gaspart writes no XYZ files; LAMMPS data files of style *sphere* are read by MDAnalysis and OVITO, of
-which ASE accepts no such lines. freud is no referee of :math:`g(r)`, which gaspart computes by freud.
+XYZ files; LAMMPS data files of style *sphere* in ASE, which accepts no such lines. freud is no referee of
+:math:`g(r)`, which gaspart computes by freud.
 """
 
 

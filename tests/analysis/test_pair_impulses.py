@@ -48,7 +48,7 @@ def test_g_of_a_run_has_less_error_with_impulses(run):
 
 def parts_of(run, bins):
     """(2, 16, bins) of the last three quarters of a run, and g(r) by counts in the same stretches."""
-    from gaspart.analysis.order import radial_distribution
+    from gaspart.analysis.bond_order import radial_distribution
 
     stretches = np.array_split(np.arange(len(run.time)), STRETCHES)
     g = [

@@ -40,7 +40,7 @@ def rdf(
     belongs to the pressure of N particles, at the first bins beyond the diameter only. Raises SceneError for
     walls, fewer than two particles, too few frames and too large a distance.
     """
-    from gaspart.analysis.order import radial_distribution
+    from gaspart.analysis.bond_order import radial_distribution
 
     with open_run(source, start) as run:
         require_defined("rdf", run.scene)

@@ -19,7 +19,7 @@ from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import count_of
 from gaspart.trajectory.frames import frame_count
-from gaspart.trajectory.partial import PARTIAL, partial_path
+from gaspart.trajectory.partial import PARTIAL, partial_path, replica_path
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe, begun_as, read_recipe
 
@@ -69,7 +69,7 @@ def replica_paths(path: str | Path, replicas: int) -> list[Path]:
     path = Path(path)
     if replicas == 1:
         return [path]
-    return [path.with_name(f"{path.stem}-{k}{path.suffix}") for k in range(1, replicas + 1)]
+    return [replica_path(path, k) for k in range(1, replicas + 1)]
 
 
 def path_of_all(path: Path, recipe: Recipe) -> Path:
