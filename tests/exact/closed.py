@@ -102,10 +102,10 @@ class FreeMolecular:
         return self.pressure / self.n
 
 
-def effusion(area, activities, masses, temperatures):
+def effusion(area, activities, mass, temperatures):
     """Return the net flux between reservoirs of points, A (z1 sqrt(T1 / 2 pi m) - z2 sqrt(T2 / 2 pi m))."""
     low, high = (
-        z * math.sqrt(t / 2.0 / math.pi / masses) for z, t in zip(activities, temperatures, strict=True)
+        z * math.sqrt(t / 2.0 / math.pi / mass) for z, t in zip(activities, temperatures, strict=True)
     )
     return area * (low - high)
 

@@ -17,7 +17,19 @@ def _number(value, error=0.0):
     return {"": [value, error]}
 
 
+def reservoirs(kind):
+    """Return the density, the velocity, the pressure and the temperature of points between two reservoirs."""
+    one, faces = kind.case.groups[0], kind.faces.values()
+    z = np.array([face["activity"] for face in faces]) / (math.pi * one.radius**2)
+    t = np.array([face["temperature"] for face in faces])
+    density, pressure = z.sum() / 2.0, (z @ t) / 2.0
+    velocity = closed.effusion(1.0, z, one.mass, t) / density
+    return density, velocity, pressure, pressure / density - velocity**2 / 2.0
+
+
 def _temperature(kind):
+    if kind.name == RESERVOIRS:
+        return {"level": [reservoirs(kind)[3], 0.0]}
     if kind.name in PLATES:
         gas = plates(kind)
         parts = [gas.temperature_across, gas.temperature_of_slide, gas.temperature_along]
@@ -25,8 +37,14 @@ def _temperature(kind):
     return {"level": [kind.temperature, 0.0]} if kind.equilibrium else {}
 
 
+def _density(kind):
+    return {"level": [reservoirs(kind)[0], 0.0]} if kind.name == RESERVOIRS else {}
+
+
 def _velocity(kind):
     d = kind.dimension
+    if kind.name == RESERVOIRS:
+        return {"x": [reservoirs(kind)[1], 0.0], "y": [0.0, 0.0]}
     if kind.sheared:
         return {}
     if kind.name in PLATES:
@@ -71,20 +89,15 @@ def _wall_shear(kind):
 
 
 def _flux(kind):
-    if kind.name == "reservoirs":
-        z = [face["activity"] for face in kind.faces.values()]
-        t = [face["temperature"] for face in kind.faces.values()]
-        scale = math.pi * kind.case.groups[0].radius ** 2
-        area = kind.case.box.lengths[1]
-        return _number(closed.effusion(area, [one / scale for one in z], [1.0, 1.0], t))
+    if kind.name == RESERVOIRS:
+        density, velocity, *_ = reservoirs(kind)
+        return _number(density * velocity * kind.case.box.lengths[1])
     return _number(0.0)
 
 
 def _number_inside(kind):
-    if kind.name == "reservoirs":  # half of the density of each
-        scale = math.pi * kind.case.groups[0].radius ** 2
-        z = [face["activity"] / scale for face in kind.faces.values()]
-        return _number(kind.case.box.lengths.prod() * sum(z) / 2.0)
+    if kind.name == RESERVOIRS:
+        return _number(kind.case.box.lengths.prod() * reservoirs(kind)[0])
     return {}
 
 
@@ -194,6 +207,8 @@ def _msd(kind):
 
 
 def _pressure(kind):
+    if kind.name == RESERVOIRS:
+        return {f"x {end}": [reservoirs(kind)[2], 0.0] for end in ("low", "high")}
     if kind.name in PLATES:
         gas = plates(kind)
         found = {"x low": [gas.pressure, 0.0], "x high": [gas.pressure, 0.0]}
@@ -225,6 +240,7 @@ def _z(kind):
     return {}
 
 
+RESERVOIRS = "reservoirs"
 PLATES = ("plates_free", "plates_free_partial")
 
 
@@ -245,6 +261,7 @@ def plates(kind):
 RULES = {
     "temperature": _temperature,
     "velocity": _velocity,
+    "density": _density,
     "heat_flux": _heat_flux,
     "wall_shear": _wall_shear,
     "flux": _flux,

@@ -7,9 +7,9 @@ half a bin. A plant is (name, module, old piece of source, new piece, cell); see
 from exact.planting import Plant
 
 _RUN, _SERIES, _TALLY = "analysis.run", "analysis.series", "state.tally"
-_PRESSURE, _ROOM, _FLUXES = "analysis.pressure", "analysis.room", "analysis.wall_fluxes"
+_PRESSURE, _ROOM, _FLUXES = "analysis.counters", "analysis.room", "analysis.wall_fluxes"
 _MIXTURES, _PROFILES, _STRUCTURE = "analysis.mixtures", "analysis.profiles", "analysis.structure"
-_MOTION, _ORDER, _TRANSPORT = "analysis.motion", "analysis.order", "analysis.transport"
+_MOTION, _ORDER, _TRANSPORT = "analysis.motion", "analysis.bond_order", "analysis.transport"
 _LONE = "self.dimension * moving - int(self.conserved.sum())"
 _PAIRS = "counts[i] / (2.0 if i == j else 1.0)"
 _INSIDE = "self.run.positions[:, self.members][..., self.axes]"

@@ -9,7 +9,7 @@ from exact.known import RULES
 
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.scene.faces import FACE_KINDS
-from gaspart.scene.features import FEATURES, features
+from gaspart.scene.features import FEATURES
 from gaspart.scene.scene import Scene
 
 WRONG = Path(__file__).with_name("known_wrong.txt")
@@ -73,7 +73,7 @@ def test_the_sampled_values_are_of_the_scenes():
 
 
 def test_every_feature_has_a_kind_of_scene():
-    present = {f for kind in kinds().values() for f in features(Scene.from_dict(kind.scene))}
+    present = {f for kind in kinds().values() for f in Scene.from_dict(kind.scene).features}
     assert present | set(ELSEWHERE) == set(FEATURES)
     assert not present & set(ELSEWHERE)
     assert set(FACE_KINDS) <= set(FEATURES)
