@@ -12,8 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from gaspart.analysis import series
 from gaspart.analysis.conditions import DISCS, GROUPS
 from gaspart.analysis.expected.described import described
+from gaspart.analysis.flow import FLOW
 from gaspart.analysis.motion import Groups, axes_of, groups_of, stride_of
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
@@ -35,13 +37,14 @@ def diffusion_coefficient(
     particles: Sequence[int] | None = None,
     per_axis: bool = False,
     lag: float | None = None,
+    about: str = FLOW,
 ) -> Observable:
     """D in length^2 / time, by the rise of the mean-squared displacement from 12 to 24 collisions a particle.
 
     Of a periodic container the mean over axes, a scalar; of one with walls, or `per_axis`, that along each
-    periodic axis, (axis,): across walls displacements are bounded, and there is none. species, particles, and
-    the condition of zero momentum: as in `mean_squared_displacement`; of fewer than 16 particles, such as one
-    tracer, each of 16 stretches of the run must be long enough.
+    periodic axis, (axis,): across walls displacements are bounded, and there is none. species, particles,
+    about, and the condition of zero momentum: as in `mean_squared_displacement`; of fewer than 16 particles,
+    such as one tracer, each of 16 stretches of the run must be long enough.
 
     lag: the time at which half of the slope of the mean-squared displacement along an axis is taken instead,
     from the frames before and after it. That is the integral of the velocity autocorrelation until then,
@@ -53,8 +56,8 @@ def diffusion_coefficient(
     momentum lasts longer than these collisions, so that their squared displacement grows like t ln t, and
     where the slope from 6 to 12 collisions is another one, so that there is no D.
     """
-    with open_run(source, start) as run:
-        require_defined("D", run.scene, species=species, particles=particles, lag=lag)
+    with open_run(source, start, about=about) as run:
+        require_defined("D", run.scene, species=species, particles=particles, lag=lag, about=about)
         chosen = selected(run, species, particles)
         stride = stride_of(run, len(chosen))
         if lag is not None:  # frames so near that the slope is that at the lag
@@ -64,7 +67,8 @@ def diffusion_coefficient(
         lasting = _lasting_momentum(run, lags[1] * stride)
         if lag is None:
             require_spheres(run, lasting)
-        groups = groups_of(run, about=lasting, chosen=chosen, stride=stride)
+        of_mean = lasting & (run.about == FLOW)
+        groups = groups_of(run, about=of_mean, chosen=chosen, stride=stride)
         slopes = _slopes(groups, lags)[..., run.periodic]
         along = axes_of(run, run.periodic)
         if run.periodic.all() and not per_axis:
@@ -114,9 +118,8 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, int,
     """The `linear_lags` of a run, of which every so many frames are taken, no two of them equal; parts: that
     a run has, in each of which they must be. Raises SceneError for too few frames."""
     interval = run.interval * stride
-    collisions = float(run.increments("collisions").sum())
     duration = float(run.time[-1] - run.time[0])
-    rate = 2.0 * collisions / (run.moving.sum() * duration)
+    rate = float(series.collisions(run).sum()) / duration
     if rate * (duration / parts + interval) < 4.0 * LINEAR_FROM:
         rule = f"must cover {parts * 4.0 * LINEAR_FROM:g} collisions of a particle or more"
         raise SceneError("duration", duration, rule)
@@ -133,7 +136,7 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, int,
 def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
     """(d,) along which axes the total momentum of the moving particles is kept for so many frames: where it
     is conserved, and where more than half of it is left, as with a few obstacles among many particles."""
-    velocities = run.velocities[:, run.moving] - np.array(run.scene.frame_velocity)
+    velocities = run.motion.velocities if run.flow_axes else run.velocities[:, run.moving]
     momentum = np.einsum("tnd,n->td", velocities, run.masses[run.moving])
     left = (momentum[lag:] * momentum[:-lag]).mean(axis=0)
     return run.conserved | (run.periodic & (left > 0.5 * (momentum**2).mean(axis=0)))
