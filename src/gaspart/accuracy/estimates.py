@@ -146,7 +146,7 @@ def _norm(values: np.ndarray) -> float:
 def _on_walls(run: Run, observable: str) -> dict[str, Component]:
     """The pressures or forces on walls, each from a series over intervals of frames."""
     from gaspart.analysis.controls import stores
-    from gaspart.analysis.pressure import controlled_on_walls, on_walls
+    from gaspart.analysis.counters import controlled_on_walls, on_walls
 
     faces, series = on_walls(run, np.arange(len(run.time)), observable)
     if np.isnan(series).any():

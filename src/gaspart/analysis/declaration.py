@@ -96,8 +96,8 @@ class Named:
     faces, which some engines tally; conditions: of a scene, see `Condition`; whole: whether the file must
     have all particles: "always", "never", "mixed", of several kinds of them, or "unless fluxes" are kept,
     which have the temperature; varying: whether it is defined where particles come and go through open faces;
-    nothing: the equations that an engine solves (`Engine.equation`) whose runs say nothing of it, each with
-    the reason.
+    ends: keyword argument of the function with the end of its bins, if that follows from the run; nothing:
+    equations that an engine solves (`Engine.equation`) whose runs say nothing of it, each with the reason.
 
     What it is compared with. theory: a function in `analysis.expected`, which knows the equation of the
     engine; bulk: a function of `analysis.bulk`, of an infinite plain gas by each equation, and source: where
@@ -132,6 +132,7 @@ class Named:
     conditions: tuple[Condition, ...] = ()
     whole: str = "always"
     varying: bool = False
+    ends: str = ""
     nothing: dict[str, str] = field(default_factory=dict)
     theory: str = ""
     bulk: str = ""

@@ -8,6 +8,7 @@ reference page and the completion of a shell read these declarations, and no oth
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from gaspart.analysis import conditions as where
@@ -245,6 +246,7 @@ OBSERVABLES: dict[str, Named] = {
         function="speed_distribution",
         along=("speed",),
         selections=("about",),
+        ends="fastest",
         conditions=(where.unsheared, where.grouped),
         theory="equilibrium.speeds",
         scatter="particles",
@@ -444,13 +446,30 @@ TOO_SHORT = ("frames", "duration", "collisions", "wall_hits", "start", "D")
 """Keys of the errors of an analysis that a longer run may not have."""
 
 
+ALIASES: dict[str, str] = {
+    "P": "pressure",
+    "g(r)": "rdf",
+    "S(k)": "structure_factor",
+    "viscosity": "shear_viscosity",
+    "conductivity": "thermal_conductivity",
+    **{
+        declared.function: name
+        for name, declared in OBSERVABLES.items()
+        if declared.function != name and not declared.arguments
+    },
+}
+"""Other names of observables, among them those of their functions in `gaspart.analysis`."""
+
+
 def known(name: object) -> str:
-    """The name of an observable. Raises SceneError for any other value."""
-    if not isinstance(name, str) or name not in OBSERVABLES:
-        here = [one for one, declared in OBSERVABLES.items() if declared.function == name]
-        rule = f"is called {here[0]} here" if here else unknown_word(name, OBSERVABLES, "observable")
-        raise SceneError("observable", name, rule)
-    return name
+    """Return the name of an observable, given by its name or an alias. Raises SceneError for other values."""
+    if isinstance(name, str):
+        if name in OBSERVABLES:
+            return name
+        if name in ALIASES:
+            return ALIASES[name]
+    words = (*OBSERVABLES, *get_close_matches(str(name), ALIASES, n=1))
+    raise SceneError("observable", name, unknown_word(name, words, "observable"))
 
 
 def having(**traits: Any) -> tuple[str, ...]:

@@ -5,6 +5,8 @@ Uncertainties are the scatter of consecutive stretches of the run, or of groups 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from gaspart.analysis.bins import Grid
@@ -19,7 +21,7 @@ from gaspart.analysis.room import left_by_obstacles
 from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
-from gaspart.keys.values import count_of, one_of
+from gaspart.keys.values import count_of, number, one_of
 
 _CONSTANT = 1e-5  # relative change of an energy that is attributed to rounding
 FASTEST = 4.0
@@ -27,18 +29,22 @@ FASTEST = 4.0
 
 
 def speed_distribution(
-    source: Source, bins: int = 40, start: float | None = None, about: str = FLOW
+    source: Source,
+    bins: int = 40,
+    start: float | None = None,
+    fastest: float | None = None,
+    about: str = FLOW,
 ) -> Observable:
     """Density of the speeds of moving particles, (speed,), in time / length, of all frames together.
 
-    source: a trajectory, by its path or open, or a simulation; bins: up to four thermal speeds; start: the
-    time from which frames count (by default a quarter of the run). Velocities are those about the local flow
-    where the gas flows, otherwise about the centre of mass where that is conserved (see
-    `gaspart.analysis.flow`), times sqrt(M / (M - m)), M the mass of those whose mean is taken off; with
-    about="rest" those of the container's frame. The error is the scatter of groups of particles. Theory:
-    Maxwell's, of the run's own temperature; of one species at a constant kinetic energy the exact one for
-    their number; none where the gas flows, whose temperature is not one. Raises SceneError for fewer than 16
-    moving particles, and for particles at rest.
+    source: a trajectory, by its path or open, or a simulation; bins: up to the speed `fastest`, by default
+    four thermal speeds; start: the time from which frames count (by default a quarter of the run).
+    Velocities are those about the local flow where the gas flows, otherwise about the centre of mass where
+    that is conserved (see `gaspart.analysis.flow`), times sqrt(M / (M - m)), M the mass of those whose mean
+    is taken off; with about="rest" those of the container's frame. The error is the scatter of groups of
+    particles. Theory: Maxwell's, of the run's own temperature; of one species at a constant kinetic energy
+    the exact one for their number; none where the gas flows, whose temperature is not one. Raises SceneError
+    for fewer than 16 moving particles, and for particles at rest.
     """
     bins = count_of("bins", bins, least=2)
     with open_run(source, start, about=about) as run:
@@ -48,7 +54,10 @@ def speed_distribution(
             raise SceneError("temperature", temperature, "particles at rest have no distribution")
         squares, free = run.motion.velocities**2, run.motion.freedom
         known = np.broadcast_to((free > 0.0).all(axis=2), squares.shape[:2])  # not alone in its cell
-        grid = Grid.line(0.0, FASTEST * np.sqrt(temperature / masses.min()), bins)
+        end = FASTEST * np.sqrt(temperature / masses.min())
+        if fastest is not None:
+            end = number("fastest", fastest, "must be positive and finite", above=0.0)
+        grid = Grid.line(0.0, end, bins)
         edges = grid.edges[0]
         speeds = np.sqrt((squares / np.where(free > 0.0, free, 1.0)).sum(axis=2))
         cells = np.where(known, grid.cells(speeds[..., None]), -1)
@@ -118,13 +127,49 @@ def profile(
         return with_freedom(result, found)
 
 
+def density(source: Source, start: float | None = None, **selection: Any) -> Observable:
+    """Measure the density along an axis: `profile` of "density", with the same arguments.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(
+    ...     container=gp.Container(lengths=(10.0, 10.0)),
+    ...     species=[gp.Species(count=20, radius=0.5, temperature=1.0)],
+    ... )
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(20.0)
+    >>> gp.analysis.density(simulation, axis="x", bins=4).estimate.shape
+    (4,)
+    """
+    return profile(source, "density", start=start, **selection)
+
+
+def temperature(source: Source, start: float | None = None, **selection: Any) -> Observable:
+    """Measure the temperature along an axis: `profile` of "temperature", with the same arguments.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(
+    ...     container=gp.Container(lengths=(10.0, 10.0)),
+    ...     species=[gp.Species(count=20, radius=0.5, temperature=1.0)],
+    ... )
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(20.0)
+    >>> gp.analysis.temperature(simulation, axis="x", bins=4).estimate.shape
+    (4,)
+    """
+    return profile(source, "temperature", start=start, **selection)
+
+
 def order_parameter(source: Source, start: float | None = None) -> Observable:
     """Global bond order of a periodic scene, dimensionless: |<psi_6>| of discs, Q_6 of spheres.
 
     1 in a triangular lattice of discs, 0.5745 in a face-centred cubic one, small in a fluid (about
     1 / sqrt(12 N) for spheres). Raises SceneError for walls and for too few frames.
     """
-    from gaspart.analysis.order import global_steinhardt, hexatic
+    from gaspart.analysis.bond_order import global_steinhardt, hexatic
 
     with open_run(source, start) as run:
         require_defined("order", run.scene)
