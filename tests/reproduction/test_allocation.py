@@ -67,6 +67,8 @@ def test_parts_of_a_variance_are_found_by_the_rows_of_a_table(monkeypatch):
     data = table("point", points, lambda point: {"z": (1.0, 0.1)})
     assert list(data["point_made_of"].values) == ["gas/a", "gas/b", "gas/c\ngas/d"]
     assert "x_made_of" not in table("x", [1, 2], lambda number: {"y": number})
+    known = table("x", [{"y": 1.0}], dict, of=[points])
+    assert list(known["x_made_of"].values) == ["gas/a\ngas/b\ngas/c\ngas/d"]
 
     def stated(figure, block, dataset):
         z = Table(dataset, "point").z

@@ -116,15 +116,17 @@ def table(
     *rest: Any,
     inner: Inner = (),
     units: Mapping[str, str] | None = None,
+    of: Sequence[Any] | None = None,
 ) -> xr.Dataset:
     """Return a data set with a row for each point: row(point, *rest) gives its columns by name.
 
     An Estimate under `name` gives the variables `name`, `name`_error and `name`_freedom, a pair of a value
     and its error the first two. inner, units: see `from_rows`. If rows are made of points of a grid, as by
-    `made_of`, `over`_made_of has their experiments and names, a line for each.
+    `made_of`, `over`_made_of has their experiments and names, a line for each. of: what each row is made of,
+    where `points` do not tell.
     """
     rows = [_spread(row(point, *rest)) for point in points]
-    named = ["\n".join(made_of(point)) for point in points]
+    named = ["\n".join(made_of(one)) for one in (points if of is None else of)]
     data = from_rows(over, rows, inner, units)
     return data.assign({f"{over}{MADE_OF}": (over, named)}) if all(named) else data
 
