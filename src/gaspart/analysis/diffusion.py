@@ -11,8 +11,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from gaspart.analysis import series
 from gaspart.analysis.conditions import DISCS, GROUPS
 from gaspart.analysis.expected.described import described
+from gaspart.analysis.flow import FLOW
 from gaspart.analysis.motion import Groups, axes_of, groups_of, stride_of
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
@@ -38,6 +40,7 @@ def diffusion_coefficient(
     particles: Sequence[int] | None = None,
     per_axis: bool = False,
     lag: float | None = None,
+    about: str = FLOW,
 ) -> Observable:
     """D in length^2 / time, by the slope of the mean-squared displacement where it no longer changes.
 
@@ -46,9 +49,9 @@ def diffusion_coefficient(
     If the last one has changed by less than 6 %, a slow tail is missing, whose size is added to the error.
 
     Of a periodic container the mean over axes, a scalar; of one with walls, or `per_axis`, that along each
-    periodic axis, (axis,): across walls displacements are bounded, and there is none. species, particles, and
-    the condition of zero momentum: as in `mean_squared_displacement`; of fewer than 16 particles, such as one
-    tracer, each of 16 stretches of the run must be long enough.
+    periodic axis, (axis,): across walls displacements are bounded, and there is none. species, particles,
+    about, and the condition of zero momentum: as in `mean_squared_displacement`; of fewer than 16 particles,
+    such as one tracer, each of 16 stretches of the run must be long enough.
 
     lag: the time at which half of the slope of the mean-squared displacement along an axis is taken instead,
     from the frames before and after it. That is the integral of the velocity autocorrelation until then,
@@ -60,8 +63,8 @@ def diffusion_coefficient(
     momentum lasts longer than 12 collisions, so that their squared displacement grows like t ln t, and
     where the slope still changes at the longest lags.
     """
-    with open_run(source, start) as run:
-        require_defined("D", run.scene, species=species, particles=particles, lag=lag)
+    with open_run(source, start, about=about) as run:
+        require_defined("D", run.scene, species=species, particles=particles, lag=lag, about=about)
         chosen = selected(run, species, particles)
         stride = stride_of(run, len(chosen))
         if lag is not None:  # frames so near that the slope is that at the lag
@@ -71,7 +74,8 @@ def diffusion_coefficient(
         lasting = _lasting_momentum(run, lags[1] * stride)
         if lag is None:
             require_spheres(run, lasting)
-        groups = groups_of(run, about=lasting, chosen=chosen, stride=stride)
+        of_mean = lasting & (run.about == FLOW)
+        groups = groups_of(run, about=of_mean, chosen=chosen, stride=stride)
         slopes = _slopes(groups, lags)[..., run.periodic]
         along = axes_of(run, run.periodic)
         if run.periodic.all() and not per_axis:
@@ -79,15 +83,15 @@ def diffusion_coefficient(
         times = groups.interval * np.array(lags)
         if lag is not None:
             values, errors = means_of(slopes[:, -1], groups.sizes)
-            about = described("D", run, times)
-            about["long_name"] += f" at the lag {times.mean():.4g}"
-            return observable("diffusion_coefficient", along, values, errors, **about)
+            attributes = described("D", run, times)
+            attributes["long_name"] += f" at the lag {times.mean():.4g}"
+            return observable("diffusion_coefficient", along, values, errors, **attributes)
         last, tail = settled_slope(slopes, groups.sizes)
         values, errors = means_of(slopes[:, last], groups.sizes)
         ends, rate = times[last : last + 2], _rate(run)
-        about = described("D", run, None, rate * ends)
+        attributes = described("D", run, None, rate * ends)
         errors = np.hypot(errors, tail)
-        result = observable("diffusion_coefficient", along, values, errors, **about)
+        result = observable("diffusion_coefficient", along, values, errors, **attributes)
         collisions = " to ".join(f"{rate * end:.3g}" for end in ends)
         result.attrs["lags"] = ends
         result.attrs["note"] = (
@@ -107,8 +111,7 @@ def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
 
 def _rate(run: Run) -> float:
     """Return the number of collisions of a moving particle per time."""
-    collisions = float(run.increments("collisions").sum())
-    return float(2.0 * collisions / (run.moving.sum() * (run.time[-1] - run.time[0])))
+    return float(series.collisions(run).sum() / (run.time[-1] - run.time[0]))
 
 
 def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, ...]:
@@ -158,7 +161,7 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]
 def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
     """(d,) along which axes the total momentum of the moving particles is kept for so many frames: where it
     is conserved, and where more than half of it is left, as with a few obstacles among many particles."""
-    velocities = run.velocities[:, run.moving] - np.array(run.scene.frame_velocity)
+    velocities = run.motion.velocities if run.flow_axes else run.velocities[:, run.moving]
     momentum = np.einsum("tnd,n->td", velocities, run.masses[run.moving])
     left = (momentum[lag:] * momentum[:-lag]).mean(axis=0)
     return run.conserved | (run.periodic & (left > 0.5 * (momentum**2).mean(axis=0)))
