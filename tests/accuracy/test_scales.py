@@ -9,7 +9,9 @@ import gaspart as gp
 from gaspart.accuracy.scales import scales
 from gaspart.cli import main
 
-SI = gp.Scene(gp.Container((1e-8,) * 3, "periodic"), gp.Species(100, 1.8e-10, 6.6e-26, temperature=300.0))
+SI = gp.Scene(
+    gp.Container((1e-8,) * 3, "periodic"), gp.Species(100, 1.8e-10, mass=6.6e-26, temperature=300.0)
+)
 AT_REST = gp.Scene(gp.Container((9.0, 16.0)), gp.Species(4, 0.5))
 
 

@@ -120,7 +120,7 @@ def _few_kinds(scene: Scene) -> list[Species | Particle]:
     volume = sum(kind.count * kind.radius**d for kind in kinds) / count
     mass = sum(kind.count * kind.mass for kind in kinds) / count
     energy = sum(kind.count * kind.mass * square_of(kind, d) for kind in kinds) / count
-    return [Species(count, volume ** (1.0 / d), mass, temperature=energy)]
+    return [Species(count, volume ** (1.0 / d), mass=mass, temperature=energy)]
 
 
 def collision_frequency(scene: Scene) -> float:

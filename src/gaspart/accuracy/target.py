@@ -65,7 +65,7 @@ class Target:
         one that the scene does not have, and a wall that is not there."""
         observable, colon, face = str(name).partition(":")
         face = wall_of(face)
-        known(observable)
+        observable = known(observable)
         walls = walls_of(observable, scene)
         if scene.count:  # an empty one has no advice at all
             _require_defined(scene, observable, name)

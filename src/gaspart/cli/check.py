@@ -12,6 +12,7 @@ from gaspart.cli.arguments import (
     print_line,
     print_lines,
     real,
+    run_files,
     set_command,
     several,
 )
@@ -66,25 +67,31 @@ def _corner(text: str) -> str | tuple[float, ...]:
 
 
 def _check(given: argparse.Namespace) -> None:
-    if Path(given.file).suffix in (".yaml", ".yml"):
+    healthy = [_is_healthy(given, str(file)) for file in run_files(given.file)]
+    if not all(healthy):
+        raise CheckFailed
+
+
+def _is_healthy(given: argparse.Namespace, file: str) -> bool:
+    """Print the checks of a file; return False if one fails."""
+    if Path(file).suffix in (".yaml", ".yml"):
         for key in ("radius", "lengths", "boundary", "origin", "time_step"):
             if getattr(given, key) is not None:
                 raise SceneError(key, getattr(given, key), "has a meaning for trajectories only")
-        checks, scales = _written(given.file, given.tolerance)
+        checks, scales = _written(file, given.tolerance)
     else:
         from gaspart.inspection.checks import judge
         from gaspart.inspection.readers import read_frames
 
         stated = given.radius, given.lengths, given.boundary, given.time_step, given.origin
-        frames = read_frames(given.file, *stated)
+        frames = read_frames(file, *stated)
         kind = "discs" if frames.dimension == 2 else "spheres"
-        print_line(f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames")
+        print_line(f"{file}: {frames.count} {kind} in {len(frames.positions)} frames")
         checks, scales = judge(frames, given.tolerance), []
     for check in checks:
         print_line(check)
     print_lines(scales)
-    if any(check.passed is False for check in checks):
-        raise CheckFailed
+    return all(check.passed is not False for check in checks)
 
 
 def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:

@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Parser, add_trajectory, print_line, print_lines, set_command
+from gaspart.cli.arguments import Parser, add_trajectory, print_line, print_lines, run_files, set_command
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def _info(given: argparse.Namespace) -> None:
     from gaspart.trajectory.partial import PARTIAL, partial_path
     from gaspart.trajectory.recipe import read_recipe
 
-    path = Path(given.trajectory)
+    path = run_files(given.trajectory)[0]
     stored_at = path if path.exists() or not partial_path(path).exists() else partial_path(path)
     recipe = read_recipe(stored_at)
     with opened(stored_at) as file:

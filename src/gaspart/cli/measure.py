@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gaspart.analysis.flow import ABOUT
 from gaspart.analysis.measuring import measure, until_time
-from gaspart.analysis.observables import OBSERVABLES, selecting, selections
+from gaspart.analysis.observables import ALIASES, OBSERVABLES, known, selecting, selections
 from gaspart.cli.arguments import (
     Parser,
     UsageError,
@@ -20,6 +21,7 @@ from gaspart.cli.arguments import (
     listed,
     print_line,
     real,
+    run_files,
     set_command,
     several,
 )
@@ -42,6 +44,7 @@ _EXAMPLES = """examples:
   gaspart measure run.nc vacf -o vacf.png
   gaspart measure run.nc msd -o msd.csv --start 10
   gaspart measure run-1.nc run-2.nc run-3.nc D   # replicas: mean and scatter
+  gaspart measure run.nc D          # the same, of a run with --replicas
   gaspart measure run.nc D --per-axis
   gaspart measure run.nc D --particles 0 --lag 2    # of one tracer, at a lag
   gaspart measure run.nc density --axis x
@@ -81,6 +84,8 @@ def add_measure(parser: Parser) -> None:
     add("--cells", type=several(int), metavar="N[,N...]", help=text)
     text = "through the plane at this place, by default in the middle: "
     add("--at", type=real(), metavar="X", help=text + ", ".join(selecting("at")))
+    text = "about the local flow of the gas, by default, or about rest: "
+    add("--about", choices=ABOUT, help=text + ", ".join(selecting("about")))
     text = "at or until this lag, a time: "
     add("--lag", type=real(), metavar="T", help=text + ", ".join(selecting("lag")))
     add("-o", "--output", metavar="FILE", help="all rows of one observable as .csv, or a plot as .png")
@@ -93,7 +98,7 @@ class _Words(tuple):
     """The names of observables, of which a shell completes one. Files may stand among the words too."""
 
     def __contains__(self, word: object) -> bool:
-        return super().__contains__(word) or _is_file(str(word))
+        return super().__contains__(word) or word in ALIASES or _is_file(str(word))
 
 
 def _is_file(word: str) -> bool:
@@ -113,11 +118,12 @@ def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:
         )
     if late := [word for word in names if _is_file(word)]:
         raise UsageError(f"{late[0]!r}: files stand before the names of observables")
-    return files, names
+    return files, [name if name == _FIELD else known(name) for name in names]
 
 
 def _measure(given: argparse.Namespace) -> None:
-    files, names = _sorted(given)
+    stated, names = _sorted(given)
+    files = [str(file) for name in stated for file in run_files(name)]
     write = _writer(given, names)
     asked = {key: getattr(given, key) for key in selections()}
     selection = {key: value for key, value in asked.items() if value is not None}

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis.counters import compressibility_factor
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import correlated_mean
+from gaspart.errors import SceneError
 from gaspart.inspection.conserved import judge_conserved
 from gaspart.inspection.contact_value import FIT_ERROR, WIDTH, contact_values
 from gaspart.inspection.diffusion import diffusion, expected_diffusion, groups_of, why_not
@@ -97,7 +100,8 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
 
 
 def _pressure(frames: Frames) -> Check:
-    """Z by the pair distribution at contact against the equation of state, corrected for the finite number.
+    """Z by the collisions of a file that counts them, otherwise by the pair distribution at contact, against
+    the equation of state, corrected for the finite number.
 
     Frames count from the one on until which particles have moved by the distance of neighbours, so that
     nothing is left of a lattice (its order decays by exp(-k^2 <r^2> / 2d)); and those between which they
@@ -119,6 +123,8 @@ def _pressure(frames: Frames) -> Check:
         return Check(name, None, text)
     if any(density_modulation(frames, n) > UNEVEN for n in (chosen[0], chosen[-1])):
         return Check(name, None, "the density is not uniform: not relaxed")
+    if frames.counted is not None and frames.time is not None:
+        return _by_collisions(frames.counted, float(frames.time[first]))
     chosen = chosen[np.unique(np.linspace(0, len(chosen) - 1, MOST_FRAMES).astype(int))]
     found = correlated_mean(contact_values(replace(frames, positions=frames.positions[chosen]))).estimate
     first_order = 2.0 ** (d - 1) * eta
@@ -129,6 +135,17 @@ def _pressure(frames: Frames) -> Check:
     )
     basis = f"fluid, eta = {eta:.4g}; {len(chosen)} independent samples"
     return compared(name, found * first_order + 1.0, Estimate(expected, unsure), basis)
+
+
+def _by_collisions(path: Path, start: float) -> Check:
+    """Compare Z by the collisions of a run of gaspart from a time on with theory."""
+    found = compressibility_factor(path, start=start)
+    if found.theory is None:
+        return Check(_PRESSURE, None, "there is no theory of it for this scene")
+    unsure = float(found[f"{found.estimate.name}_theory_error"])
+    measured = Estimate(float(found.estimate), float(found.error), float(found.attrs["freedom"]))
+    basis = f"{found.attrs['source']}; by collisions"
+    return compared(_PRESSURE, measured, Estimate(float(found.theory), unsure), basis)
 
 
 def _no_pressure(frames: Frames) -> str | None:
@@ -178,6 +195,10 @@ def _diffusion(frames: Frames) -> Check:
         return Check(name, None, "density or temperature is not uniform: not relaxed")
     if reason := why_not(used):
         return Check(name, None, reason)
-    value, error, source = expected_diffusion(used)
-    basis = f"{source}; {groups_of(used)} groups of particles"
-    return compared(name, diffusion(used), Estimate(value, error), basis)
+    try:
+        found, window = diffusion(used)
+    except SceneError as unsettled:
+        return Check(name, None, unsettled.rule)
+    value, error, source = expected_diffusion(used, window)
+    basis = f"{source}; {groups_of(used)} groups of particles, {window[0]:.3g} to {window[1]:.3g} collisions"
+    return compared(name, found, Estimate(value, error), basis)

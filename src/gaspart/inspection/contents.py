@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -24,14 +25,15 @@ class Contents:
     """The fields of T frames of N particles, as a reader found them; None: the file does not state it.
 
     positions (T, N, 2 or 3), as stored; velocities likewise; time (T,); steps (T,), which --time-step
-    multiplies; radii and masses (N,) or (T, N); ids (T, N), one for each particle, and species (T, N), which
-    identify them; lengths and origin (T, 3), a length of 0 for walls at an unknown distance; boundary (3,),
-    a word for each axis; centred: the origin is the middle of the container; flat: two dimensions; plain:
-    nothing but elastic contacts moves the particles, as far as the file states; isolated: the file states
-    that so it is; part: there are more particles; sampled: particles may overlap; engine and scene: of a file
-    of gaspart; resolution and time_resolution: by how much a coordinate and a time may be off because of
-    their type; velocities_from_first: the reason to doubt velocities, which are those of frame 0 in all
-    frames; no_velocities: the reason why there are none.
+    multiplies; radii and masses (N,) or (T, N); ids (T, N), one for each particle, and species (T, N),
+    which identify them; lengths and origin (T, 3), a length of 0 for walls at an unknown distance;
+    boundary (3,), a word for each axis; centred: the origin is the middle of the container; flat: two
+    dimensions; plain: nothing but elastic contacts moves the particles, as far as the file states;
+    isolated: the file states that so it is; part: there are more particles; sampled: particles may
+    overlap; engine and scene: of a file of gaspart; counted: the file, if it counts exact collisions;
+    resolution and time_resolution: by how much a coordinate and a time may be off because of their type;
+    velocities_from_first: the reason to doubt velocities, which are those of frame 0 in all frames;
+    no_velocities: the reason why there are none.
     """
 
     positions: np.ndarray
@@ -53,6 +55,7 @@ class Contents:
     sampled: bool = False
     engine: Engine | None = None
     scene: Scene | None = None
+    counted: Path | None = None
     resolution: float = 0.0
     time_resolution: float = 0.0
     velocities_from_first: str | None = None
@@ -109,6 +112,7 @@ def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
         part=contents.part,
         sampled=contents.sampled,
         engine=contents.engine,
+        counted=contents.counted,
         scene=contents.scene,
         resolution=contents.resolution,
         masses=None if masses is None else masses[0],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
@@ -21,13 +22,14 @@ class Frames:
 
     positions (T, N, d), on periodic axes inside the container [0, L]; velocities (T, N, d) and time (T,), or
     None if the file does not state it; lengths (d,), radii and masses (N,), of the first frame where they
-    change; lengths_by_frame (T, d) and radii_by_frame (T, N) where they do; periodic (d,) whether each axis
-    is; plain: whether nothing but elastic contacts moves particles of one mass in a constant container, as
-    far as the file knows; resolution: by how much a position may be off, as a length; isolated: whether the
-    file states that it is plain; part: whether there are more particles than the file has; sampled: whether
-    contacts were sampled, so that particles may overlap; engine and scene: by which a file of gaspart was
-    made; no_velocities: the reason why there are none; reordered: the first frame that lists its particles in
-    another order than the one before, without ids to restore it, or None.
+    change; lengths_by_frame (T, d) and radii_by_frame (T, N) where they do; periodic (d,) whether each
+    axis is; plain: whether nothing but elastic contacts moves particles of one mass in a constant
+    container, as far as the file knows; resolution: by how much a position may be off, as a length;
+    isolated: whether the file states that it is plain; part: whether there are more particles than the
+    file has; sampled: whether contacts were sampled, so that particles may overlap; engine and scene: by
+    which a file of gaspart was made; counted: the file of gaspart that counts the exact collisions of
+    these frames; no_velocities: the reason why there are none; reordered: the first frame that lists its
+    particles in another order than the one before, without ids to restore it, or None.
     """
 
     positions: np.ndarray
@@ -46,6 +48,7 @@ class Frames:
     radii_by_frame: np.ndarray | None = None
     engine: Engine | None = None
     scene: Scene | None = None
+    counted: Path | None = None
     no_velocities: str = "the file has no velocities"
     reordered: int | None = None
 

@@ -270,3 +270,4 @@ def _add_scene(contents: Contents, path: Path) -> None:
     contents.part = recipe.stored_count < scene.count
     contents.sampled = not recipe.engine.forbids_overlap
     contents.engine, contents.scene = recipe.engine, recipe.scene
+    contents.counted = path if recipe.engine.reference else None

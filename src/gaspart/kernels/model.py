@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-COUNTS = ("collisions", "crossings", "outdated", "pair_tests", "box_visits")
+COUNTS = ("collisions", "crossings", "outdated", "pair_tests", "box_visits", "fixed_collisions")
 SUMS = ("virial_sum", "dissipated_energy")
 """What Tally.counts and Tally.sums hold, by the fields of `state.tally.Tally`, which has no outdated
 predictions. Sums are in the kernels' unit of mass, and proportional to it."""
-COLLISIONS, CROSSINGS, OUTDATED, PAIR_TESTS, BOX_VISITS = range(len(COUNTS))
+COLLISIONS, CROSSINGS, OUTDATED, PAIR_TESTS, BOX_VISITS, FIXED_COLLISIONS = range(len(COUNTS))
 VIRIAL, LOSS = range(len(SUMS))
 NONE = -1  # no particle, no face
 BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES more for those between boxes,
@@ -288,7 +288,8 @@ class Tally(NamedTuple):
     """counts (of `COUNTS`,); sums (of `SUMS`, 2) and by face and interior wall wall_impulse, wall_energy
     (faces + walls, 2), see `running_sum.add`; wall_hits (faces + walls,); worst (1,): the largest
     |r^2/sigma^2 - 1| at a contact; stress: an `event.stress.Stress`, impulses: an `event.impulses.Impulses`,
-    pair_impulses: an `event.pair_impulses.PairImpulses`, None if they are not wanted."""
+    pair_impulses: an `event.pair_impulses.PairImpulses`, None if they are not wanted; per_area: a
+    `physics.per_area.PerArea`, None unless particles of several sizes reach other areas of faces."""
 
     counts: np.ndarray
     sums: np.ndarray
@@ -299,6 +300,7 @@ class Tally(NamedTuple):
     stress: Any = None
     impulses: Any = None
     pair_impulses: Any = None
+    per_area: Any = None
 
 
 def empty_tally(walls: int) -> Tally:

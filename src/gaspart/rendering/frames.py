@@ -18,6 +18,7 @@ from gaspart.rendering.labels import Labels
 from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.rendering.shown import Picture
+from gaspart.rendering.surfaces import surfaces_of
 from gaspart.scene.faces import Piston, Vibrating
 from gaspart.scene.scene import Scene
 from gaspart.scene.walls import Wall
@@ -68,7 +69,7 @@ def render(
     colours = colours_of(particles, colour, fastest)
     if not clock:
         return picture(particles, size, colours, direction=direction).view(Picture)
-    labels = Labels(size, particles.parameters, legend_of(particles, colour, fastest))
+    labels = Labels(size, particles.parameters, legend_of(particles, colour, fastest), particles.surfaces)
     image = picture(particles, labels.inner, colours, direction=direction)
     scale = pixels_per_length(particles, labels.inner, direction)
     return labels.around(image, f"{time:.4g}", scale).view(Picture)
@@ -99,7 +100,7 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
     frames = source.sizes["frame"]
     if not -frames <= count_of("frame", frame, least=-frames) < frames:
         raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
-    names = ("coordinates", "velocities", "cell_lengths", "time", "piston_position")
+    names = ("coordinates", "velocities", "time", "piston_position")
     # Of these alone: xarray takes milliseconds for a frame of the whole.
     shown = {name: source.variables[name][frame].values for name in names if name in source.variables}
     if "keep" in source.attrs:
@@ -112,12 +113,13 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
         radii=source["radius"].values[inside],
         species=source["type"].values[inside],
         speeds=np.sqrt((velocities**2).sum(axis=1)),
-        lengths=shown["cell_lengths"][: positions.shape[1]],
+        lengths=np.array(scene.container.lengths),
         walls=_walls(scene, float(shown["time"]), shown.get("piston_position")),
         masses=np.resize(per_particle(scene, "mass"), scene.capacity)[:stored][inside].astype(float),
         fixed=np.resize(per_particle(scene, "fixed"), scene.capacity)[:stored][inside].astype(bool),
         periodic=scene.image_axes,
         parameters=parameters_of(scene),
+        surfaces=surfaces_of(scene, float(shown["time"]), _place(shown.get("piston_position"))),
     )
 
 
@@ -143,12 +145,6 @@ def parameters_of(scene: Scene) -> tuple[str, ...]:
         texts.append(f"gravity {math.hypot(*scene.gravity):.3g}")
     if scene.restitution is not None:
         texts.append(f"restitution {scene.restitution.normal:.3g}")
-    for name, face in scene.faces.items():
-        if isinstance(face, Vibrating):
-            texts.append(f"{name} vibrates: amplitude {face.amplitude:.3g}, period {face.period:.3g}")
-        if isinstance(face, Piston):
-            stated = {key: value for key, value in vars(face).items() if value is not None}
-            texts.append(f"{name} a piston: {', '.join(f'{key} {stated[key]:.3g}' for key in stated)}")
     if wall := scene.moving_wall:
         texts.append(f"a wall of mass {wall.mass:.3g} moves")
     return tuple(texts)
@@ -168,7 +164,13 @@ def _of_state(state: State, scene: Scene | None) -> DrawnParticles:
     parameters = parameters_of(scene) if scene else ()
     looks = state.positions, state.radii, state.species, state.speeds
     fixed = np.isinf(state.masses)
-    return DrawnParticles(*looks, state.lengths, walls, periodic, state.masses, fixed, parameters)
+    piston = None if state.piston is None else float(state.piston[0])
+    surfaces = surfaces_of(scene, state.time, piston) if scene else ()
+    return DrawnParticles(*looks, state.lengths, walls, periodic, state.masses, fixed, parameters, surfaces)
+
+
+def _place(piston: np.ndarray | None) -> float | None:
+    return None if piston is None else float(piston)
 
 
 def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.ndarray:

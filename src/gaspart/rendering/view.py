@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.analysis.order import NEIGHBOURS, hexatic, local_steinhardt
+from gaspart.analysis.bond_order import NEIGHBOURS, hexatic, local_steinhardt
 from gaspart.analysis.run import repeated
 from gaspart.errors import SceneError
 from gaspart.files import FileKind, output_path, writing

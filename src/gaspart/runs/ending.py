@@ -12,13 +12,14 @@ from gaspart.accuracy.steady import require_steady
 from gaspart.analysis.observables import (
     OBSERVABLES,
     having,
+    known,
     require_modelled,
     require_run,
     require_steady_value,
     walls_of,
 )
 from gaspart.engines import Engine
-from gaspart.errors import SceneError, unknown_word
+from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.until import Requirement
@@ -36,10 +37,15 @@ class Accuracy(Requirement):
     """
 
     def __post_init__(self) -> None:
+        try:
+            name = known(self.observable)
+        except SceneError as error:
+            raise error.inside("until") from None
         able = having(ends_runs=True)
-        if self.observable not in able:
-            rule = unknown_word(self.observable, able, "observable")
+        if name not in able:
+            rule = f"ends no run: those that do are {', '.join(able)}; give a duration, and measure {name}"
             raise SceneError("until.observable", self.observable, rule)
+        object.__setattr__(self, "observable", name)
         super().__post_init__()
         if self.face is not None and "face" not in OBSERVABLES[self.observable].along:
             raise SceneError("until.face", self.face, f"has no meaning for {self.observable}")

@@ -3,12 +3,13 @@
 Observables, theory, tallies, refusals and advice ask these properties by name and compute none of them. A
 `Scene` has them as its own attributes:
 
-- faces: `faces_of(kind)`, `pistons`, `sliding_faces`, `partial_faces`, `ramps`, `thermal_numbers`,
+- faces: `numbered_faces`, `faces_of(kind)`, `pistons`, `sliding_faces`, `partial_faces`, `ramps`,
+  `thermal_numbers`,
   `drawing_numbers`, `face_temperatures`;
 - container: `dimension`, `is_periodic`, `walled_axes`, `image_axes`;
 - matter: `kinds`, `moving_kinds`, `count`, `moving_count`, `capacity`, `has_fixed`, `has_obstacles`, `alike`,
-  `largest_radius`, `smallest_radius`, `largest_moving_radius`, `number_density`, `packing_fraction`, `gas`,
-  `mixture`;
+  `has_unequal_areas`, `largest_radius`, `smallest_radius`, `largest_moving_radius`, `number_density`,
+  `packing_fraction`, `gas`, `mixture`;
 - motion: `is_open`, `open_axes`, `moving_axes`, `moving_wall`, `has_piston`, `load_axis`, `shear_rate`,
   `driven_axes`, `flow_axes`, `flow_changes`, `frame_velocity`, `drags_faces`, `conserved_axes`, `dissipates`,
   `vibrates`, `rough`;
@@ -98,7 +99,7 @@ class Facts:
         )
 
     @cached_property
-    def _numbered_faces(self) -> tuple[tuple[int, Surface], ...]:
+    def numbered_faces(self) -> tuple[tuple[int, Surface], ...]:
         """Faces with a kind, with their numbers, in the order of the numbers."""
         names = enumerate(FACES[: 2 * self.dimension])
         return tuple((n, self.faces[name]) for n, name in names if name in self.faces)
@@ -107,7 +108,7 @@ class Facts:
     def _faces_by_kind(self) -> dict[type[Surface], list[tuple[int, Surface]]]:
         """Faces of each kind, with their numbers."""
         found: dict[type[Surface], list[tuple[int, Surface]]] = {}
-        for number, face in self._numbered_faces:
+        for number, face in self.numbered_faces:
             found.setdefault(type(face), []).append((number, face))
         return found
 
@@ -138,12 +139,12 @@ class Facts:
     @cached_property
     def thermal_numbers(self) -> list[int]:
         """Numbers of the faces at a temperature, those behind a well included."""
-        return [n for n, face in self._numbered_faces if face.rule[0] in ("thermal", "thermal_normal")]
+        return [n for n, face in self.numbered_faces if face.rule[0] in ("thermal", "thermal_normal")]
 
     @cached_property
     def drawing_numbers(self) -> list[int]:
         """Numbers of the faces that draw all components of a velocity, and so act along themselves."""
-        return [n for n, face in self._numbered_faces if face.rule[0] == "thermal"]
+        return [n for n, face in self.numbered_faces if face.rule[0] == "thermal"]
 
     @cached_property
     def face_temperatures(self) -> frozenset[float]:
@@ -213,6 +214,14 @@ class Facts:
     def largest_moving_radius(self) -> float:
         """Largest radius of any particle that is not fixed (0 if there is none)."""
         return max((kind.largest_radius for kind in self.moving_kinds), default=0.0)
+
+    @cached_property
+    def has_unequal_areas(self) -> bool:
+        """True if particles that move have several sizes, which may reach other areas of a face."""
+        many = len({kind.radius for kind in self.moving_kinds}) > 1
+        sizes = many or not all(kind.alike for kind in self.moving_kinds)
+        beside = len(self.walled_axes) > 1 and not self.centres_to_walls
+        return sizes and (beside or (bool(self.walled_axes) and self.has_obstacles))
 
     @cached_property
     def alike(self) -> bool:

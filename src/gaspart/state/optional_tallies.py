@@ -188,6 +188,24 @@ class EntryTally(OptionalTally):
     name: ClassVar[str] = "entries"
 
 
+@dataclass(frozen=True)
+class FixedCollisionTally(OptionalTally):
+    """The collisions with fixed particles."""
+
+    name: ClassVar[str] = "fixed_collisions"
+
+
+@dataclass(frozen=True)
+class PerAreaTally(OptionalTally):
+    """What faces are given per area that centres of particles of each size can reach, where sizes differ."""
+
+    name: ClassVar[str] = "per_area"
+
+    def axes(self, scene: Scene) -> dict[str, int]:
+        """The components of the momentum."""
+        return {"axis": scene.dimension}
+
+
 ASKED: dict[str, type[OptionalTally]] = {
     tally.name: tally for tally in (StressTally, ImpulseTally, PairImpulseTally)
 }
@@ -196,7 +214,12 @@ ASKED: dict[str, type[OptionalTally]] = {
 
 def tallies_of(scene: Scene) -> tuple[OptionalTally, ...]:
     """Those that every run of a scene has, if its engine makes them."""
-    made = {WallShearTally(): scene.drags_faces, EntryTally(): scene.is_open}
+    made = {
+        WallShearTally(): scene.drags_faces,
+        EntryTally(): scene.is_open,
+        FixedCollisionTally(): scene.has_fixed,
+        PerAreaTally(): scene.has_unequal_areas,
+    }
     return tuple(tally for tally, present in made.items() if present)
 
 

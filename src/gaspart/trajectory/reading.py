@@ -32,6 +32,7 @@ GIVEN_START = "given_start"
 """Attribute of an open trajectory that starts from a given state."""
 _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "units" in field.metadata} | {
     "kinetic_energy": ENERGY,
+    "mass": "mass",
     "vibrations": ENERGY,
     "velocity_product_sum": "length^2/time^2",
     "squared_displacement_sum": "length^2",
@@ -43,8 +44,9 @@ _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "uni
 def open_trajectory(path: str | Path) -> xr.Dataset:
     """A trajectory, or the finished part of a `.partial` one, as an xarray.Dataset, read as it is used.
 
-    Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius and type (atom) are coordinates,
-    and plots over frames have the time as their axis. A run with correlations has the dimension lag.
+    Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius, mass and type (atom) are
+    coordinates, and plots over frames have the time as their axis. A run with correlations has the dimension
+    lag.
     Of discs that spin, `spins` is (frame, atom); of spheres (frame, atom, spatial).
     Lengths and times are in the scene's units, counters cumulative since time 0. Attributes state the scene
     (YAML), engine and seed (JSON), and what follows from the scene: dimension and, unless faces are open,
@@ -75,7 +77,8 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     attributes = {**data.attrs, **_following(recipe)}
     if "spins" in data and scene.dimension == 2:
         data["spins"] = data["spins"].isel(spatial=2)
-    data = data.isel(spatial=slice(scene.dimension)).set_coords(["time", "radius", "type"])
+    named = [name for name in ("time", "radius", "mass", "type") if name in data]  # no masses before 0.3
+    data = data.isel(spatial=slice(scene.dimension)).set_coords(named)
     faces = amber.face_names(scene.dimension, len(scene.walls))
     if "piston" in data:
         data = _with_piston(data)

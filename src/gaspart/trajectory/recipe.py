@@ -239,10 +239,11 @@ class Recipe:
         scene, versions = self.scene, provenance.versions()
         groups = [len(scene.species)] * len(scene.particles) + list(range(len(scene.species)))
         counts = [1] * len(scene.particles) + [kind.count for kind in scene.species]
-        types, radii = (  # of particles that may come as well, which are all alike
-            np.resize(values, scene.capacity)[: self.stored_count]
-            for values in (np.repeat(groups, counts), per_particle(scene, "radius"))
-        )
+        each = {name: per_particle(scene, name) for name in ("radius", "mass")}
+        particles = {  # of particles that may come as well, which are all alike
+            name: np.resize(values, scene.capacity)[: self.stored_count]
+            for name, values in {**each, "type": np.repeat(groups, counts)}.items()
+        }
         attributes = {
             "Conventions": "AMBER",
             "ConventionVersion": "1.0",
@@ -251,12 +252,13 @@ class Recipe:
             "title": f"{scene.count} hard {'discs' if scene.dimension == 2 else 'spheres'}"
             + (" at the start" if scene.is_open else ""),
             "note": amber.NOTE,
+            "boundary": " ".join("periodic" if along else "wall" for along in scene.container.periodic),
             **self.attributes(),
             **versions,
             "kernels": source_digest(),
             **({"git_revision": revision} if revision else {}),
         }
-        return self.layout.header(attributes, radii, types, self._initial())
+        return self.layout.header(attributes, particles, self._initial())
 
 
 def _is_numbered(seed: int | tuple[int, ...], replica: int, replicas: int) -> bool:

@@ -141,6 +141,16 @@ def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
     return value * unit, error * unit, "fluid between hard walls"
 
 
+def wall_force(run: Run) -> Expected | None:
+    """The pressure times the area of each face."""
+    touched = np.subtract(*run.scene.reach(run.scene.largest_moving_radius)[::-1])
+    found = wall_pressure(run, touched)
+    if found is None:
+        return None
+    areas = np.array([np.delete(touched, axis).prod() for axis in run.scene.walled_axes]).repeat(2)
+    return found[0] * areas, found[1] * areas, found[2]
+
+
 def pressure_tensor(run: Run, temperature: float) -> Expected | None:
     """n k_B T [(1 - 1/N) + Z_N - 1] on the diagonal: N - 1 particles' worth of flight about the centre of
     mass."""

@@ -130,8 +130,10 @@ def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndar
 
 
 def _closed(run: Run) -> Expected | None:
-    """Nothing passes on average in a steady state, which a start in a region is not."""
-    if run.scene.is_open or any(kind.region is not None for kind in run.scene.species):
+    """Return the flux 0 of a steady state; None for a start in a region, and beside a piston, which moves
+    what it compresses."""
+    scene = run.scene
+    if scene.is_open or scene.has_piston or any(kind.region is not None for kind in scene.species):
         return None
     return np.zeros(1), 0.0, "a steady state between walls"
 

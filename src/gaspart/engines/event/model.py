@@ -11,6 +11,7 @@ from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.masses import scaled_masses
 from gaspart.engines.features.moving_wall import MovingWallPart, moving_wall_of
 from gaspart.engines.features.part import Part
+from gaspart.engines.features.per_area import EventPerAreaPart
 from gaspart.engines.features.piston import PistonPart
 from gaspart.engines.features.rest import rest_watch
 from gaspart.engines.features.shear import ShearPart, shear_of
@@ -79,6 +80,7 @@ def event_parts(
         DurationPart(law, law.duration, gravity) if law and law.duration else None,
         kicks(scene, seed, unit_mass),
         rest_watch(scene, state),
+        EventPerAreaPart(scene, state, unit_mass) if scene.has_unequal_areas else None,
     )
     return [part for part in parts if part]
 

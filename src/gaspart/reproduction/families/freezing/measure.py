@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis import order as structure
+from gaspart.analysis import bond_order as structure
 from gaspart.analysis.bins import Grid
 from gaspart.analysis.coexistence import plateau
 from gaspart.analysis.estimate import Estimate

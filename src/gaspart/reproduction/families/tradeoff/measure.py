@@ -15,13 +15,13 @@ import xarray as xr
 from gaspart import theory
 from gaspart.accuracy import table
 from gaspart.accuracy.models import model_error
-from gaspart.accuracy.noise import required
 from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS, REFERENCE, STEP
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction import table as tables
 from gaspart.reproduction.families.shared.accuracy import costs, setting_name
 from gaspart.reproduction.families.shared.pressure import pressure
+from gaspart.reproduction.families.tradeoff.choices import required
 from gaspart.reproduction.families.tradeoff.frontier import SEEN, frontier
 from gaspart.reproduction.families.tradeoff.maps import maps
 from gaspart.reproduction.families.tradeoff.uniform import (

@@ -5,7 +5,7 @@ import pytest
 from scenes import gas
 from scipy.spatial import Delaunay
 
-from gaspart.analysis import order as structure
+from gaspart.analysis import bond_order as structure
 from gaspart.errors import SceneError
 from gaspart.state.initial import initial_state
 
