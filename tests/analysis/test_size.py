@@ -51,7 +51,7 @@ def disagreements(dimension, count, eta, folder):
         value, error, expected, unsure = (
             result[key + end].values for end in ("", "_error", "_theory", "_theory_error")
         )
-        if np.isnan(unsure).all() or value.size > 1 and count * FRAMES < 100 * value.size:
+        if np.isnan(unsure).all() or (value.size > 1 and count * FRAMES < 100 * value.size):
             continue
         stated.append(name)
         z = np.abs(value - expected) / np.sqrt(error**2 + unsure**2 + 1e-24)
