@@ -39,10 +39,10 @@ from gaspart.theory.tables import small_systems
 _PAIR_HIGHEST = {2: math.pi / 4.0, 3: math.pi / (6.0 * math.sqrt(2.0))}
 """Packing fraction of two particles in a container of side sqrt(2) diameters, where the spheres about the
 images of a particle begin to overlap three at a time."""
-_REMAINDER = {2: (-2.839, 20.38, -19.976, 1.842, -2.883), 3: (10.943, -37.323, 32.386, 1.934, -4.016)}
+_REMAINDER = {2: (19.649, -54.152, 39.606, 2.449, -4.035), 3: (15.999, -60.593, 61.817, 2.127, -4.214)}
 """Coefficients a0, a1, a2, b0, b1 of `finite_size_remainder`, by maximum likelihood from the rows of
 `data/small_systems.csv` with 4 and more particles in 2.2 and more diameters (`benchmarks/small_systems.py
-fit`): 32 rows of discs, none further away than 3.3 standard deviations, and 37 rows of spheres, 2.3."""
+fit`): 95 rows of discs, none further away than 3.3 standard deviations, and 66 rows of spheres, 3.3."""
 _SHORTEST = 2.2
 """Side in diameters below which the expansion in 1/N states nothing: a particle feels its own images."""
 _NODES = 32  # of the integral over packing fractions
@@ -135,7 +135,7 @@ def finite_size_remainder(packing_fraction: Numbers, dimension: int, side: Numbe
     --------
     >>> from gaspart import theory
     >>> float(theory.finite_size_remainder(0.45, 3, side=5.0).round(4))
-    0.0069
+    0.0064
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     a0, a1, a2, b0, b1 = _REMAINDER[dimension]
