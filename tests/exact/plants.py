@@ -48,8 +48,8 @@ PLANTS = [
     Plant(
         "control with a mean that is 2 % off",
         "analysis.controls",
-        "carried - run.moving.sum()",
-        "carried - 0.98 * run.moving.sum()",
+        "carried - run.scene.moving_count",
+        "carried - 0.98 * run.scene.moving_count",
         ("slit", "pressure"),
     ),
     Plant(
@@ -104,15 +104,15 @@ PLANTS = [
     Plant(
         "collision rate per N - 1",
         _SERIES,
-        "(run.moving.sum() * np",
-        "((run.moving.sum() - 1) * np",
+        "(2.0 * met - with_fixed) / count",
+        "(2.0 * met - with_fixed) / (count - 1)",
         ("three_periodic", "collision_rate"),
     ),
     Plant(
         "collisions counted for one of both",
         _SERIES,
-        '2.0 * run.increments("collisions")',
-        'run.increments("collisions")',
+        "(2.0 * met - with_fixed) / count",
+        "(met - with_fixed) / count",
         ("periodic", "collision_rate"),
     ),
     Plant(
@@ -202,10 +202,10 @@ PLANTS = [
     ),
     Plant("drift's share of heavy bodies", _MOTION, _FREE, "np.sqrt(others / others)", ("wind", "vacf")),
     Plant(
-        "velocity of the faces added",
+        "motion about rest in a flow",
         _MOTION,
-        "values - drift\n",
-        "values + drift\n",
+        "velocities = peculiar / np.sqrt",
+        "velocities = velocities / np.sqrt",
         ("masses_slit", "vacf"),
     ),
     Plant(
