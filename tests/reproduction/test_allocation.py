@@ -15,10 +15,11 @@ COST = {"gas/a": 1.0, "gas/b": 4.0, "gas/c": 10.0}
 def test_two_points_of_one_claim_share_the_time_as_neyman_allocates_it():
     """x ~ sqrt(c / t): with parts 0.2 and 0.8, times 1 and 4, both are the same."""
     one = Demand("z", "a difference", {"gas/a": 0.2, "gas/b": 0.8}, 0.0, 4.0)
-    lengths = allocated([one], COST, {"z": ["gas/a", "gas/b"]})
+    lengths, (price,) = allocated([one], COST, {"z": ["gas/a", "gas/b"]})
+    assert price == pytest.approx(5.0 / 4.0, rel=1e-3)  # the whole time, which is inverse to the variance
     assert lengths["gas/a"] == pytest.approx(lengths["gas/b"], rel=1e-3) == pytest.approx(0.25, rel=1e-3)
     other = Demand("z", "a difference", {"gas/a": 0.5, "gas/b": 0.5}, 0.0, 4.0)
-    lengths = allocated([other], COST, {"z": ["gas/a", "gas/b"]})
+    lengths, _ = allocated([other], COST, {"z": ["gas/a", "gas/b"]})
     assert lengths["gas/a"] / lengths["gas/b"] == pytest.approx(2.0, rel=1e-3)
     assert sum(0.5 / lengths[name] for name in ("gas/a", "gas/b")) == pytest.approx(4.0, rel=1e-3)
 
@@ -31,7 +32,7 @@ def test_all_claims_are_met_and_no_cheaper_choice_is():
     for k in range(20):
         parts = zip(rng.choice(names, 4, replace=False), rng.dirichlet(np.ones(4)), strict=True)
         demanded.append(Demand("z", str(k), dict(parts), 0.0, rng.uniform(1.0, 6.0)))
-    lengths = allocated(demanded, cost, {"z": names})
+    lengths, _ = allocated(demanded, cost, {"z": names})
 
     def met(chosen):
         return all(
@@ -49,10 +50,10 @@ def test_all_claims_are_met_and_no_cheaper_choice_is():
 
 def test_points_that_no_row_states_have_the_length_of_their_neediest_claim():
     known = Demand("z", "known", {"gas/a": 1.0}, 0.0, 5.0)
-    lengths = allocated([known], COST, {"z": ["gas/a", "gas/b"], "film": ["gas/c"]})
+    lengths, _ = allocated([known], COST, {"z": ["gas/a", "gas/b"], "film": ["gas/c"]})
     assert lengths == pytest.approx({"gas/a": 0.2, "gas/b": 0.2, "gas/c": 1.0}, rel=1e-3)
     unknown = Demand("z", "in part", {"gas/a": 0.5}, 0.5, 2.0)
-    assert allocated([unknown], COST, {"z": ["gas/a"]})["gas/a"] == pytest.approx(0.5, rel=1e-3)
+    assert allocated([unknown], COST, {"z": ["gas/a"]})[0]["gas/a"] == pytest.approx(0.5, rel=1e-3)
 
 
 class Named:
@@ -79,6 +80,22 @@ def test_parts_of_a_variance_are_found_by_the_rows_of_a_table(monkeypatch):
     (found,) = allocation.demands("z", {}, data.assign(z_error=data.z_error * required / 0.4))
     assert found.parts == pytest.approx({"gas/a": 0.25, "gas/c": 0.375, "gas/d": 0.375})
     assert found.rest == 0.0 and found.most == pytest.approx(4.0 / IN_HAND)
+
+
+def test_rows_of_replicas_have_parts_too(monkeypatch):
+    scatter = np.array([[1.0, 2.0, 4.0], [1.0, 1.5, 2.5]])
+    data = table(
+        "gas", [Named("a"), Named("b")], lambda one: {"z": scatter["ab".index(one.name)]}, inner=("replica",)
+    )
+
+    def stated(figure, block, dataset):
+        a, b = dataset.z.values.var(axis=1, ddof=1) / 3.0
+        return [claim(1.0, 1e-6 * float(np.sqrt(a + b)))]
+
+    monkeypatch.setattr(budget, "claims_of", stated)
+    (found,) = allocation.demands("z", {}, data)
+    a, b = scatter.var(axis=1)
+    assert found.parts == pytest.approx({"gas/a": a / (a + b), "gas/b": b / (a + b)}) and found.rest == 0.0
 
 
 def test_a_multiple_is_one_of_replicas_then_of_the_length_at_the_same_interval():
