@@ -122,7 +122,15 @@ lint: setup
 report: setup
 	$(SNAKEMAKE) report --quiet rules
 
-docs: setup
+# Tables of the tests for pages of the site: a few minutes each, made anew when the library or these tests have changed.
+MEASURED = $(shell find src/gaspart/analysis src/gaspart/engines src/gaspart/kernels src/gaspart/scene -name '*.py')
+results/docs/symmetries.csv: $(MEASURED) $(wildcard tests/battery/*.py) | setup
+	PYTHONPATH=tests .venv/bin/python -m battery.table
+
+results/docs/exact_values.csv: $(MEASURED) $(wildcard tests/exact/*) | setup
+	PYTHONPATH=tests .venv/bin/python -m exact.table
+
+docs: setup results/docs/symmetries.csv results/docs/exact_values.csv
 	.venv/bin/python docs/gallery.py results docs/gallery.png
 	.venv/bin/python docs/thumbnails.py results
 	.venv/bin/python -m sphinx --quiet --fail-on-warning --jobs auto docs results/docs/html

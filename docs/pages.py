@@ -1,7 +1,7 @@
 """The pages of the site that follow from the code, written into docs/generated: a Sphinx extension.
 
-The public names, the commands, the gallery of scenes, the referees, the symmetries, and a page for each
-family of figures, with its captions and, if the workflow has run, its figures and claims.
+The public names, the commands, the gallery of scenes, the referees, the symmetries, the exact values, and a
+page for each family of figures, with its captions and, if the workflow has run, its figures and claims.
 """
 
 import argparse
@@ -12,6 +12,7 @@ import shutil
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 
+import exact_values
 import indexes
 import symmetries
 
@@ -252,6 +253,7 @@ def write(folder):
         (folder / part).mkdir(parents=True, exist_ok=True)
     pages = {**api(), **command_line(), **gallery(folder), **figures(folder), **referees(), **paper()}
     pages["symmetries.rst"] = symmetries.page(heading, table)
+    pages["exact-values.rst"] = exact_values.page(heading, table)
     for path, text in pages.items():
         target = folder / path
         if not target.exists() or target.read_text(encoding="utf-8") != text:

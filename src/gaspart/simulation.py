@@ -191,9 +191,10 @@ class Simulation:
                 raise SceneError("duration", None, "give duration, until or max_events")
             until = math.inf
         place = None if self._initial.piston is None else float(self._initial.piston[0])
-        if max_events is None:
-            check_piston_end(self.scene, "until", until, place)
-        until = min(until, piston_end(self.scene, place))
+        if self.scene.pistons:
+            if max_events is None:
+                check_piston_end(self.scene, "until", until, place)
+            until = min(until, piston_end(self.scene, place))
         before, self._advanced = self._advanced, True
         if not before:
             self._warn_at_rest()

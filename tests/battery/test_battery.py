@@ -96,12 +96,3 @@ def test_every_observable_is_tested_by_every_symmetry_somewhere():
 def test_exceptions_are_of_observables_that_exist():
     known = set(names())
     assert {name for name, _ in SAMPLED} | set(SINGLE) | set(MEANS) | set(WITHOUT_NAME) <= known
-
-
-def test_the_page_is_up_to_date():
-    """`PYTHONPATH=tests python -m battery.table` renews it."""
-    kept = [column for column in table.COLUMNS if column != "deviation"]
-    stated, found = (
-        [{key: row[key] for key in kept} for row in rows] for rows in (table.stated(), table.rows())
-    )
-    assert stated == found

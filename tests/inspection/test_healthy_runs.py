@@ -56,7 +56,7 @@ def test_a_healthy_short_run_gets_no_false_verdict(kind, tmp_path):
 
 
 @pytest.mark.parametrize("foreign", [False, True])
-@pytest.mark.parametrize(("dimension", "count", "eta"), [(3, 500, 0.5113), (2, 300, 0.69)])
+@pytest.mark.parametrize(("dimension", "count", "eta"), [(3, 500, 0.5113), (3, 300, 0.49), (2, 300, 0.69)])
 def test_a_healthy_dense_run_is_never_wrong(dimension, count, eta, foreign, tmp_path):
     """As of another program, whose file has no collisions: by the contact value of positions."""
     scene = gas(dimension, count, eta, arrangement="compressed", exact_temperature=True)

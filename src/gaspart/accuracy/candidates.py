@@ -47,7 +47,9 @@ def candidates(
 def asked_of(target: Target, accuracy: float, conditions: Conditions) -> Asked:
     """What engines are asked for."""
     governed = transported(target.scene, target.observable)
-    return Asked(target.observable, accuracy, conditions, target.face, governed, target.initial)
+    presses = target.declared.of_impulses  # a force has the relative errors of a pressure
+    observable = "pressure" if presses else target.observable
+    return Asked(observable, accuracy, conditions, target.face, governed, target.initial)
 
 
 def transported(scene: Scene, observable: str) -> bool:

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.observables import PRESSING
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines.dsmc.rates import accessible
 from gaspart.scene.faces import Thermal
 from gaspart.scene.scene import Scene
@@ -162,7 +162,7 @@ def between(real: Column, ideal: Column, observable: str, top: bool | None) -> f
         "temperature": abs(ideal.temperature / real.temperature - 1.0),
         "density": _of_profiles(real, ideal),
     }
-    if observable in PRESSING and top is not None:
+    if OBSERVABLES[observable].of_impulses and top is not None:
         exact = real.pressure(top)
         return abs(ideal.pressure(top) / exact - 1.0) if exact > 0.0 else math.inf
     return differences.get(observable, max(differences.values()))

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.observables import OBSERVABLES, PRESSING
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     from gaspart.analysis.run import open_run
 
     with open_run(data, start, sheared=True) as run:
-        if observable in PRESSING:
+        if OBSERVABLES[observable].of_impulses:
             return _on_walls(run, observable)
         time = float(run.time[-1] - run.time[0])
     declared, found = OBSERVABLES[observable], measure(data, observable, start)

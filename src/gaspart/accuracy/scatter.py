@@ -18,7 +18,6 @@ from gaspart.accuracy.column import Column, pulled
 from gaspart.accuracy.conditions import kinetic_temperature
 from gaspart.accuracy.steady import keeps_energy
 from gaspart.accuracy.target import Target
-from gaspart.analysis.observables import PRESSING
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.trajectory.reading import GIVEN_START
@@ -161,7 +160,7 @@ def _change(target: Target, low: Column, middle: Column, high: Column) -> float:
         profiles = [np.interp(z, one.heights, one.numbers.sum(axis=0), right=0.0) for one in (low, high)]
         exact = middle.numbers.sum(axis=0)
         return float(np.sqrt(((profiles[1] - profiles[0]) ** 2).sum() / (exact**2).sum()))
-    if target.observable in PRESSING:
+    if target.declared.of_impulses:
         changes = []
         for top in (False, True):
             if middle.pressure(top) > 0.0:

@@ -13,7 +13,6 @@ from gaspart.accuracy.conditions import Conditions, measured_conditions
 from gaspart.accuracy.estimates import Component
 from gaspart.accuracy.pilot import Pilot, require_defined, run_pilot, speed_of
 from gaspart.accuracy.target import Target
-from gaspart.analysis.observables import PRESSING
 from gaspart.engines import Engine, reference_engine
 from gaspart.engines.asked import Candidate
 from gaspart.errors import SceneError
@@ -126,7 +125,7 @@ class Trials:
             return max(accurate, key=lambda one: one.measured)
         target = self.target
         rule = f"{self.pilots[0].rule or 'does not change in the pilot run'}; allow longer pilots"
-        if target.observable in PRESSING and not target.face:
+        if target.declared.of_impulses and not target.face:
             rule += f", or state a wall, as in {target.observable}:{target.scene.container.walls[0]}"
         raise SceneError("observable", target.observable, rule)
 

@@ -13,6 +13,7 @@ from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.faces import FACES, Open
 from gaspart.scene.gas import plain_mixture
+from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.stress import require_tallied
@@ -29,6 +30,14 @@ _NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and those around it in a crystal
 def unsheared(scene: Scene, selection: Selection) -> None:
     """No sheared faces."""
     refuse_sheared(scene, SLIDING)
+
+
+def steady_flow(scene: Scene, selection: Selection) -> None:
+    """No flow that changes with time, unless motion is about rest."""
+    if scene.flow_changes and selection.get("about") != "rest":
+        faces = [name for name, face in scene.faces.items() if face.moves] or MOVING_WALL
+        rule = 'move the gas: motion about a flow that changes is not known from frames; pass about="rest"'
+        raise SceneError("faces", faces, rule)
 
 
 def opened(scene: Scene, selection: Selection) -> None:
@@ -114,10 +123,25 @@ def elastic(scene: Scene, selection: Selection) -> None:
         raise SceneError("restitution.normal", law.normal, "a gas that loses energy is in no equilibrium")
 
 
-def all_move(scene: Scene, selection: Selection) -> None:
-    """No fixed particles."""
+def homogeneous(scene: Scene, selection: Selection) -> None:
+    """Neither walls, nor interior walls and fixed particles, around which places are not alike."""
+    _periodic(scene, "this observable needs a periodic container")
+    _without_obstacles(
+        scene,
+        "make places unlike each other: g(r), contact values, S(k) and order are those of a homogeneous gas",
+    )
+
+
+def without_obstacles(scene: Scene, selection: Selection) -> None:
+    """No interior walls and fixed particles, which carry a part of the pressure."""
+    _without_obstacles(scene, "carry a part of the pressure, which the virial of the particles does not have")
+
+
+def _without_obstacles(scene: Scene, rule: str) -> None:
+    if scene.walls:
+        raise SceneError("walls", len(scene.walls), rule)
     if scene.has_fixed:
-        raise SceneError("species.fixed", True, "the virial of fixed particles is not a pressure")
+        raise SceneError("species.fixed", True, rule)
 
 
 def some_move(scene: Scene, selection: Selection) -> None:

@@ -36,7 +36,7 @@ def wall_controls(run: Run, axis: int) -> np.ndarray | None:
     width = float(run.scene.container.lengths[axis]) / has.bins
     carried = run.increments("momentum_flux_sum").sum(axis=(1, 2)) * width / time
     changes = np.diff(stores(run)[axis], axis=0) / time[:, None]
-    return np.column_stack([carried - run.moving.sum() * run.temperature, changes])
+    return np.column_stack([carried - run.scene.moving_count * run.temperature, changes])
 
 
 def stores(run: Run) -> np.ndarray:

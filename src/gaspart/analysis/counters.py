@@ -234,8 +234,8 @@ def refuse_rest(run: Run, rule: str) -> None:
 
 
 def collision_rate(source: Source, start: float | None = None) -> Observable:
-    """Collisions of one particle per time, 2 M / (N t) for M collisions of pairs; fixed particles do not
-    count in N.
+    """Collisions of a particle that moves per time, (2 M + F) / (N t) for M collisions of pairs of the N
+    particles that move, and F collisions with fixed ones: its own count, on average.
 
     source, start: as in `compressibility_factor`. Theory: exact in equilibrium, with the contact value of
     the fluid's equation of state, corrected for the number of particles. Raises SceneError for too few

@@ -113,10 +113,11 @@ class Named:
     How it is planned. power: of the temperature that it grows with; memory: whether it depends on the memory
     of collisions, which no kinetic equation has; lags: of its correlations in a pilot, 0 without; samples:
     what frames are spaced for: "" a mean over time, "structure" independent positions, "paths" lags;
-    by_impulses: whether impulses that a run keeps make it more accurate; ends_runs: whether `--until` may
-    require it; drives: conditions of a scene in whose steady state it is not 0, asked besides `conditions`
-    before an accuracy is; tabulated: whether costs and errors are in the table; relative_to: what its
-    accuracy is relative to, each "value", or their "norm" where some vanish on average.
+    of_impulses: whether it is of the impulses that all walls are given; by_impulses: whether impulses that a
+    run keeps make it more accurate; ends_runs: whether `--until` may require it; drives: conditions of a
+    scene in whose steady state it is not 0, asked besides `conditions` before an accuracy is; tabulated:
+    whether costs and errors are in the table; relative_to: what its accuracy is relative to, each "value",
+    or their "norm" where some vanish on average.
     """
 
     title: str
@@ -144,6 +145,7 @@ class Named:
     memory: bool = False
     lags: int = 0
     samples: str = ""
+    of_impulses: bool = False
     by_impulses: bool = False
     ends_runs: bool = False
     drives: tuple[Condition, ...] = ()

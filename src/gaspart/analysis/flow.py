@@ -1,4 +1,7 @@
-"""The mean motion of a gas, and its temperature about it.
+"""The rule of motion: what velocities, displacements and temperatures are relative to.
+
+Temperature, speeds, msd, vacf, D and all of `by_species` are about the same local flow, by default; with
+about="rest", about the container at rest, whatever flows.
 
 Of a group of particles in local equilibrium, u = sum m v / M their mean velocity, M their mass, a particle's
 component has <m (v - u)^2> = (1 - m / M) k_B T, exactly, whatever u is: the part m / M of a degree of freedom
@@ -11,6 +14,11 @@ is spent on u. What is taken as a group depends on how the gas can move:
   flow changes.
 
 A flow that is known, between sheared faces (`LeesEdwards`), is taken off before.
+
+A displacement about a steady flow is that of the particle less the time integral of the flow where it is, by
+the trapezoidal rule over frames: <|dr|^2> is then twice the integral of the velocity autocorrelation about
+the flow, without what a gradient of the flow adds (Taylor's dispersion). About a flow that changes it is not
+known from frames.
 """
 
 from __future__ import annotations
@@ -27,6 +35,8 @@ from gaspart.scene.shear import flow
 if TYPE_CHECKING:
     from gaspart.analysis.run import Run
 
+ABOUT = FLOW, REST = "flow", "rest"
+"""What motion may be about."""
 _SAMPLES = 500  # particles in frames, in each cell, from which a steady flow is known well enough
 _CELLS = 20  # along an axis, by default
 _CROWD = 8  # particles in a cell whose flow changes, by default
@@ -96,9 +106,13 @@ def wind(run: Run) -> np.ndarray:
 
 
 def about_the_flow(run: Run, along: Mapping[int, int] | None = None) -> Peculiar:
-    """Velocities about the local flow of mass, if the gas can have one, in cells along `flow_axes`; otherwise
-    those `about_the_whole`. along: axis -> number of cells, where these are not the default ones; further
-    axes are resolved too, unless the flow changes or there is none."""
+    """Velocities about rest, if the run is about it; about the local flow of mass, if the gas can have one,
+    in cells along `flow_axes`; otherwise those `about_the_whole`. along: axis -> number of cells, where
+    these are not the default ones; further axes are resolved too, unless the flow changes or there is
+    none."""
+    if run.about == REST:
+        velocities = run.velocities[:, run.moving]
+        return Peculiar(velocities, np.ones((1, velocities.shape[1], 1)))
     across = run.flow_axes
     if not across:
         return about_the_whole(run)

@@ -46,7 +46,13 @@ OBSERVABLES: dict[str, Named] = {
         units="1",
         function="compressibility_factor",
         whole="unless fluxes",
-        conditions=(where.unsheared, where.periodic_virial, where.elastic, where.all_move, where.thermal),
+        conditions=(
+            where.unsheared,
+            where.periodic_virial,
+            where.elastic,
+            where.without_obstacles,
+            where.thermal,
+        ),
         nothing={"boltzmann": "is 1 of particles without extent, whatever happens"},
         theory="equilibrium.compressibility_factor",
         bulk="compressibility_factor",
@@ -60,6 +66,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="pressure on each wall",
         units="energy / length^d",
         function="wall_pressure",
+        of_impulses=True,
         varying=True,
         whole="never",
         along=("face",),
@@ -74,6 +81,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="force on each wall",
         units="energy / length",
         function="wall_force",
+        of_impulses=True,
         varying=True,
         whole="never",
         along=("face",),
@@ -150,7 +158,7 @@ OBSERVABLES: dict[str, Named] = {
         conditions=(
             where.unsheared,
             where.of_species,
-            where.periodic,
+            where.homogeneous,
             where.elastic,
             where.one_size_each,
             where.thermal,
@@ -164,9 +172,9 @@ OBSERVABLES: dict[str, Named] = {
         units="length^2",
         function="mean_squared_displacement",
         along=("lag",),
-        selections=("species", "particles", "per_axis"),
+        selections=("species", "particles", "per_axis", "about"),
         needs="paths",
-        conditions=(where.unsheared, where.grouped),
+        conditions=(where.unsheared, where.grouped, where.steady_flow),
         theory="transport.mean_squared_displacement",
         scatter="particles",
         power=0.5,
@@ -179,9 +187,15 @@ OBSERVABLES: dict[str, Named] = {
         definition="diffusion coefficient",
         units="length^2 / time",
         function="diffusion_coefficient",
-        selections=("species", "particles", "per_axis", "lag"),
+        selections=("species", "particles", "per_axis", "lag", "about"),
         needs="paths",
-        conditions=(where.unsheared, where.free_axis, where.no_lasting_discs, where.grouped),
+        conditions=(
+            where.unsheared,
+            where.free_axis,
+            where.no_lasting_discs,
+            where.grouped,
+            where.steady_flow,
+        ),
         theory="transport.diffusion",
         bulk="diffusion",
         source="Enskog's theory times the ratio of Erpenbeck and Wood 1991; discs have none",
@@ -217,8 +231,8 @@ OBSERVABLES: dict[str, Named] = {
         units="length^2 / time^2",
         function="velocity_autocorrelation",
         along=("lag",),
-        selections=("species", "particles"),
-        conditions=(where.unsheared, where.grouped),
+        selections=("species", "particles", "about"),
+        conditions=(where.unsheared, where.grouped, where.steady_flow),
         theory="transport.velocity_autocorrelation",
         scatter="particles",
         power=1.0,
@@ -231,6 +245,7 @@ OBSERVABLES: dict[str, Named] = {
         units="time / length",
         function="speed_distribution",
         along=("speed",),
+        selections=("about",),
         ends="fastest",
         conditions=(where.unsheared, where.grouped),
         theory="equilibrium.speeds",
@@ -245,7 +260,7 @@ OBSERVABLES: dict[str, Named] = {
         function="rdf",
         whole="never",
         along=("distance",),
-        conditions=(where.unsheared, where.periodic, where.a_pair),
+        conditions=(where.unsheared, where.homogeneous, where.a_pair),
         theory="places.radial_distribution",
         **_OF_PAIRS,
     ),
@@ -256,7 +271,7 @@ OBSERVABLES: dict[str, Named] = {
         units="1",
         function="structure_factor",
         along=("wave_number",),
-        conditions=(where.unsheared, where.periodic),
+        conditions=(where.unsheared, where.homogeneous),
         theory="places.structure_factor",
         **_OF_PAIRS,
     ),
@@ -267,7 +282,7 @@ OBSERVABLES: dict[str, Named] = {
         units="1",
         function="partial_structure_factors",
         along=("pair", "wave_number"),
-        conditions=(where.unsheared, where.periodic, where.of_species),
+        conditions=(where.unsheared, where.homogeneous, where.of_species),
         theory="places.partial_structure_factors",
         merged="split",
         relative_to="norm",
@@ -347,7 +362,7 @@ OBSERVABLES: dict[str, Named] = {
         arguments={"of": "temperature"},
         varying=True,
         along=("position",),
-        selections=("axis", "species"),
+        selections=("axis", "species", "about"),
         conditions=(where.unsheared, where.has_axis, where.has_species, where.thermal),
         theory="places.temperature",
         power=1.0,
@@ -420,7 +435,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="global bond order, periodic",
         units="1",
         function="order_parameter",
-        conditions=(where.unsheared, where.periodic, where.a_neighbourhood),
+        conditions=(where.unsheared, where.homogeneous, where.a_neighbourhood),
         **_OF_PAIRS,
     ),
 }
@@ -444,9 +459,6 @@ ALIASES: dict[str, str] = {
     },
 }
 """Other names of observables, among them those of their functions in `gaspart.analysis`."""
-
-PRESSING = ("pressure", "force")
-"""What particles do to all walls, by the impulses that they give."""
 
 
 def known(name: object) -> str:
@@ -525,7 +537,7 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
     pressure, of others those at a temperature."""
     if "face" not in OBSERVABLES[name].along:
         return ()
-    if name in PRESSING:
+    if OBSERVABLES[name].of_impulses:
         return scene.container.walls
     return tuple(key.replace("_", " ") for key, face in scene.faces.items() if face.temperatures)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gaspart.analysis.flow import ABOUT
 from gaspart.analysis.measuring import measure, until_time
 from gaspart.analysis.observables import ALIASES, OBSERVABLES, known, selecting, selections
 from gaspart.cli.arguments import (
@@ -83,6 +84,8 @@ def add_measure(parser: Parser) -> None:
     add("--cells", type=several(int), metavar="N[,N...]", help=text)
     text = "through the plane at this place, by default in the middle: "
     add("--at", type=real(), metavar="X", help=text + ", ".join(selecting("at")))
+    text = "about the local flow of the gas, by default, or about rest: "
+    add("--about", choices=ABOUT, help=text + ", ".join(selecting("about")))
     text = "at or until this lag, a time: "
     add("--lag", type=real(), metavar="T", help=text + ", ".join(selecting("lag")))
     add("-o", "--output", metavar="FILE", help="all rows of one observable as .csv, or a plot as .png")

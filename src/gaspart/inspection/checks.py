@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis.counters import compressibility_factor
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.pressure import compressibility_factor
 from gaspart.analysis.statistics import correlated_mean
+from gaspart.errors import SceneError
 from gaspart.inspection.conserved import judge_conserved
 from gaspart.inspection.contact_value import FIT_ERROR, WIDTH, contact_values
 from gaspart.inspection.diffusion import diffusion, expected_diffusion, groups_of, why_not
@@ -194,6 +195,10 @@ def _diffusion(frames: Frames) -> Check:
         return Check(name, None, "density or temperature is not uniform: not relaxed")
     if reason := why_not(used):
         return Check(name, None, reason)
-    value, error, source = expected_diffusion(used)
-    basis = f"{source}; {groups_of(used)} groups of particles"
-    return compared(name, diffusion(used), Estimate(value, error), basis)
+    try:
+        found, window = diffusion(used)
+    except SceneError as unsettled:
+        return Check(name, None, unsettled.rule)
+    value, error, source = expected_diffusion(used, window)
+    basis = f"{source}; {groups_of(used)} groups of particles, {window[0]:.3g} to {window[1]:.3g} collisions"
+    return compared(name, found, Estimate(value, error), basis)

@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-COUNTS = ("collisions", "crossings", "outdated", "pair_tests", "box_visits")
+COUNTS = ("collisions", "crossings", "outdated", "pair_tests", "box_visits", "fixed_collisions")
 SUMS = ("virial_sum", "dissipated_energy")
 """What Tally.counts and Tally.sums hold, by the fields of `state.tally.Tally`, which has no outdated
 predictions. Sums are in the kernels' unit of mass, and proportional to it."""
-COLLISIONS, CROSSINGS, OUTDATED, PAIR_TESTS, BOX_VISITS = range(len(COUNTS))
+COLLISIONS, CROSSINGS, OUTDATED, PAIR_TESTS, BOX_VISITS, FIXED_COLLISIONS = range(len(COUNTS))
 VIRIAL, LOSS = range(len(SUMS))
 NONE = -1  # no particle, no face
 BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES more for those between boxes,

@@ -189,6 +189,13 @@ class EntryTally(OptionalTally):
 
 
 @dataclass(frozen=True)
+class FixedCollisionTally(OptionalTally):
+    """The collisions with fixed particles."""
+
+    name: ClassVar[str] = "fixed_collisions"
+
+
+@dataclass(frozen=True)
 class PerAreaTally(OptionalTally):
     """What faces are given per area that centres of particles of each size can reach, where sizes differ."""
 
@@ -210,6 +217,7 @@ def tallies_of(scene: Scene) -> tuple[OptionalTally, ...]:
     made = {
         WallShearTally(): scene.drags_faces,
         EntryTally(): scene.is_open,
+        FixedCollisionTally(): scene.has_fixed,
         PerAreaTally(): scene.has_unequal_areas,
     }
     return tuple(tally for tally, present in made.items() if present)

@@ -49,6 +49,8 @@ class Tally:
     container at the start; heat_per_area (2d + interior walls,), likewise of wall_energy. Those of interior
     walls are 0, and those that an engine does not tally.
 
+    If particles are fixed, fixed_collisions: the collisions with these, which are among `collisions`, too.
+
     If they were asked for, otherwise None: stress_sum (d, d), the time integral of the stress tensor times
     the volume, of m v v and, at a collision, of r dp, with r the vector from the second particle to the
     first and dp the momentum that this gains; collisional_stress_sum (d, d), the latter alone; heat_sum
@@ -74,6 +76,7 @@ class Tally:
     virial_sum: float = field(metadata={"units": ACTION})
     pair_tests: int
     box_visits: int
+    fixed_collisions: int = field(default=0, metadata={"only": "fixed_collisions"})
     crossings: int = 0
     worst_contact: float = 0.0
     dissipated_energy: float = field(default=0.0, metadata={"units": ENERGY})

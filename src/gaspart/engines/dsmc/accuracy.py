@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 DENSEST = 0.4
 """Packing fraction up to which the Enskog model is known."""
-_PRESSING = "pressure", "force"  # of walls
 _STATIC = 3e-3
 """Bound on its error in Z, the collision rate and pressures of an even gas (figure `dsmc_convergence`)."""
 _NORMAL = {2: 2.0 / math.pi, 3: 0.5}
@@ -53,7 +52,7 @@ def boltzmann_error(asked: Asked) -> float:
     points."""
     conditions, scene = asked.conditions, asked.scene
     error = (conditions.memory if asked.transported else 0.0) + _layers(asked)
-    if asked.observable not in _PRESSING:
+    if asked.observable != "pressure":
         lost = _NORMAL[scene.dimension] * conditions.surfaces
         error += lost / (1.0 - lost) if lost < 1.0 else math.inf
     few = float((conditions.contact_of_few / conditions.contact).max()) - 1.0
@@ -76,7 +75,7 @@ def enskog_error(asked: Asked, cells: tuple[int, ...] | None = None) -> float:
         error += conditions.memory
     error += float((conditions.contact_of_few / conditions.contact).max()) - 1.0
     error += _AT_WALLS * float(conditions.filled.max()) * conditions.surfaces
-    if asked.observable in _PRESSING and cells is not None:
+    if asked.observable == "pressure" and cells is not None:
         virial = float(conditions.virial.max())
         periodic = asked.scene.container.periodic
         walled = [n for n, around in zip(cells, periodic, strict=True) if not around]

@@ -76,9 +76,10 @@ def step_tally(
     largest: tuple[float, float],
     asked: Iterable[TallyPart],
     areas: tuple[np.ndarray, np.ndarray] | None,
+    fixed: bool,
 ) -> StepTally:
     """A tally at zero, for so many faces; largest: see `largest_terms`; asked: the parts of optional
-    tallies; areas: the `inverse_areas` if they differ."""
+    tallies; areas: the `inverse_areas` if they differ; fixed: whether there are fixed particles."""
     tally = StepTally(
         counts=np.zeros(layout.PASSED + 1, dtype=np.int64),
         sums=np.zeros((len(layout.SUMS), 2)),
@@ -89,6 +90,8 @@ def step_tally(
         momentum=largest[0],
         energy=largest[1],
     )
+    if fixed:
+        tally = tally._replace(fixed=True)
     if areas is not None:
         inverse, size = areas
         per_area = np.zeros((threads, faces, 2, 2), dtype=np.int64)

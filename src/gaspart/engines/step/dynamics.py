@@ -67,9 +67,12 @@ class StepDynamics(SteppedDynamics):
         asked = tally_parts(tallies, self._particles, self._model, scene, engine.threads, units)
         self._parts = [*parts_for(scene, self._model.rules), *asked]
         areas = inverse_areas(scene, state) if scene.has_unequal_areas else None
-        self._tally = step_tally(2 * scene.dimension, engine.threads, self._largest, asked, areas)
+        self._tally = step_tally(
+            2 * scene.dimension, engine.threads, self._largest, asked, areas, scene.has_fixed
+        )
         if areas is not None:
             read = partial(self._per_area, float(areas[0].max()))
+            assert self._tally.per_area is not None
             self._parts.append(ThreadedPerAreaPart(self._tally.per_area, read))
 
     def _place(

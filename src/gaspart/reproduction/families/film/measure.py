@@ -69,7 +69,7 @@ def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
     first, last, number = settings["theory_widths"]
     widths = np.linspace(first, last, int(number))
     curve = [theory.white_bear_slit(bulk, width, 0.02)[1][0] for width in widths]
-    dataset = table("width", rows, dict).merge(
+    dataset = table("width", rows, dict, of=points).merge(
         _profile(slits, *functional), join="outer", compat="no_conflicts"
     )
     dataset = dataset.assign_coords(theory_width=widths).assign(curve=("theory_width", curve))
