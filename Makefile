@@ -1,4 +1,5 @@
 # make            set up, reproduce every figure, write results/report.html, print the verdicts
+# make first      set up, three figures of the sources: results/first.html, in some two minutes
 # make test       set up, run all tests (among them the whole workflow, small); OPTIONS=... are options of pytest
 # make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and the slow tests
 # make precise    all figures from longer runs: results/precise/report.html
@@ -19,7 +20,7 @@
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
-.PHONY: all setup test check-all precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
+.PHONY: all first setup test check-all precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
@@ -37,6 +38,12 @@ all: setup
 	$(SNAKEMAKE) --quiet rules
 	$(VERDICTS) results/tables/claims.csv
 	@echo "report: results/report.html"
+
+first: setup
+	@echo "three figures of the sources, some two minutes on two cores; make and make test take longer"
+	$(SNAKEMAKE) --quiet rules -- first
+	$(VERDICTS) results/tables/first.csv
+	@echo "report: results/first.html"
 
 setup: .venv/gaspart.stamp
 

@@ -3,6 +3,7 @@
 #   snakemake --cores all                                      everything
 #   snakemake --cores all results/figures/virial_discs.png     one figure (.png or .svg)
 #   snakemake --cores all results/figures/journal/virial_discs.pdf  the same for a column of a journal (.pdf or .png)
+#   snakemake --cores all first                                results/first.html, three figures of the sources
 #   snakemake --cores all journal                              results/figures/journal/*.pdf
 #   snakemake --cores all claims                               results/tables/claims.csv
 #   snakemake --cores all report                               results/report.html
@@ -49,8 +50,14 @@ onsuccess:
 localrules:
     all,
     animations,
+    first,
     journal,
     points,
+
+
+rule first:
+    input:
+        "<results>/first.html",
 
 
 rule animations:

@@ -82,6 +82,22 @@ def test_parts_of_a_variance_are_found_by_the_rows_of_a_table(monkeypatch):
     assert found.rest == 0.0 and found.most == pytest.approx(4.0 / IN_HAND)
 
 
+def test_rows_of_replicas_have_parts_too(monkeypatch):
+    scatter = np.array([[1.0, 2.0, 4.0], [1.0, 1.5, 2.5]])
+    data = table(
+        "gas", [Named("a"), Named("b")], lambda one: {"z": scatter["ab".index(one.name)]}, inner=("replica",)
+    )
+
+    def stated(figure, block, dataset):
+        a, b = dataset.z.values.var(axis=1, ddof=1) / 3.0
+        return [claim(1.0, 1e-6 * float(np.sqrt(a + b)))]
+
+    monkeypatch.setattr(budget, "claims_of", stated)
+    (found,) = allocation.demands("z", {}, data)
+    a, b = scatter.var(axis=1)
+    assert found.parts == pytest.approx({"gas/a": a / (a + b), "gas/b": b / (a + b)}) and found.rest == 0.0
+
+
 def test_a_multiple_is_one_of_replicas_then_of_the_length_at_the_same_interval():
     gas = {"collisions_per_particle": 4000, "equilibration": 200, "samples": 100, "replicas": 2}
     assert scaled("simulate", gas, 0.5) == {**gas, "collisions_per_particle": 2000.0, "samples": 50}

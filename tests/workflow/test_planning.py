@@ -1,5 +1,6 @@
 """Which rules run again after a change."""
 
+import re
 import resource
 import subprocess
 import sys
@@ -172,3 +173,12 @@ def test_one_figure_and_the_named_targets_can_be_requested(fresh):
 def test_the_full_reproduction_can_be_planned(fresh):
     plan = fresh.plan()
     assert plan["draw"] == plan["measure"] == plan["judge"]
+
+
+def test_the_first_figures_are_of_the_full_reproduction():
+    """They are planned from its points, so that `make` after `make first` repeats nothing."""
+    text = (ROOT / "workflow/rules/common.smk").read_text(encoding="utf-8")
+    first = re.search(r"FIRST = \[name for name in \(([^)]*)\)", text)
+    assert first
+    named = re.findall(r'"(\w+)"', first[1])
+    assert len(named) == 3 and set(named) <= set(read_yaml(ROOT / "config/config.yaml")["figures"])

@@ -55,6 +55,7 @@ else:
     POINTS = all_points(config)
 
 FIGURES = {name: functions(name, block)[0] for name, block in config["figures"].items()}  # family of each
+FIRST = [name for name in ("virial_discs", "speed_relaxation", "speed_distribution_discs") if name in FIGURES]
 OWN_CAPTIONS = {name: caption(block) for name, block in config["figures"].items() if "kind" in block}
 # Where figures, claims, tables, logs and the report of this run lie.
 RESULTS = f"results/{config['run']}" if config.get("run") else "results"

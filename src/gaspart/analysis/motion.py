@@ -119,7 +119,9 @@ def _accumulates(
     """Return True if a run has accumulated what is asked for, under a name of `SUMS`: of a gas that does not
     flow."""
     whole = lags is None and species is None and particles is None
-    return name in run.data and whole and run.about == FLOW and not run.flow_axes
+    if not (name in run.data and whole and run.about == FLOW):
+        return False
+    return not (run.scene.flow_axes if run.is_subset else run.flow_axes)  # some particles show no wind
 
 
 def _displacement(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:

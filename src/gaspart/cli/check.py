@@ -67,7 +67,7 @@ def _corner(text: str) -> str | tuple[float, ...]:
 
 
 def _check(given: argparse.Namespace) -> None:
-    healthy = [_is_healthy(given, str(file)) for file in run_files(given.file)]
+    healthy = [_is_healthy(given, file) for file in run_files(given.file)]
     if not all(healthy):
         raise CheckFailed
 

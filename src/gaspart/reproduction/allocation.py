@@ -78,21 +78,26 @@ def _rows(dataset: xr.Dataset) -> Iterator[tuple[dict[str, int], list[str]]]:
     """Find the rows of a measurement that state their points: place by dimension, points."""
     for name, column in dataset.variables.items():
         if str(name).endswith(MADE_OF):
-            for place in np.ndindex(column.shape):
-                if isinstance(text := column.values[place], str):  # else a gap of a table with two dimensions
+            for place, text in np.ndenumerate(column.values.astype(object)):
+                if isinstance(text, str):  # else a gap of a table with two dimensions
                     yield dict(zip(map(str, column.dims), place, strict=True)), text.splitlines()
 
 
 def _enlarged(dataset: xr.Dataset, place: Mapping[str, int]) -> xr.Dataset:
-    """Return the data with enlarged uncertainties in a row."""
+    """Return the data with enlarged uncertainties, and an enlarged scatter of replicas, in a row."""
     factor = np.ones([dataset.sizes[over] for over in place])
     factor[tuple(place.values())] = math.sqrt(_ENLARGED)
     scale = xr.DataArray(factor, dims=tuple(place))
-    changed = {
-        name: (column * scale).transpose(*column.dims)
-        for name, column in dataset.data_vars.items()
-        if str(name).endswith("_error") and set(place) <= set(column.dims)
-    }
+    changed = {}
+    for name, column in dataset.data_vars.items():
+        replicas = [dim for dim in column.dims if str(dim).endswith("replica")]
+        if not set(place) <= set(column.dims):
+            continue
+        if str(name).endswith("_error"):
+            changed[name] = (column * scale).transpose(*column.dims)
+        elif replicas and column.dtype.kind == "f":
+            mean = column.mean(replicas)
+            changed[name] = (mean + (column - mean) * scale).transpose(*column.dims)
     return dataset.assign(changed)
 
 
