@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from exact import closed, runs
 from exact.kinds import kinds
-from exact.known import known
+from exact.known import Short, known
 from exact.rules import undefined, unknown
 from exact.values import stored
 from scipy import stats
@@ -236,6 +236,8 @@ def _free(kind, lags):
 
 SPECIAL = {
     ("speeds", None): _speeds,
+    ("msd", "first 1"): lambda kind, result, value: (Short(kind).displacement(_lags(result)[1]), 0.0),
+    ("vacf", "first 1"): lambda kind, result, value: (Short(kind).correlation(_lags(result)[1]), 0.0),
     ("mutual_diffusion", "D"): lambda kind, result, value: _of_a_particle(kind),
     ("msd", "curve"): lambda kind, result, value: (_free(kind, _lags(result))[0], 0.0),
     ("vacf", "curve"): lambda kind, result, value: (_free(kind, _lags(result))[1], 0.0),

@@ -94,10 +94,10 @@ def flow_axes(run: Run) -> list[int]:
 def wind(run: Run) -> np.ndarray:
     """(d,) whether the gas moves along an axis without an end, although its momentum is not conserved there:
     the mean over the run is more than three times what it scatters by in equilibrium, sqrt(M k_B T). A wind
-    that is weaker adds at most 9 / (d N) to the temperature."""
+    that is weaker adds at most 9 / (d N) to the temperature. One particle has no scatter to compare with."""
     found = np.zeros(run.dimension, dtype=bool)
     masses = run.masses[run.moving]
-    for axis in np.flatnonzero(run.periodic & ~run.conserved & bool(len(masses))):
+    for axis in np.flatnonzero(run.periodic & ~run.conserved & (len(masses) > 1)):
         velocities = run.velocities[:, run.moving, axis]
         momentum = velocities @ masses
         square = (velocities**2 @ masses - momentum**2 / masses.sum()).mean() / len(masses)

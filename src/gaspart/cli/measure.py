@@ -36,6 +36,8 @@ _FIELD = "field"
 """The name by which a property in cells is asked for, which is not one observable."""
 _SEEDS = "seeds"
 """Attribute of an observable of a single run with the remark on its energy."""
+_DRIFT = "drift"
+"""Attribute of an observable of a single run with the remark that the run is not steady."""
 _ROWS = 12  # of a curve that are printed
 _TITLE = "# gaspart measure"
 _TABLE = FileKind("a table written by gaspart measure", begins_with(_TITLE.encode()))
@@ -123,7 +125,7 @@ def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:
 
 def _measure(given: argparse.Namespace) -> None:
     stated, names = _sorted(given)
-    files = [str(file) for name in stated for file in run_files(name)]
+    files = [file for name in stated for file in run_files(name)]
     write = _writer(given, names)
     asked = {key: getattr(given, key) for key in selections()}
     selection = {key: value for key, value in asked.items() if value is not None}
@@ -134,7 +136,7 @@ def _measure(given: argparse.Namespace) -> None:
             _print_curve(name, observable)
         else:
             _print_scalar(name, observable)
-        for note in (observable.attrs[key] for key in ("note", _SEEDS) if key in observable.attrs):
+        for note in (observable.attrs[key] for key in ("note", _SEEDS, _DRIFT) if key in observable.attrs):
             print_line(f"({note})")
         write(observable)
 
@@ -176,8 +178,17 @@ def _measured(
                     found = _measure_field(trajectory, times, selection | field)
                 else:
                     found = measure(trajectory, name, *times, **selection)
-                    found.attrs |= _of_seeds(trajectory, name)
+                    found.attrs |= _of_seeds(trajectory, name) | _of_drift(trajectory, name, times)
             yield name, found
+
+
+def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | None]) -> dict[str, str]:
+    """Return the remark that the measured part of a run is not steady, if so it is."""
+    from gaspart.analysis.drift import drift_of
+
+    with until_time(trajectory, times[1]) as part:
+        found = drift_of(part, times[0], "position" in OBSERVABLES[name].along)
+    return {_DRIFT: f"not steady: {found}"} if found else {}
 
 
 def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:
