@@ -86,8 +86,8 @@ def test_an_alias_names_its_observable(name):
 
 def test_an_accuracy_takes_aliases():
     assert gp.Accuracy("compressibility_factor", 1e-2).observable == "Z"
-    with pytest.raises(gp.SceneError, match="flux.*ends no run.*give a duration, and measure flux"):
-        gp.Accuracy("flux", 1e-2)
+    with pytest.raises(gp.SceneError, match="temperature.*ends no run.*give a duration, and measure temperature"):
+        gp.Accuracy("temperature", 1e-2)
 
 
 def test_a_plot_over_frames_has_the_time_as_its_axis(tmp_path):
