@@ -92,7 +92,9 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
         return Check("container", None, "periodic, so that nothing can leave it")
     lengths = frames.lengths if frames.lengths_by_frame is None else frames.lengths_by_frame[:, None]
     places, lengths = frames.positions[:, :, walls], lengths[..., walls]
-    out = float(np.maximum(-places, places - lengths).max()) / (2.0 * float(frames.radii.min()))
+    there = np.isfinite(places)
+    out = float(np.maximum(-places, places - lengths).max(where=there, initial=0.0))
+    out /= 2.0 * float(frames.radii.min())
     text = "all centres are inside" if out <= 0.0 else f"a centre is {out:.2g} diameters outside"
     if out > 0.0 and (np.abs(places) <= 0.5 * lengths).all():
         text += "; all are inside if 0 is the centre of the container: give --origin centre"
