@@ -102,7 +102,7 @@ def test_diffusion_of_a_random_walk_is_known():
         velocities=rng.standard_normal((400, 200, 3)),
         time=np.arange(400) * 0.1,
     )
-    found = diffusion(frames)
+    found, _ = diffusion(frames)
     value, error = found.value, found.error
     assert abs(value - 0.5 * sigma**2 / 0.1) < 4.0 * error
     assert error < 0.05 * value

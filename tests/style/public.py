@@ -40,7 +40,7 @@ def _names() -> Iterator[str]:
         for name in package.__all__:
             item = getattr(package, name)
             if inspect.isfunction(item) or inspect.isclass(item):
-                yield f"{item.__module__}.{name}"
+                yield f"{item.__module__}.{item.__name__}"  # an alias has the name of its function
             if inspect.isclass(item):
                 members = [key for key, member in vars(item).items() if _is_member(key, member)]
                 yield from (f"{item.__module__}.{name}.{key}" for key in members)

@@ -117,7 +117,7 @@ def _of_constants(tree: ast.Module) -> Iterator[tuple[str, int, str]]:
 def _of_variables(tree: ast.Module) -> Iterator[tuple[str, int, str]]:
     """Yield rule, line and text for variables and arguments whose names say nothing."""
     for node in ast.walk(tree):
-        name = node.id if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) else None
-        name = node.arg if isinstance(node, ast.arg) else name
-        if name in _VAGUE:
-            yield "vague variable", node.lineno, name
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id in _VAGUE:
+            yield "vague variable", node.lineno, node.id
+        elif isinstance(node, ast.arg) and node.arg in _VAGUE:
+            yield "vague variable", node.lineno, node.arg

@@ -95,7 +95,7 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     from gaspart.analysis.measuring import measure
     from gaspart.analysis.run import open_run
 
-    with open_run(data, start, sheared=True) as run:
+    with open_run(data, start, sheared=True, varying=True) as run:
         if OBSERVABLES[observable].of_impulses:
             return _on_walls(run, observable)
         time = float(run.time[-1] - run.time[0])

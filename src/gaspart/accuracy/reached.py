@@ -179,7 +179,7 @@ class Examiner:
         """The largest error over the required one, by the first frames of open trajectories; 0 for a run
         without a longest duration that is given up, since nothing happens that could be measured."""
         reached = self.examine(runs, until.accuracies, frames)
-        collisions = sum(float(data["collisions"][frames - 1]) for data in runs)
+        collisions = sum(_contacts(data.isel(frame=frames - 1)) for data in runs)
         if self._report:
             self._report(reached)
         if until.at_most is None and frames >= IDLE and _is_idle(reached, collisions):
@@ -238,6 +238,13 @@ class Examiner:
                     raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
                 self._known[key] = f"{error.key}: {error.rule}"
         return self._known[key]
+
+
+def _contacts(frame: xr.Dataset) -> float:
+    """Return the number of collisions until a frame; with open faces, also of particles that entered or hit
+    a face."""
+    names = ("collisions", "entries", "wall_hits") if frame["entries"].any() else ("collisions",)
+    return float(sum(frame[name].sum() for name in names))
 
 
 def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:

@@ -26,6 +26,7 @@ from gaspart.engines import Engine, reference_engine
 from gaspart.engines.dsmc.rates import rates
 from gaspart.errors import SceneError
 from gaspart.scene.faces import wall_of
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
@@ -216,6 +217,7 @@ def _require_defined(scene: Scene, observable: str, name: str) -> None:
     try:
         require_defined(observable, scene)
         require_steady_value(observable, scene)
+        refuse_open(scene, "changes the particles: no cost is predicted; a run --until ends by itself")
     except SceneError as error:
         raise SceneError("observable", name, f"{error.key}: {error.rule}") from None
 

@@ -105,11 +105,11 @@ def walled_axis(scene: Scene, selection: Selection) -> None:
 
 
 def walled_axis_of(scene: Scene, name: str | None) -> int:
-    """The number of the named axis, by default of the last one with walls. Raises SceneError for one without,
-    and for an unknown one."""
+    """The number of the named axis, by default of the last one with open faces, or else with walls. Raises
+    SceneError for one without, and for an unknown one."""
     has_axis(scene, {"axis": name})
     walled = [axis for axis, periodic in enumerate(scene.container.periodic) if not periodic]
-    axis = "xyz".index(name) if name is not None else max(walled, default=0)
+    axis = "xyz".index(name) if name is not None else max(scene.open_axes or walled, default=0)
     if axis not in walled:
         rule = "images pass a plane across a periodic axis; the velocity times the density is the flux"
         raise SceneError("axis", "xyz"[axis], rule)
@@ -300,8 +300,8 @@ def heat_flows(scene: Scene, selection: Selection) -> None:
 
 
 def velocity_flows(scene: Scene, selection: Selection) -> None:
-    """Faces that slide, sheared images, or a force along faces."""
-    if not _flows(scene):
+    """Faces that slide, sheared images, a force along faces, or open faces that differ."""
+    if not _flows(scene) and not _streams(scene):
         raise SceneError("faces", list(scene.faces), "nothing drives a flow: the mean velocity is 0")
 
 
@@ -311,8 +311,12 @@ def _flows(scene: Scene) -> bool:
     return bool(along or scene.shear_rate or scene.sliding_faces)
 
 
-def never_steady(scene: Scene, selection: Selection) -> None:
-    """No scene: what is between two walls does not flow on average."""
-    raise SceneError(
-        "container.boundary", scene.container.boundary, "the net flux between walls is 0 in a steady state"
-    )
+def streams(scene: Scene, selection: Selection) -> None:
+    """Open faces that differ, between which particles flow: otherwise nothing flows between walls."""
+    if not _streams(scene):
+        rule = "the net flux between walls is 0 in a steady state"
+        raise SceneError("container.boundary", scene.container.boundary, rule)
+
+
+def _streams(scene: Scene) -> bool:
+    return len({(face.activity, face.temperature) for _, face in scene.faces_of(Open)}) > 1

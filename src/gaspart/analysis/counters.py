@@ -88,7 +88,7 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
     >>> sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
     >>> sim.advance(duration=20.0)
-    >>> list(gp.analysis.wall_pressure(sim).face.values)
+    >>> gp.analysis.wall_pressure(sim).face.values.tolist()
     ['x low', 'x high', 'y low', 'y high']
     """
     with _open_walls(source, start, "pressure") as (run, ends):

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from gaspart.analysis import conditions as where
 from gaspart.analysis.declaration import Named, units_in
 from gaspart.errors import SceneError, unknown_word
+from gaspart.scene.faces import Open
 from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 
@@ -341,7 +342,8 @@ OBSERVABLES: dict[str, Named] = {
         conditions=(where.unsheared, where.walled_axis, where.open_across, where.has_species),
         theory="flows.flux",
         power=0.5,
-        drives=(where.never_steady,),
+        ends_runs=True,
+        drives=(where.streams,),
         relative_to="norm",
     ),
     "number": Named(
@@ -353,6 +355,7 @@ OBSERVABLES: dict[str, Named] = {
         whole="never",
         varying=True,
         conditions=(where.unsheared, where.opened),
+        ends_runs=True,
     ),
     "temperature": Named(
         title="temperature",
@@ -544,8 +547,9 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
 
 def require_steady_value(name: str, scene: Scene) -> None:
     """Raise SceneError, with the reason, for an observable that is 0 on average in the steady state of a
-    scene: no run makes it accurate relatively; and where particles come and go, of which none is planned."""
-    refuse_open(scene, "changes the particles: the length of such a run is not planned; give a duration")
+    scene: no run makes it accurate relatively. In a container that is open to a vacuum alone all are."""
+    if scene.is_open and not any(face.temperatures for _, face in scene.faces_of(Open)):
+        refuse_open(scene, "has no reservoir: all particles leave, and nothing is steady; give a duration")
     for condition in OBSERVABLES[known(name)].drives:
         condition(scene, {})
 

@@ -122,7 +122,7 @@ def add_trajectory(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("trajectory", metavar="FILE", help="trajectory of gaspart (.nc)")
 
 
-def run_files(name: str) -> list[Path]:
+def run_files(name: str) -> list[str]:
     """Return the files of the run that a command names: the file itself, or those of all replicas."""
     from gaspart.trajectory.partial import partial_path, replica_path
     from gaspart.trajectory.replicas import files_of
@@ -131,7 +131,7 @@ def run_files(name: str) -> list[Path]:
     alone = path.exists() or partial_path(path).exists() or not path.name
     first = path if alone else replica_path(path, 1)
     is_replicated = first != path and (first.exists() or partial_path(first).exists())
-    return files_of(path) if is_replicated else [path]
+    return [str(file) for file in files_of(path)] if is_replicated else [name]
 
 
 def config_command(command: str) -> Callable:

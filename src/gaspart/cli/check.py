@@ -67,7 +67,7 @@ def _corner(text: str) -> str | tuple[float, ...]:
 
 
 def _check(given: argparse.Namespace) -> None:
-    healthy = [_is_healthy(given, str(file)) for file in run_files(given.file)]
+    healthy = [_is_healthy(given, file) for file in run_files(given.file)]
     if not all(healthy):
         raise CheckFailed
 
@@ -80,18 +80,31 @@ def _is_healthy(given: argparse.Namespace, file: str) -> bool:
                 raise SceneError(key, getattr(given, key), "has a meaning for trajectories only")
         checks, scales = _written(file, given.tolerance)
     else:
-        from gaspart.inspection.checks import judge
-        from gaspart.inspection.readers import read_frames
-
-        stated = given.radius, given.lengths, given.boundary, given.time_step, given.origin
-        frames = read_frames(file, *stated)
-        kind = "discs" if frames.dimension == 2 else "spheres"
-        print_line(f"{file}: {frames.count} {kind} in {len(frames.positions)} frames")
-        checks, scales = judge(frames, given.tolerance), []
+        title, checks = _judged(file, given)
+        print_line(title)
+        scales = []
     for check in checks:
         print_line(check)
     print_lines(scales)
     return all(check.passed is not False for check in checks)
+
+
+def _judged(file: str, given: argparse.Namespace) -> tuple[str, list]:
+    """Check a trajectory. Returns a line that names its particles, and the checks."""
+    from gaspart.inspection.checks import judge
+    from gaspart.inspection.open_runs import judge_open
+    from gaspart.inspection.readers import is_open_run, read_frames
+
+    stated = {key: getattr(given, key) for key in ("radius", "lengths", "boundary", "time_step", "origin")}
+    if is_open_run(file):
+        for key, value in stated.items():
+            if value is not None:
+                raise SceneError(key, value, "has no meaning for a run of gaspart with open faces")
+        return judge_open(Path(file), given.tolerance)
+    frames = read_frames(file, **stated)
+    kind = "discs" if frames.dimension == 2 else "spheres"
+    title = f"{file}: {frames.count} {kind} in {len(frames.positions)} frames"
+    return title, judge(frames, given.tolerance)
 
 
 def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:

@@ -34,7 +34,7 @@ def _info(given: argparse.Namespace) -> None:
     from gaspart.trajectory.partial import PARTIAL, partial_path
     from gaspart.trajectory.recipe import read_recipe
 
-    path = run_files(given.trajectory)[0]
+    path = Path(run_files(given.trajectory)[0])
     stored_at = path if path.exists() or not partial_path(path).exists() else partial_path(path)
     recipe = read_recipe(stored_at)
     with opened(stored_at) as file:

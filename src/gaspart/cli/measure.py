@@ -125,7 +125,7 @@ def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:
 
 def _measure(given: argparse.Namespace) -> None:
     stated, names = _sorted(given)
-    files = [str(file) for name in stated for file in run_files(name)]
+    files = [file for name in stated for file in run_files(name)]
     write = _writer(given, names)
     asked = {key: getattr(given, key) for key in selections()}
     selection = {key: value for key, value in asked.items() if value is not None}

@@ -31,7 +31,7 @@ def judge_conserved(frames: Frames) -> list[Check]:
         checks.append(_steady("momentum", change, allowed, frames.isolated))
     else:
         checks.append(Check("momentum", None, "walls change it"))
-    return [*checks, _flights(frames)]
+    return [*checks, judge_flights(frames)]
 
 
 def _steady(name: str, changes: np.ndarray, allowed: float, isolated: bool) -> Check:
@@ -48,8 +48,8 @@ def _steady(name: str, changes: np.ndarray, allowed: float, isolated: bool) -> C
     return Check(name, bool(changes[worst] <= allowed), text)
 
 
-def _flights(frames: Frames) -> Check:
-    """The way of a particle whose velocity stays, against velocity times time."""
+def judge_flights(frames: Frames) -> Check:
+    """Compare the way of a particle whose velocity stays with velocity times time."""
     if reason := frames.no_identity:
         return Check("flights", None, reason)
     if frames.time is None or not (np.diff(frames.time) > 0.0).all():

@@ -204,8 +204,9 @@ def _container(contents: Contents, given: Given, d: int, path: str) -> tuple[np.
         assert stated is not None, "see `complete_frames`"
         sides = _per_frame(stated, _SAME)
     # a length of 0 means walls where it may mean the absence of periodic images, which GSD has always
-    open_axes = stated is not None and not contents.centred
-    walls = (stated == 0.0).all(axis=0) if open_axes else np.zeros(d, dtype=bool)
+    walls = np.zeros(d, dtype=bool)
+    if stated is not None and not contents.centred:
+        walls = (stated == 0.0).all(axis=0)
     if not np.isfinite(sides).all() or not (sides > 0.0).all():
         wrong = sides[np.argmin((sides > 0.0).all(axis=1) & np.isfinite(sides).all(axis=1))]
         rule = "must be positive: give --lengths X,Y[,Z]"

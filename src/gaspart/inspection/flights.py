@@ -25,7 +25,8 @@ class Flights(NamedTuple):
 def flights(frames: Frames) -> Flights:
     """Compare displacements with velocities of particles whose velocity is the same in two frames."""
     assert frames.velocities is not None and frames.time is not None, "requires velocities and times"
-    root = float(np.sqrt((frames.velocities**2).sum(axis=2).mean()))
+    squares = (frames.velocities**2).sum(axis=2)
+    root = float(np.sqrt(squares.sum() / max(np.count_nonzero(squares), 1)))
     late = root * max(2.0 * resolution(frames.time), _SINGLE * float(np.abs(frames.time).max()))
     wrong, number, where = 0.0, 0, 0
     sides = np.where(frames.periodic, np.inf, frames.lengths - 2.0 * frames.radii.min())

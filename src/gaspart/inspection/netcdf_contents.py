@@ -36,10 +36,10 @@ _SECONDS = ("second", "microsecond", "nanosecond", "picosecond", "femtosecond", 
 def read_netcdf(path: Path, given: Given) -> Contents:
     """All frames. Raises SceneError for contents that cannot be checked, and what the library raises for a
     file that cannot be read."""
-    by_gaspart = _is_own(path)
+    by_gaspart = is_own(path)
     if by_gaspart:
         check_frames(path)
-        refuse_open(read_recipe(path).scene, "changes the particles; the checks are of those that stay")
+        refuse_open(read_recipe(path).scene, "changes the particles: frames are those of particles that stay")
     with opened(path) if by_gaspart else _foreign(path) as file:
         _check_convention(file, path)
         contents = _contents(file, given, path)
@@ -48,8 +48,9 @@ def read_netcdf(path: Path, given: Given) -> Contents:
     return contents
 
 
-def _is_own(path: Path) -> bool:
-    """Whether gaspart wrote a file. Several attributes are tried, so that damage to one does not hide it."""
+def is_own(path: Path) -> bool:
+    """Return True if gaspart wrote a file. Several attributes are tried, so that damage to one does not
+    hide it."""
     with open_regular(path) as file:
         head = file.read(4096)
     return any(name.encode() in head for name in BOOKKEEPING)

@@ -17,9 +17,10 @@ from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Given, complete_frames
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.gsd_contents import read_gsd
-from gaspart.inspection.netcdf_contents import read_netcdf
+from gaspart.inspection.netcdf_contents import is_own, read_netcdf
 from gaspart.inspection.xyz_contents import read_xyz
 from gaspart.system import memory
+from gaspart.trajectory.recipe import read_recipe
 
 COPIES = 4
 """Memory that reading takes, over the size of a file: in double precision, as stored and in the container."""
@@ -50,6 +51,14 @@ def read_frames(
     path, given = Path(path), Given(radius, lengths, boundary, time_step, origin)
     with _reading(path):
         return complete_frames(_contents(path, given), given, str(path))
+
+
+def is_open_run(path: str | Path) -> bool:
+    """Return True for a trajectory of gaspart with open faces, which `open_runs.judge_open` checks."""
+    path = Path(path)
+    with _reading(path):
+        netcdf = _READERS.get(path.suffix.lower()) is read_netcdf
+        return netcdf and is_own(path) and read_recipe(path).scene.is_open
 
 
 def read_contents(path: Path, given: Given) -> Contents:

@@ -183,11 +183,32 @@ class Ramp(NamedTuple):
 
 class Open(NamedTuple):
     """Faces through which particles leave and enter. present (N,), 1 of particles that are inside, and 0 of
-    the others, which are at no place (NaN), at rest and in no box; entries (2d,), how many have entered
-    through each of the container's faces."""
+    the others, which are at no place (NaN), at rest and in no box; vacant (blocks,), the number of the others
+    in each block of numbers, see `obstacles.open_face`; entries (2d,), how many have entered through each of
+    the container's faces."""
 
     present: np.ndarray
+    vacant: np.ndarray
     entries: np.ndarray
+
+
+class Reservoirs(NamedTuple):
+    """Gases outside of open faces, whose particles try to enter.
+
+    key (2,), of the random numbers; rate: attempts per time at all faces; up_to (2d,): the fraction of the
+    attempts at a face and at those before it; width (2d,): (k_B T / m)^(1/2) of each gas. The next attempt:
+    number (1,); time (1,), on the clocks of the epoch; place (3,), room for where it happens. opened: the
+    `Open` of the faces.
+    """
+
+    key: np.ndarray
+    rate: float
+    up_to: np.ndarray
+    width: np.ndarray
+    number: np.ndarray
+    time: np.ndarray
+    place: np.ndarray
+    opened: Open
 
 
 class Faces(NamedTuple):
@@ -282,6 +303,7 @@ class Model(NamedTuple):
     walls: InteriorWalls | None
     oversized: Oversized | None
     shear: Shear | None
+    reservoirs: Reservoirs | None
 
 
 class Tally(NamedTuple):

@@ -241,7 +241,12 @@ def _show_positive_ends(panel: Axes, axis: Axis, number: int) -> None:
     if axis.get_scale() != "log" or not automatic:
         return
     bars = [one for one in panel.containers if isinstance(one, ErrorbarContainer) and one.lines[0]]
-    ends = [path.vertices[:, number] for one in bars for part in one.lines[2] for path in part.get_paths()]
+    ends = [
+        np.asarray(path.vertices)[:, number]
+        for one in bars
+        for part in one.lines[2]
+        for path in part.get_paths()
+    ]
     values = [np.asarray(one.lines[0].get_data()[number], dtype=float) for one in bars]
     end, value = (
         float(np.min(part, where=part > 0.0, initial=np.inf))

@@ -115,6 +115,20 @@ FEATURES: dict[str, Feature] = {
 }
 """Name -> feature, in the order in which they are refused."""
 
+_CLOSED = {
+    "the particles of a reservoir are smooth and elastic": (
+        "restitution", "roughness", "viscoelasticity", "contact_duration", "vibrations",
+    ),
+    "nothing acts on the gas of a reservoir": ("gravity", "thermostat"),
+    "a reservoir has particles of one size, which move": ("polydispersity", "fixed"),
+    "an interior wall could stand in the way of what enters": ("walls", "thermal_walls", "moving_wall"),
+    "beside open faces, the others are hard or thermal": (
+        "well", "sticky", "vibrating", "piston", "lees_edwards",
+    ),
+    "beside open faces, a thermal one is at rest": ("sliding",),
+}  # fmt: skip
+"""Features that exclude open faces, and why."""
+
 EXCLUDED: dict[tuple[str, str], str] = {
     ("gravity", "piston"): "the energy of a piston is known only without gravity",
     ("restitution", "piston"): "a piston needs elastic particles",
@@ -139,10 +153,7 @@ EXCLUDED: dict[tuple[str, str], str] = {
     ("fixed", "lees_edwards"): "the images of fixed particles would slide",
     ("restitution", "vibrations"): "energy would be lost twice",
     ("centres_to_walls", "roughness"): "rough particles touch walls with their surfaces",
-    **dict.fromkeys(
-        ((name, "open") for name in FEATURES if name not in ("open", "thermal", "centres_to_walls")),
-        "reservoirs are of smooth, elastic particles of one size, between faces that are hard or thermal",
-    ),
+    **{(name, "open"): why for why, names in _CLOSED.items() for name in names},
 }
 """Pairs of features that no scene may have, and why."""
 

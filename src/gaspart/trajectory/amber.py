@@ -80,12 +80,14 @@ def cell(scene: Scene, lengths: np.ndarray, piston: np.ndarray | None) -> dict[s
     """
     sides, origin = np.full(3, float(np.max(lengths))), np.zeros(3)
     sides[: len(lengths)] = lengths
-    for number, _ in scene.pistons if piston is not None else ():
+    found = {"cell_lengths": sides, "cell_angles": np.full(3, 90.0)}
+    if piston is None:
+        return found
+    for number, _ in scene.pistons:
         axis, high = divmod(number, 2)
         sides[axis] = piston[0] if high else sides[axis] - piston[0]
         origin[axis] = 0.0 if high else piston[0]
-    found = {"cell_lengths": sides, "cell_angles": np.full(3, 90.0)}
-    return found if piston is None else found | {_ORIGIN: origin}
+    return found | {_ORIGIN: origin}
 
 
 def face_names(dimension: int, walls: int = 0) -> list[str]:

@@ -118,6 +118,7 @@ def rules_for(
         walls=None,
         oversized=None,
         shear=None,
+        reservoirs=None,
     )
     radius = 0.0 if scene.centres_to_walls else state.radii.max(initial=0.0)
     inset = np.where(np.repeat(scene.container.periodic, 2), 0.0, radius + special.width).reshape(-1, 2)

@@ -105,15 +105,15 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
     merged, files = merged_with_default(file, root / _BASE)
     if merged.get("run") != name:
         raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
-    with chdir(root):
-        planned = check(merged, files)
-    points, prefix = _used(merged, planned), place.relative_to(root)
-    points = [replace(point, root=str(prefix / point.root)) for point in points]
+    prefix = place.relative_to(root)
     inside = [str(one.relative_to(root)) for one in files if one.is_relative_to(root)]
-    found = Finished(root, str(folder.relative_to(root)), merged, points, inside)
-    _check_places(found, file)
-    _check_complete(found, results)
-    _check_settings(found)
+    with chdir(root):  # from which scene files are read
+        points = _used(merged, check(merged, files))
+        points = [replace(point, root=str(prefix / point.root)) for point in points]
+        found = Finished(root, str(folder.relative_to(root)), merged, points, inside)
+        _check_places(found, file)
+        _check_complete(found, results)
+        _check_settings(found)
     return found
 
 
