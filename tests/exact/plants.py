@@ -13,7 +13,6 @@ _MOTION, _ORDER, _TRANSPORT = "analysis.motion", "analysis.bond_order", "analysi
 _LONE = "self.dimension * moving - int(self.conserved.sum())"
 _PAIRS = "counts[i] / (2.0 if i == j else 1.0)"
 _INSIDE = "self.run.positions[:, self.members][..., self.axes]"
-_FREE = "np.sqrt(masses.sum() / np.where(others > 0.0, others, 1.0))"
 
 PLANTS = [
     Plant(
@@ -46,10 +45,10 @@ PLANTS = [
         ("rough", "pressure"),
     ),
     Plant(
-        "control with a mean that is 2 % off",
+        "control with a mean that is not 0",
         "analysis.controls",
         "carried - run.scene.moving_count",
-        "carried - 0.98 * run.scene.moving_count",
+        "carried - 0.5 * run.scene.moving_count",
         ("slit", "pressure"),
     ),
     Plant(
@@ -142,7 +141,7 @@ PLANTS = [
         _MIXTURES,
         "mean_speed_factor(run.freedom)",
         "1.0",
-        ("three_periodic", "contact_values"),
+        ("two_periodic", "contact_values"),
     ),
     Plant(
         "contact at the diameter of the first",
@@ -159,10 +158,10 @@ PLANTS = [
         ("points_walls", "msd"),
     ),
     Plant(
-        "displacement per all samples",
+        "displacements per N - 1",
         "analysis.correlations",
-        "(pairs[edges[-1]] - pairs[edges[0]])",
-        "pairs[edges[-1]]",
+        "pairs = (frames - lag) * count",
+        "pairs = (frames - lag) * (count - 1)",
         ("spheres_short", "msd"),
     ),
     Plant(
@@ -194,13 +193,19 @@ PLANTS = [
         ("halves", "mutual_diffusion"),
     ),
     Plant(
-        "correlation summed over axes",
-        _MOTION,
-        "time, values / run.dimension, errors",
-        "time, values, errors",
+        "correlation per frame",
+        "analysis.correlations",
+        "/ flat.shape[1]",
+        "/ len(flat)",
         ("spheres_short", "vacf"),
     ),
-    Plant("drift's share of heavy bodies", _MOTION, _FREE, "np.sqrt(others / others)", ("wind", "vacf")),
+    Plant(
+        "drift left in",
+        _MOTION,
+        "np.where(about, centre, 0.0)[:, None]",
+        "np.where(about, 0.0 * centre, 0.0)[:, None]",
+        ("wind", "vacf"),
+    ),
     Plant(
         "motion about rest in a flow",
         _MOTION,
@@ -208,13 +213,7 @@ PLANTS = [
         "velocities = velocities / np.sqrt",
         ("masses_slit", "vacf"),
     ),
-    Plant(
-        "speeds without the drift's share",
-        _STRUCTURE,
-        "squares / np.where(free > 0.0, free, 1.0)",
-        "squares / 1.0",
-        ("wind", "speeds"),
-    ),
+    Plant("speeds per bin", _STRUCTURE, "/ n / grid.volume", "/ n", ("wind", "speeds")),
     Plant(
         "speeds by half a bin",
         _STRUCTURE,

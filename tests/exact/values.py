@@ -109,8 +109,8 @@ def pair_values(kind, case, values, errors):
             if not mate:
                 continue
             each = (2.0 if a == b else 1.0) * speed / one.count
-            if a == b and one.count == 1:
-                continue  # a body has no pair of its own
+            if (a == b and one.count == 1) or one.side != mate.side:
+                continue  # these never meet: their rate is NaN, as that of pairs without a collision
             rates[f"{a}-{b}"] = each * pairs, each * error
             sigma = one.radius + mate.radius
             virial, spread = virial + pairs * sigma, math.hypot(spread, error * sigma)

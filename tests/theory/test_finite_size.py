@@ -11,8 +11,6 @@ from gaspart import theory
 KNOWN = [
     (3, 108, 0.5113, 13.74, 0.03),
     (3, 108, 0.47, 10.562, 0.020),
-    (3, 64, 0.3, 3.965, 0.006),
-    (3, 500, 0.2, 2.4066, 0.002),
 ]
 """Z of other runs of the event-driven engine: dimension, number, packing fraction, Z and its error."""
 

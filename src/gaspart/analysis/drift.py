@@ -10,11 +10,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import xarray as xr
 
 from gaspart.analysis.estimate import Estimate, concise
 from gaspart.analysis.occupancy import particle_numbers
-from gaspart.analysis.run import Run, open_run
+from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean
 
 LEAST_FRAMES = 32
@@ -27,7 +26,7 @@ _CONSTANT = 1e-6
 """Relative scatter of what does not change but for rounding."""
 
 
-def drift_of(data: xr.Dataset, start: float | None = None, places: bool = False) -> str:
+def drift_of(data: Source, start: float | None = None, places: bool = False) -> str:
     """Describe what drifts in the measured part of an open trajectory; "" if nothing does.
 
     The number of particles is examined where faces are open, the kinetic energy of a particle, and, with
