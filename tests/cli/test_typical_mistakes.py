@@ -55,8 +55,8 @@ MISTAKES = {
         "must be a trajectory; run a scene first: gaspart run scene.yaml -o scene.nc",
     ),
     "accuracy of what ends no run": (
-        line(*RUN[:4], "--until", "flux=1e-2"),
-        "'flux': ends no run: those that do are Z, pressure",
+        line(*RUN[:4], "--until", "temperature=1e-2"),
+        "'temperature': ends no run: those that do are Z, pressure",
     ),
     "misspelt option": (line(*RUN, "--sede", "1"), "--sede: unknown option; did you mean --seed?"),
     "option of another command": (line(*RUN, "--eta", "1"), "--eta: unknown option"),
