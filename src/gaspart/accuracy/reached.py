@@ -243,7 +243,8 @@ class Examiner:
 def _contacts(frame: xr.Dataset) -> float:
     """Return the number of collisions until a frame; with open faces, also of particles that entered or hit
     a face."""
-    names = ("collisions", "entries", "wall_hits") if frame["entries"].any() else ("collisions",)
+    entered = "entries" in frame and bool(frame["entries"].any())  # not of every engine
+    names = ("collisions", "entries", "wall_hits") if entered else ("collisions",)
     return float(sum(frame[name].sum() for name in names))
 
 
