@@ -1,4 +1,5 @@
 # make            set up, reproduce every figure, write results/report.html, print the verdicts
+# make first      set up, three figures of the sources: results/first.html, in some two minutes
 # make test       set up, run all tests (among them the whole workflow, small); OPTIONS=... are options of pytest
 # make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and the slow tests
 # make precise    all figures from longer runs: results/precise/report.html
@@ -19,7 +20,7 @@
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
-.PHONY: all setup test check-all precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
+.PHONY: all first setup test check-all precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
@@ -37,6 +38,12 @@ all: setup
 	$(SNAKEMAKE) --quiet rules
 	$(VERDICTS) results/tables/claims.csv
 	@echo "report: results/report.html"
+
+first: setup
+	@echo "three figures of the sources, some two minutes on two cores; make and make test take longer"
+	$(SNAKEMAKE) --quiet rules -- first
+	$(VERDICTS) results/tables/first.csv
+	@echo "report: results/first.html"
 
 setup: .venv/gaspart.stamp
 
@@ -115,13 +122,22 @@ lint: setup
 	.venv/bin/python -m ruff format --check .
 	.venv/bin/python -m mypy
 	.venv/bin/lint-imports --no-cache
+	PYTHONPATH=tests .venv/bin/python -m style.baseline
 	.venv/bin/python -m snakefmt --check Snakefile workflow
 	.venv/bin/python -m snakemake --lint
 
 report: setup
 	$(SNAKEMAKE) report --quiet rules
 
-docs: setup
+# Tables of the tests for pages of the site: a few minutes each, made anew when the library or these tests have changed.
+MEASURED = $(shell find src/gaspart/analysis src/gaspart/engines src/gaspart/kernels src/gaspart/scene -name '*.py')
+results/docs/symmetries.csv: $(MEASURED) $(wildcard tests/battery/*.py) | setup
+	PYTHONPATH=tests .venv/bin/python -m battery.table
+
+results/docs/exact_values.csv: $(MEASURED) $(wildcard tests/exact/*) | setup
+	PYTHONPATH=tests .venv/bin/python -m exact.table
+
+docs: setup results/docs/symmetries.csv results/docs/exact_values.csv
 	.venv/bin/python docs/gallery.py results docs/gallery.png
 	.venv/bin/python docs/thumbnails.py results
 	.venv/bin/python -m sphinx --quiet --fail-on-warning --jobs auto docs results/docs/html

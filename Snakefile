@@ -3,6 +3,7 @@
 #   snakemake --cores all                                      everything
 #   snakemake --cores all results/figures/virial_discs.png     one figure (.png or .svg)
 #   snakemake --cores all results/figures/journal/virial_discs.pdf  the same for a column of a journal (.pdf or .png)
+#   snakemake --cores all first                                results/first.html, three figures of the sources
 #   snakemake --cores all journal                              results/figures/journal/*.pdf
 #   snakemake --cores all claims                               results/tables/claims.csv
 #   snakemake --cores all report                               results/report.html
@@ -30,24 +31,33 @@ include: "workflow/rules/animate.smk"
 
 
 # Snakemake wakes its scheduler once a second for every job that has ended (snakemake/snakemake#3744), to limit how
-# many start in a second: after a few hundred jobs that takes a core. On one machine no limit is needed.
+# many start in a second: after a few hundred jobs that takes a core. On one machine no limit is needed. There jobs are
+# copies of a process that has loaded their modules; Snakemake runs scripts by the command in sys.executable.
 onstart:
     if workflow.local_exec:
         workflow.scheduler.job_rate_limiter = None
+        sys.executable = job_server.start(sys.executable, SCRIPTS / "_client.py")
 
 
 # The verdicts, unless the run was of a part, such as one figure. `make` prints them itself: Snakemake has no hook for
 # a run that finds nothing to do.
 onsuccess:
-    if "MAKELEVEL" not in os.environ and any(job.rule.name == "claims" for job in workflow.dag.jobs):
-        print(summary(f"{RESULTS}/tables/claims.csv"))
+    tables = [job.output[0] for job in workflow.dag.jobs if job.rule.name == "claims"]
+    if "MAKELEVEL" not in os.environ and tables:
+        print(summary(tables[0]))
 
 
 localrules:
     all,
     animations,
+    first,
     journal,
     points,
+
+
+rule first:
+    input:
+        "<results>/first.html",
 
 
 rule animations:
@@ -57,7 +67,7 @@ rule animations:
 
 rule journal:
     input:
-        expand("<results>/figures/journal/{figure}.{kind}", figure=FIGURES, kind=["pdf", "png"]),
+        expand("<results>/figures/journal/{figure}.pdf", figure=FIGURES),
 
 
 rule points:
@@ -72,4 +82,3 @@ rule all:
         "<results>/tables/claims.csv",
         "<results>/report.html",
         rules.animations.input,
-        rules.journal.input,

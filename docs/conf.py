@@ -14,7 +14,15 @@ author = "The gaspart developers"
 copyright = "The gaspart developers, BSD 3-Clause licence"
 language = "en"
 
-extensions = ["sphinx.ext.autodoc", "sphinx.ext.viewcode", "myst_nb", "sphinx_copybutton", "pages", "mathml"]
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.viewcode",
+    "pages",
+    "numpydoc",
+    "myst_nb",
+    "sphinx_copybutton",
+    "mathml",
+]
 exclude_patterns = ["README.md", "paper.md"]  # pages.py fills the numbers of paper.md in
 default_role = "py:obj"  # `name` in a docstring is a link where there is one
 
@@ -26,6 +34,7 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_default_options = {"members": True}
 python_use_unqualified_type_names = True
+numpydoc_show_class_members = False  # autodoc lists them
 add_module_names = False
 toc_object_entries_show_parents = "hide"
 

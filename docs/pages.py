@@ -1,7 +1,7 @@
 """The pages of the site that follow from the code, written into docs/generated: a Sphinx extension.
 
-The public names, the commands, the gallery of scenes, the referees, the symmetries, and a page for each
-family of figures, with its captions and, if the workflow has run, its figures and claims.
+The public names, the commands, the gallery of scenes, the referees, the symmetries, the exact values, and a
+page for each family of figures, with its captions and, if the workflow has run, its figures and claims.
 """
 
 import argparse
@@ -12,6 +12,7 @@ import shutil
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 
+import exact_values
 import indexes
 import symmetries
 
@@ -173,6 +174,9 @@ runs, anew and with fixed seeds, and renews the table of this page, ``docs/refer
 repository repeats it every week. Each referee also judges a copy of the files with an error of 3 %, which it
 must find.
 
+Positions, velocities, energy, container, time and pairs are those that the recipes of :doc:`../tools` read,
+of a periodic gas, one between walls, discs, two species, one with open faces and one under a piston.
+
 *Distance* is between what gaspart and the referee say, with the largest one that is *allowed*: three
 standard errors (p-values as the Gaussian deviation of the same chance, after Bonferroni's correction
 where there are several), or a difference that single precision explains. *Planted* is the same distance
@@ -200,8 +204,8 @@ is one of 3 % in the measured pressure.
 
 """
 NOT_JUDGED = """\
-gaspart writes no XYZ files; LAMMPS data files of style *sphere* are read by MDAnalysis and OVITO, of
-which ASE accepts no such lines. freud is no referee of :math:`g(r)`, which gaspart computes by freud.
+XYZ files; LAMMPS data files of style *sphere* in ASE, which accepts no such lines. freud is no referee of
+:math:`g(r)`, which gaspart computes by freud.
 """
 
 
@@ -249,6 +253,7 @@ def write(folder):
         (folder / part).mkdir(parents=True, exist_ok=True)
     pages = {**api(), **command_line(), **gallery(folder), **figures(folder), **referees(), **paper()}
     pages["symmetries.rst"] = symmetries.page(heading, table)
+    pages["exact-values.rst"] = exact_values.page(heading, table)
     for path, text in pages.items():
         target = folder / path
         if not target.exists() or target.read_text(encoding="utf-8") != text:

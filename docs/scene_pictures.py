@@ -37,7 +37,13 @@ def film(run, colour, path):
     with gp.open_trajectory(run) as frames:
         every = max(1, frames.sizes["frame"] // FRAMES)
     made = gp.film(
-        run, run.with_suffix(".gif"), size=FILM_SIZE, colour=colour, every=every, frames_per_second=RATE
+        run,
+        run.with_suffix(".gif"),
+        size=FILM_SIZE,
+        colour=colour,
+        every=every,
+        frames_per_second=RATE,
+        clock=False,
     )
     with Image.open(made) as gif:
         first, *others = (frame.convert("RGB") for frame in ImageSequence.Iterator(gif))

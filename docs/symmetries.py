@@ -4,7 +4,7 @@ import csv
 from collections import defaultdict
 from pathlib import Path
 
-FILE = Path(__file__).parent / "symmetries.csv"
+FILE = Path(__file__).parents[1] / "results/docs/symmetries.csv"
 ABOUT = {
     "shifted": "All particles are moved by half of the container along its periodic axes.",
     "mirrored": "One axis is mirrored, with the faces, the gravity and the flow along it.",
@@ -23,19 +23,21 @@ A small run of each kind of scene is made with each engine that models it, and s
 mirrored, from a moving frame, in other units. Every observable must then be what its declaration says: the
 same, or with its names, places, signs and units changed. A second run, which *starts* from the state seen
 otherwise, must write the same file, as long as rounding has not grown (*all variables of a file*). The table
-is written by the tests (``PYTHONPATH=tests python -m battery.table``), which fail if an observable, an
-engine, a kind of face or a symmetry is missing, or if this page is out of date.
+is made by the tests (``make docs``, or ``PYTHONPATH=tests python -m battery.table``), which fail if an
+observable, an engine, a kind of face or a symmetry is missing.
 
 Numbers are those of runs in which a symmetry was tested, with the largest deviation: in rounding, relative
 to the largest value, or in standard uncertainties (σ) where samples are compared. A bar means that it is
 defined in none of the runs; the reasons are below. Frames are in single precision, with numbers of about
-seven digits. All runs, engines and reasons are in ``docs/symmetries.csv``.
+seven digits. All runs, engines and reasons are in ``results/docs/symmetries.csv``.
 
 """
 
 
 def rows():
-    """The rows of the table."""
+    """The rows of the table; none if it has not been made."""
+    if not FILE.exists():
+        return []
     with FILE.open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
 
@@ -55,7 +57,10 @@ def page(heading, table):
         cells = {symmetry: _cell(tested.get((name, symmetry))) for symmetry in ABOUT}
         lines.append({"observable": name, **cells})
     columns = {key: f"{{{key}}}" for key in ("observable", *ABOUT)}
-    text = heading("Symmetries of observables", "=") + INTRODUCTION + table(columns, lines)
+    text = heading("Symmetries of observables", "=") + INTRODUCTION
+    text += (
+        table(columns, lines) if lines else "This build of the site has no table: ``make docs`` makes it.\n\n"
+    )
     for symmetry, about in ABOUT.items():
         text += heading(symmetry.capitalize(), "-") + about + "\n\n" + _reasons(found, symmetry, table)
     return text

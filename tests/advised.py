@@ -196,7 +196,7 @@ def _kept(number, gas, observable, accuracy, made, folder):
     return result | {
         "engine": recipe.engine.name,
         "off": off,
-        "reached": bool(off <= accuracy),
+        "reached": bool(off <= 1.96 * accuracy),
         "cost": costs["ratio"],
     }
 
@@ -223,11 +223,11 @@ def _of_longer(observable, data):
 def _advice(gas, observable, accuracy):
     """The advised run, and its cost by speeds measured again over that of the cheapest candidate."""
     made = plan(gas, observable, accuracy, pilot_seconds=PILOT_SECONDS)
-    near = [one for one in made.options if one.half_width <= accuracy * 1.001]
+    near = [one for one in made.options if one.error <= accuracy * 1.001]
     near = [one for one in near if one.seconds < 4.0 * made.best.seconds] or [made.best]
     again = [_cost(gas, one.engine, observable, one.duration) if len(near) > 1 else 1.0 for one in near]
     ratio = again[near.index(made.best)] / min(again)
-    stated = {"stated": made.best.half_width, "promised": made.affordable}
+    stated = {"stated": made.best.error, "promised": made.affordable}
     longer = float(np.clip(MOST_SECONDS / made.best.seconds, 3.0, LONGER))
     costs = {"ratio": ratio, "predicted": made.best.duration, "replicas": made.replicas, "longer": longer}
     if observable == "temperature" and made.places[0] < made.places[1]:

@@ -90,7 +90,7 @@ def walled(draw, most=12):
     law = draw(st.sampled_from([None, None, gp.Restitution(0.9, 0.5), gp.Restitution(1.0, 1.0)]))
     species = [gp.Species(draw(st.integers(1, most)), draw(st.floats(0.1, 0.3)), temperature=1.0)]
     if law and draw(st.booleans()):
-        species.append(gp.Species(2, 0.3, 2.0, temperature=1.0))
+        species.append(gp.Species(2, 0.3, mass=2.0, temperature=1.0))
     return gp.Scene(
         gp.Container(lengths, boundary),
         species,
@@ -120,7 +120,7 @@ def surfaced(draw, most=12):
             if boundary[axis] == "wall" and kind != "hard":
                 faces[f"{'xyz'[axis]}_{side}"] = draw(kinds[kind])
     count, radius = st.integers(1, most // 2), st.floats(0.1, 0.4)
-    species = [gp.Species(draw(count), draw(radius), mass, temperature=1.0) for mass in (1.0, 2.0)]
+    species = [gp.Species(draw(count), draw(radius), mass=mass, temperature=1.0) for mass in (1.0, 2.0)]
     elastic = any(isinstance(face, gp.Sticky) for face in faces.values())  # stuck particles vibrate
     law = gp.Restitution(1.0 if elastic else draw(st.sampled_from([1.0, 0.9])), 0.5)
     discs = {"gravity": (0.0, -0.5), "restitution": law}
@@ -134,7 +134,7 @@ def metals(draw, most=12):
     lengths = draw(st.lists(st.floats(4.5, 9.0), min_size=2, max_size=2))
     boundary = ("wall", draw(st.sampled_from(["wall", "periodic"])))
     species = [
-        gp.Species(draw(st.integers(1, most // 2)), draw(st.floats(0.02, 0.3)), 0.5, temperature=1.0),
+        gp.Species(draw(st.integers(1, most // 2)), draw(st.floats(0.02, 0.3)), mass=0.5, temperature=1.0),
         gp.Species(draw(st.integers(1, most // 2)), 0.3, fixed=True, temperature=draw(st.floats(0.1, 3.0))),
         gp.Species(draw(st.integers(0, 2)), 0.2, fixed=True),
     ]
@@ -155,7 +155,7 @@ def uneven(draw, most=16):
     lengths = draw(st.lists(st.floats(5.0, 8.0), min_size=dimension, max_size=dimension))
     small = gp.Species(draw(st.integers(4, most)), draw(st.floats(0.001, 0.15)), temperature=1.0)
     size, mass = draw(st.floats(0.4, 1.2)), draw(st.sampled_from([0.5, 20.0]))
-    large = gp.Species(draw(st.integers(1, 3)), size, mass, temperature=1.0)
+    large = gp.Species(draw(st.integers(1, 3)), size, mass=mass, temperature=1.0)
     if dimension == 3:
         return gp.Scene(gp.Container(lengths, boundary), [small, large])
     if draw(st.booleans()):

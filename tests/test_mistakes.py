@@ -111,6 +111,8 @@ WORDS = {
     "file periodic": (lambda: of(TEXT, periodic=True), "unknown key; here it is boundary of the container"),
 }
 NAMES = {
+    "theory.Z": (gp.theory, "it is compressibility_factor(packing_fraction, dimension)"),
+    "theory.g": (gp.theory, "it is contact_value"),
     "sim.run": (SIM, "simulation.advance(duration) runs it; gaspart.run(scene, ...) writes"),
     "sim.positions": (SIM, "it is state.positions"),
     "sim.kinetic_energy": (SIM, "it is state.kinetic_energy"),

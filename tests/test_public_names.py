@@ -1,6 +1,7 @@
 """The names of `import gaspart`: loaded when first used."""
 
 import os
+import pkgutil
 import subprocess
 import sys
 from importlib import import_module
@@ -9,7 +10,8 @@ from pathlib import Path
 import pytest
 
 import gaspart as gp
-from gaspart.public import stated
+from gaspart.analysis.observables import ALIASES, OBSERVABLES, known
+from gaspart.public import entries, stated
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ["gaspart", "gaspart.analysis", "gaspart.keys", "gaspart.theory", "gaspart.reproduction.claims"]
@@ -29,9 +31,11 @@ def test_every_stub_belongs_to_a_package_that_loads_what_it_states():
     for package in map(import_module, PACKAGES):
         homes = stated(f"{package.__file__}i")
         assert package.__all__ == list(homes) and dir(package) == sorted(homes)
-        for name, home in homes.items():
-            within = import_module(home)
-            assert getattr(package, name) is getattr(within, name)
+        originals, aliases = entries(f"{package.__file__}i")
+        for name, home in originals.items():
+            assert getattr(package, name) is getattr(import_module(home), name)
+        for alias, name in aliases.items():
+            assert getattr(package, alias) is getattr(package, name)
         with pytest.raises(AttributeError, match=f"module '{package.__name__}' has no attribute 'Scenes'"):
             _ = package.Scenes
 
@@ -62,6 +66,28 @@ def test_theory_and_analysis_are_attributes():
     assert set(gp.analysis.__all__) <= set(dir(gp.analysis))
     assert all(callable(getattr(gp.analysis, name)) for name in gp.analysis.__all__)
     assert {"analysis", "theory"} <= set(dir(gp))
+
+
+def test_no_module_hides_an_observable():
+    for module in pkgutil.iter_modules(gp.analysis.__path__, "gaspart.analysis."):
+        import_module(module.name)
+    for name in (*OBSERVABLES, *ALIASES):
+        if name.isidentifier() and hasattr(gp.analysis, name):
+            function = OBSERVABLES[known(name)].function
+            expected = name if function == "profile" else function
+            assert getattr(gp.analysis, name).__name__ == expected
+    assert set(OBSERVABLES) <= set(gp.analysis.__all__)
+
+
+@pytest.mark.parametrize("name", ["compressibility_factor", "viscosity", "wall_pressure"])
+def test_an_alias_names_its_observable(name):
+    assert known(name) in OBSERVABLES
+
+
+def test_an_accuracy_takes_aliases():
+    assert gp.Accuracy("compressibility_factor", 1e-2).observable == "Z"
+    with pytest.raises(gp.SceneError, match="temperature.*ends no run.*give a duration, and measure"):
+        gp.Accuracy("temperature", 1e-2)
 
 
 def test_a_plot_over_frames_has_the_time_as_its_axis(tmp_path):

@@ -53,8 +53,8 @@ def test_the_targets_of_make_and_the_commands_exist():
     text = README.read_text(encoding="utf-8")
     rules = re.findall(r"^([\w-]+):", (README.parent / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
     assert set(re.findall(r"`make ([\w-]+)`", text)) <= set(rules)
-    assert set(re.findall(r"^make (\w+)", text, re.MULTILINE)) == {"test"}
-    named = text[text.index("The commands: ") : text.index("has an example in its")]
+    assert set(re.findall(r"^make (\w+)", text, re.MULTILINE)) == {"first", "test"}
+    named = text[text.index("Commands: ") : text.index("has an example in its")]
     assert set(commands()) <= set(re.findall(r"`(?:gaspart )?(\w+)`", named))
 
 

@@ -117,6 +117,21 @@ def test_the_command_that_reproduces_them_and_what_resumes_them(folder, monkeypa
         assert "path = 'run.nc': is already complete, in all of its replicas" in capsys.readouterr().err
 
 
+def test_commands_take_the_name_of_a_replicated_run(folder, monkeypatch, capsys, whole):
+    monkeypatch.chdir(folder)
+    assert main(["measure", "run.nc", "Z"]) == 0
+    of_name = capsys.readouterr().out
+    assert main(["measure", "run-1.nc", "run-2.nc", "Z"]) == 0
+    assert of_name == capsys.readouterr().out
+    assert main(["info", "run.nc"]) == 0
+    assert "run-1.nc: 32 hard spheres, replica 1 of 2" in capsys.readouterr().out
+    assert main(["check", "run.nc"]) in (0, 1)
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split(":")[0] for line in lines if "spheres in" in line] == ["run-1.nc", "run-2.nc"]
+    assert main(["export", "run.nc", "-o", "run.gsd"]) == 2
+    assert "'run.nc': is a run of several replicas; name one of them, as run-1.nc" in capsys.readouterr().err
+
+
 def test_a_missing_replica_is_named(tmp_path, whole):
     first, second = gp.replica_paths(tmp_path / "run.nc", 2)
     first.write_bytes(whole[0])

@@ -19,7 +19,9 @@ def main() -> int:
     closed = _open_closed_streams()
     exit_on_signals()
     from gaspart.cli import main as carry_out
+    from gaspart.cli import show_warnings_in_a_line
 
+    show_warnings_in_a_line()
     return carry_out(without_output=1 in closed)
 
 

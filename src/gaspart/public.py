@@ -1,8 +1,8 @@
 """The public names of packages, loaded when first used.
 
 A package states them once, in the stub `__init__.pyi` beside its `__init__.py`, a line for each:
-`from gaspart.scene.scene import Scene as Scene`. Type checkers and editors read the stub, and `attach` gives
-the package what it states.
+`from gaspart.scene.scene import Scene as Scene`, or `Z = compressibility_factor` for an alias. Type
+checkers and editors read the stub, and `attach` gives the package what it states.
 """
 
 from __future__ import annotations
@@ -17,10 +17,17 @@ if TYPE_CHECKING:  # it takes longer to import than all else here
 
 
 def stated(path: str) -> dict[str, str]:
-    """The module of each name that a stub re-exports."""
+    """Return the module of each name that a stub states, aliases included."""
+    homes, aliases = entries(path)
+    return homes | {alias: homes[name] for alias, name in aliases.items()}
+
+
+def entries(path: str) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the module of each name that a stub re-exports, and the name that each alias stands for."""
     with open(path, encoding="utf-8") as file:
         lines = [line.split() for line in file]
-    return {words[3]: words[1] for words in lines if len(words) == 6 and words[4] == "as"}
+    homes = {words[3]: words[1] for words in lines if len(words) == 6 and words[4] == "as"}
+    return homes, {words[0]: words[2] for words in lines if len(words) == 3 and words[1] == "="}
 
 
 def attach(
@@ -29,9 +36,12 @@ def attach(
     """`__getattr__`, `__dir__` and `__all__` of a package that has a stub. for_users: whether its
     functions and classes answer mistakes in their use (`gaspart.errors.guidance`)."""
     namespace = vars(sys.modules[package])
-    homes = stated(f"{namespace['__file__']}i")
+    homes, aliases = entries(f"{namespace['__file__']}i")
+    names = [*homes, *aliases]
 
     def load(name: str) -> Any:
+        if name in aliases:
+            return namespace.setdefault(name, load(aliases[name]))
         if name not in homes:
             from gaspart.errors.guidance import MissingName  # 2 ms
 
@@ -48,4 +58,4 @@ def attach(
             setattr(module, name, found)  # the same thing under both names, as pickle requires
         return namespace.setdefault(name, found)
 
-    return load, lambda: sorted(homes), list(homes)
+    return load, lambda: sorted(names), names

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import math
+import warnings
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +17,7 @@ from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys.values import count_of, number
 from gaspart.scene.face_checks import check_piston_end, piston_end
-from gaspart.scene.open_faces import is_open, refuse_open
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene, require_scene
 from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.given import check_apart, state_at_time_zero
@@ -88,7 +89,7 @@ class Simulation:
     def __repr__(self) -> str:
         kind = "discs" if self.scene.dimension == 2 else "spheres"
         reached = f"time {self.time:g}, {self._dynamics.tally.collisions} collisions"
-        count = self.state.count if is_open(self.scene) else self.scene.count
+        count = self.state.count if self.scene.is_open else self.scene.count
         return f"<Simulation of {count} {kind}, {self.engine.name} engine: {reached}>"
 
     def _repr_html_(self) -> str:
@@ -190,15 +191,30 @@ class Simulation:
                 raise SceneError("duration", None, "give duration, until or max_events")
             until = math.inf
         place = None if self._initial.piston is None else float(self._initial.piston[0])
-        if max_events is None:
-            check_piston_end(self.scene, "until", until, place)
-        until = min(until, piston_end(self.scene, place))
+        if self.scene.pistons:
+            if max_events is None:
+                check_piston_end(self.scene, "until", until, place)
+            until = min(until, piston_end(self.scene, place))
         before, self._advanced = self._advanced, True
+        if not before:
+            self._warn_at_rest()
         try:
             self._dynamics.advance(until, max_events, self._log, max_work)
         except SceneError:  # the engine refused the target
             self._advanced = before
             raise
+
+    def _warn_at_rest(self) -> None:
+        """Warn if all particles are at rest and the scene has nothing that sets them in motion."""
+        scene = self.scene
+        moved = any(face.moves for face in scene.faces.values()) or scene.is_open or scene.moving_wall
+        if self._moving or not scene.moving_count or scene.gravity or scene.thermostat or moved:
+            return
+        warnings.warn(
+            "gaspart: all particles are at rest, and nothing in the scene moves them: "
+            "give a species a temperature or a speed",
+            stacklevel=3,
+        )
 
     @property
     def time(self) -> float:

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import ctypes
 import errno
+import math
 import os
+import sys
 import threading
 from pathlib import Path
 
@@ -32,6 +34,16 @@ def memory() -> int | None:
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, ValueError, OSError):
         return None
+
+
+def largest_memory() -> float:
+    """Return the largest memory that this process has used, in bytes; nan where the system does not tell."""
+    try:
+        import resource
+    except ImportError:
+        return math.nan
+    unit = 1 if sys.platform == "darwin" else 1024
+    return float(unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 
 
 def user() -> str:

@@ -36,7 +36,9 @@ def read_yaml(path: str | Path) -> Any:
             text = file.read(MOST_BYTES + 1).decode("utf-8")
     except OSError as error:
         raise SceneError("file", str(path), f"cannot be read: {error.strerror}") from None
-    except (TypeError, ValueError) as error:  # no path; a NUL in it; not UTF-8
+    except UnicodeDecodeError:
+        raise SceneError("file", str(path), "cannot be read as YAML: it is not text in UTF-8") from None
+    except (TypeError, ValueError) as error:  # no path; a NUL in it
         raise SceneError("file", path, f"cannot be read: {error}") from None
     return parse_yaml(text, str(path))
 

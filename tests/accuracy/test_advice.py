@@ -7,9 +7,9 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.accuracy import speed, table
-from gaspart.accuracy.noise import QUANTILE
-from gaspart.accuracy.plan import tabulated
+from gaspart.accuracy import table
+from gaspart.accuracy.option import WORTH
+from gaspart.accuracy.plan import plan, tabulated
 from gaspart.accuracy.table import EQUILIBRATION
 from gaspart.analysis.measuring import measure
 from gaspart.cli.advise import _lines
@@ -32,8 +32,19 @@ def between_walls(boundary):
     return Scene(Container((12.0,) * 3, boundary), species=(Species(200, 0.5, temperature=1.0),))
 
 
-def advice(fraction, accuracy, observable="Z", budget=None, speed_of=speed.as_measured, **more):
-    return tabulated(gas(fraction, **more), observable, accuracy, budget, speed_of)
+def advice(fraction, accuracy, observable="Z", budget=None, **more):
+    return tabulated(gas(fraction, **more), observable, accuracy, budget)
+
+
+@pytest.fixture
+def fast_steps(monkeypatch):
+    """A machine on which time steps cost a thousandth."""
+    known = table.seconds
+
+    def seconds(dimension, fraction, engine, precision="float64", step=0.0):
+        return known(dimension, fraction, engine, precision, step) * (1e-3 if engine == "step" else 1.0)
+
+    monkeypatch.setattr(table, "seconds", seconds)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -44,8 +55,9 @@ def test_bias_and_noise_make_up_the_wanted_accuracy(dimension, observable, accur
     noise = table.noise(dimension, 0.2, observable)
     best = found.best
     contacts = 0.5 * found.replicas * found.collisions_per_particle * found.gas.count
-    assert best.bias + QUANTILE * math.sqrt(noise / contacts) <= accuracy * (1.0 + 1e-9)
-    assert all(best.seconds <= other.seconds for other in found.options[1:])
+    assert best.bias + math.sqrt(noise / contacts) <= accuracy * (1.0 + 1e-9)
+    slower = WORTH if best.engine.reference else 1.0
+    assert all(best.seconds <= slower * other.seconds for other in found.options[1:])
 
 
 def test_a_ten_thousandth_takes_the_exact_engine():
@@ -53,9 +65,8 @@ def test_a_ten_thousandth_takes_the_exact_engine():
     assert advice(0.3, 1e-4).best.engine.name == "event"
 
 
-def test_a_fast_time_stepped_engine_is_taken():
-    fast = lambda dimension, engine, precision, count: 1e-3 if engine == "step" else 1.0  # noqa: E731
-    found = advice(0.3, 1e-2, speed_of=fast)
+def test_a_fast_time_stepped_engine_is_taken(fast_steps):
+    found = advice(0.3, 1e-2)
     assert found.best.engine.name == "step" and found.best.bias < 1e-2
     assert found.options[1:][0].engine.name == "event"
 
@@ -73,7 +84,7 @@ def test_dilute_spheres_take_the_model_that_is_accurate_enough():
     assert advice(0.003, 0.03, "D", count=4000).best.engine.name == "dsmc"
     steps = [
         advice(0.003, accuracy, observable, count=4000).best.engine.time_step
-        for observable, accuracy in (("collision_rate", 0.03), ("D", 0.05), ("D", 0.015))
+        for observable, accuracy in (("collision_rate", 0.03), ("D", 0.04), ("D", 0.015))
     ]
     own = DSMC().resolved(gas(0.003, count=4000)).time_step
     assert steps[0] == 4.0 * own and steps[0] > steps[1] > steps[2]  # they change D, not the rate
@@ -108,7 +119,7 @@ def test_dilute_discs_take_the_model_that_is_accurate_enough():
 def test_an_advised_run_of_dsmc_is_as_accurate_as_promised(tmp_path, observable, fraction, dimension):
     scene = gas(fraction, count=2000, dimension=dimension)
     scene = replace(scene, species=(replace(scene.species[0], exact_temperature=True),))
-    found = tabulated(scene, observable, 0.02, None, speed.as_measured)
+    found = tabulated(scene, observable, 0.02)
     recipe = found.recipe
     assert recipe.engine.name == "dsmc"
     path = gp.run(scene, recipe.engine, 1, recipe.duration, recipe.sample_interval, tmp_path / "run.nc")
@@ -116,24 +127,39 @@ def test_an_advised_run_of_dsmc_is_as_accurate_as_promised(tmp_path, observable,
     assert float(measured.estimate) == pytest.approx(float(measured.theory), rel=0.02)
 
 
+@pytest.mark.parametrize(("ratio", "name"), [(1.4, "event"), (1.6, "dsmc enskog")])
+def test_the_exact_engine_is_taken_unless_another_is_much_cheaper(monkeypatch, ratio, name):
+    """Of gases of few cells the Enskog model is as fast as the exact engine, or a little faster."""
+    costs = {"event": ratio, "dsmc enskog": 1.0}
+    monkeypatch.setattr(table, "seconds", lambda d, f, engine, *rest: costs.get(engine, math.inf))
+    assert advice(0.003, 0.03, count=4000).best.engine.timed_as == name
+
+
+def test_a_look_up_runs_and_compiles_nothing(monkeypatch):
+    def refuse(*arguments, **options):
+        raise AssertionError("a simulation was made")
+
+    monkeypatch.setattr("gaspart.simulation.Simulation.__init__", refuse)
+    monkeypatch.setattr("gaspart.kernels.compile.loading.load_numba", refuse)
+    made = plan(gas(0.2), "D", 1e-2)
+    assert any(line.startswith("command") for line in _lines(made, "gas.yaml"))
+
+
 def test_a_budget_that_does_not_suffice_gives_the_best_within_it():
     wanted = advice(0.2, 1e-4)
     short = advice(0.2, 1e-4, budget=0.25 * wanted.best.seconds)
     assert not short.affordable and wanted.affordable
     assert short.best.seconds <= 0.2501 * wanted.best.seconds
-    assert 1e-4 < short.best.half_width < 3e-4
+    assert 1e-4 < short.best.error < 3e-4
 
 
-def test_time_steps_scale_with_the_scene():
-    fast = lambda dimension, engine, precision, count: 1e-3 if engine == "step" else 1.0  # noqa: E731
-    slow = tabulated(gas(0.3), "Z", 1e-2, None, fast)
+def test_time_steps_scale_with_the_scene(fast_steps):
+    slow = tabulated(gas(0.3), "Z", 1e-2)
     hot = Scene(
         Container(tuple(2.0 * length for length in gas(0.3).container.lengths), boundary="periodic"),
         species=(Species(1000, 1.0, temperature=16.0, arrangement="lattice"),),
     )
-    assert tabulated(hot, "Z", 1e-2, None, fast).best.engine.time_step == pytest.approx(
-        0.5 * slow.best.engine.time_step
-    )
+    assert tabulated(hot, "Z", 1e-2).best.engine.time_step == pytest.approx(0.5 * slow.best.engine.time_step)
 
 
 def test_equilibration_and_finite_size_are_reported():
@@ -146,7 +172,7 @@ def test_equilibration_and_finite_size_are_reported():
 def test_drawn_velocities_add_a_scatter_that_is_stated(exact, scatter):
     scene = gas(0.2)
     particles = replace(scene.species[0], exact_temperature=exact)
-    found = tabulated(replace(scene, species=(particles,)), "D", 1e-2, None, speed.as_measured)
+    found = tabulated(replace(scene, species=(particles,)), "D", 1e-2)
     assert found.scatter.value == pytest.approx(scatter)
     assert any("exact_temperature: true" in line for line in _lines(found, "gas.yaml")) != exact
 
@@ -171,4 +197,4 @@ def test_drawn_velocities_add_a_scatter_that_is_stated(exact, scatter):
 )
 def test_unmeasured_cases_are_refused(scene, observable, accuracy, key):
     with pytest.raises(SceneError, match=key):
-        tabulated(scene, observable, accuracy, None, speed.as_measured)
+        tabulated(scene, observable, accuracy)

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 import gaspart as gp
-from gaspart.accuracy import pilot, plan, speed, table
+from gaspart.accuracy import pilot, plan, table
 from gaspart.accuracy.candidates import candidates
 from gaspart.accuracy.conditions import even_conditions
 from gaspart.accuracy.price import price_of
@@ -55,9 +55,7 @@ def fourth(tmp_path, monkeypatch):
 
 
 def test_it_is_advised_by_the_table():
-    rough, fine = (
-        plan.tabulated(GAS, "Z", accuracy, speed_of=speed.as_measured) for accuracy in (0.01, 1e-4)
-    )
+    rough, fine = (plan.tabulated(GAS, "Z", accuracy) for accuracy in (0.01, 1e-4))
     assert isinstance(rough.best.engine, Fourth) and rough.best.bias == 1e-3
     assert isinstance(fine.best.engine, EventDriven) and fine.best.engine.reference
     assert fine.refused["fourth"] == "no setting is known to be as accurate at this density"

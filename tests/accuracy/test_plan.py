@@ -20,7 +20,7 @@ from gaspart.accuracy.target import Target
 from gaspart.accuracy.trials import Trials, raised_bias
 from gaspart.analysis.measuring import measure
 from gaspart.cli import main
-from gaspart.cli.advise import _lines
+from gaspart.cli.advise import _lines, _shortfall
 from gaspart.engines import EventDriven
 from gaspart.engines.asked import Candidate
 from gaspart.engines.dsmc.defaults import CELL_LOSS
@@ -46,13 +46,13 @@ def own_cache(tmp_path, monkeypatch):
 
 def test_the_advised_run_reaches_the_accuracy(tmp_path):
     made = plan.piloted(BOX, "pressure", 0.05, pilot_seconds=0.4)
-    assert made.affordable and made.best.half_width <= 0.05 * (1.0 + 1e-9)
+    assert made.affordable and made.best.error <= 0.05 * (1.0 + 1e-9)
     path = gp.run(
         BOX, made.recipe.engine, 3, sample_interval=made.recipe.sample_interval,
         until=made.recipe.until.accuracies, at_most=made.recipe.until.at_most, path=tmp_path / "run.nc",
     )  # fmt: skip
     (reached,) = gp.reached_accuracy(path)
-    assert reached.met and 1.96 * reached.accuracy <= 0.05
+    assert reached.met and reached.accuracy <= 0.05
     assert plan.piloted(BOX, "pressure", 0.05, pilot_seconds=0.4).pilots[0].seconds == 0.0  # kept from before
 
 
@@ -69,7 +69,7 @@ def test_lags_are_those_of_correlations(tmp_path, observable):
     found = measure(path, observable)
     assert found["lag"][-1] == pytest.approx(coarse.correlations.lags * coarse.correlations.interval)
     error = float((found.error**2).mean() / (found.estimate**2).mean()) ** 0.5
-    assert 1.96 * error <= 0.05
+    assert error <= 0.05
 
 
 @pytest.mark.parametrize("observable", ["D", "mutual_diffusion"])
@@ -234,23 +234,43 @@ def test_pilots_that_differ_raise_the_bound():
 
 
 def test_cost_follows_from_noise_and_bias():
-    """Of an accuracy a and a bias b: noise / ((a - b) / 1.96)^2, and its equilibration."""
+    """Of an accuracy a and a bias b: noise / (a - b)^2, and its equilibration."""
 
     def option(bias, least=0.0, most=math.inf):
         noise = known(1.0, 0.1, 9.0, freedom=math.inf)
         return Option(Candidate(EventDriven()), bias, noise, 2.0, 0.03, least, most)
 
     plain = option(0.01)
-    measured = 0.09 * (1.96 / 0.02) ** 2
+    measured = 0.09 / 0.02**2
     assert plain.duration == pytest.approx(measured / 0.75)
     assert plain.seconds == pytest.approx(2.0 * plain.duration)
     assert plain.cost(0.03) == pytest.approx(plain.seconds)
     assert plain.cost(0.02) == pytest.approx(4.0 * plain.seconds)
     assert option(0.05).seconds == math.inf
-    assert option(0.01, most=plain.duration / 4.0).half_width == pytest.approx(0.01 + 2.0 * 0.02)
-    assert option(0.01, least=4.0 * plain.duration).half_width == pytest.approx(0.01 + 0.5 * 0.02)
+    assert option(0.01, most=plain.duration / 4.0).error == pytest.approx(0.01 + 2.0 * 0.02)
+    assert option(0.01, least=4.0 * plain.duration).error == pytest.approx(0.01 + 0.5 * 0.02)
     settled = replace(plain, settling=measured)
     assert settled.duration == pytest.approx(2.0 * measured)  # longer than a quarter of the run
+
+
+def test_what_one_run_cannot_reach_is_shared_by_replicas():
+    """Of a run the frames that are correlated are limited, here by the collisions of light particles."""
+    kinds = [gp.Species(20, 0.5, mass=mass, temperature=1.0, exact_temperature=True) for mass in (1.0, 100.0)]
+    mixture = gp.Scene(gp.Container((7.0, 7.0, 7.0), "periodic"), kinds)
+    made = plan.piloted(mixture, "D", 0.004, pilot_seconds=0.5)
+    assert made.affordable and made.best.duration > made.target.span[1] and made.replicas > 1
+    assert made.duration <= made.target.span[1] * (1.0 + 1e-9)
+    lines = _lines(made, "gas.yaml")
+    assert any(f"--replicas {made.replicas}" in line for line in lines)
+    assert not any("budget" in line for line in lines)
+
+
+def test_a_message_names_a_budget_only_where_one_was_given():
+    noise = known(1.0, 0.1, 9.0, freedom=math.inf)
+    option = Option(Candidate(EventDriven()), 0.0, noise, 2.0, 0.01, 0.0, 12.0)
+    short = plan.Plan(Target(DILUTE, "D"), 0.01, (option,), {}, 1.0)
+    assert short.runs == 100 and "the mean of 100 runs with other seeds has it" in _shortfall(short)
+    assert "the budget does not suffice for 0.01" in _shortfall(replace(short, budget=24.0))
 
 
 def test_what_is_stored_falls_faster_than_noise():
@@ -296,7 +316,7 @@ def test_the_command_line_prints_the_command(tmp_path, monkeypatch, capsys):
     words = ["advise", "box.yaml", "--observable", "pressure", "--accuracy", "0.1", "--pilot", "0.4"]
     assert main(words) == 0
     output = capsys.readouterr().out
-    for part in ("engine  ", "command  ", "predicted cost ", "95 % half-width ", "pilot  ", "why not  "):
+    for part in ("engine  ", "command  ", "predicted cost ", "standard error ", "pilot  ", "why not  "):
         assert part in output
     (command,) = [line for line in output.splitlines() if line.startswith("command")]
     assert main(command.split()[2:]) == 0

@@ -1,5 +1,6 @@
 """The scales of a scene, and the duration and interval that follow from them. Nothing is run here."""
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -9,7 +10,9 @@ import gaspart as gp
 from gaspart.accuracy.scales import scales
 from gaspart.cli import main
 
-SI = gp.Scene(gp.Container((1e-8,) * 3, "periodic"), gp.Species(100, 1.8e-10, 6.6e-26, temperature=300.0))
+SI = gp.Scene(
+    gp.Container((1e-8,) * 3, "periodic"), gp.Species(100, 1.8e-10, mass=6.6e-26, temperature=300.0)
+)
 AT_REST = gp.Scene(gp.Container((9.0, 16.0)), gp.Species(4, 0.5))
 
 
@@ -89,3 +92,18 @@ def test_a_run_is_suggested_in_which_a_piston_leaves_room():
     pushed = scales(gp.Scene(container, species, faces={"x_low": gp.Piston(speed=1.5)}))
     assert 20.0 < pushed.duration < 24.0 < scales(gp.Scene(container, species)).duration
     assert 1.0 < pushed.interval < 3.0
+
+
+def test_a_free_molecular_gas_between_walls_has_the_time_of_its_crossing():
+    """Where particles meet walls a thousand times as often as one another, collisions set no time."""
+    species = [gp.Species(300, 0.001, temperature=4.0)]
+    faces = {"x_low": gp.Open(1e-8, 4.0)}
+    container = gp.Container((12.0, 6.0, 6.0), ("wall", "periodic", "periodic"))
+    found = scales(gp.Scene(container, species, faces=faces, centres_to_walls=True))
+    assert found.free_molecular and found.collision_time > 1000.0 * found.crossing_time
+    assert found.crossing_time == found.interval == 3.0 and found.duration == 600.0
+    rate = 1e-8 / (4e-9 / 3.0 * math.pi) * 36.0 * math.sqrt(4.0 / (2.0 * math.pi))
+    assert found.attempts == pytest.approx(rate)
+    assert f"reservoirs: {rate:.3g} particles try to enter per time" in found.lines
+    around = scales(gp.Scene(replace(container, boundary="periodic"), species))
+    assert not around.free_molecular and around.duration > 100.0 * found.duration

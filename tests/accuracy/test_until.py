@@ -311,7 +311,7 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
         ),
         (
             {"scene": gas(3, 8, 0.1, fixed=True)},
-            "until = 'Z': species.fixed: the virial of fixed particles is not a pressure",
+            "until = 'Z': species.fixed: carry a part of the pressure",
         ),
         (
             {"scene": FROM_REST, "until": gp.Accuracy("collision_rate", 0.1), "sample_interval": None},

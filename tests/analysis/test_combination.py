@@ -1,5 +1,7 @@
 """Observables of several runs: their mean, with the scatter of the runs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scenes import gas
@@ -48,6 +50,18 @@ def test_curves_have_their_places_and_may_be_of_simulations_and_open_files(paths
     assert gp.analysis.replicas("collision_rate", simulations).attrs["freedom"] == 1
 
 
+def test_speeds_of_runs_of_other_energies_are_in_joint_bins(tmp_path):
+    scene = gas(3, 32, 0.1)
+    drawn = replace(scene, species=[replace(scene.species[0], exact_temperature=False)])
+    files = [gp.run(drawn, gp.EventDriven(), n, 10.0, 0.25, tmp_path / f"{n}.nc") for n in range(3)]
+    found = gp.analysis.replicas("speeds", files)
+    ends = [gp.measure(file, "speeds")["speed"].values[-1] for file in files]
+    assert len(set(ends)) == 3 and found["speed"].values[-1] == max(ends)
+    width = float(found["speed"][1] - found["speed"][0])
+    assert float(found.estimate.sum()) * width == pytest.approx(1.0, abs=1e-3)
+    assert found.theory is not None
+
+
 def test_what_are_no_replicas_is_refused(paths, tmp_path):
     def refused(rule, *sources, name="Z"):
         with pytest.raises(gp.SceneError, match=rule):
@@ -69,7 +83,8 @@ def test_what_are_no_replicas_is_refused(paths, tmp_path):
     events.advance(duration=5.0)
     refused("run 2: engine.name = 'step': is 'event' in run 1", events, steps)
     shorter = gp.run(GAS, gp.EventDriven(), 99, 15.0, 0.25, tmp_path / "shorter.nc")
-    refused("have their values at different places", paths[0], shorter, name="msd")
+    rule = r"shorter\.nc: lag = '\d+ values from .*': \d+ values from .* in .*0\.nc: all runs need the same"
+    refused(rule, paths[0], shorter, name="msd")
     refused("unknown observable", *paths[:2], name="ZZ")
     refused("must be trajectories, their paths or simulations", paths[0], 3)
 

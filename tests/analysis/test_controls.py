@@ -140,3 +140,20 @@ def test_a_run_until_a_pressure_is_accurate_keeps_what_it_needs(tmp_path):
     assert [one.to_text() for one in read_recipe(path).tallies] == ["z:40"]
     (reached,) = gp.reached_accuracy(path)
     assert reached.met and reached.freedom >= 15.0
+
+
+def test_the_pressure_of_two_discs_has_no_controls_and_an_honest_error(tmp_path):
+    """With controls 52 of 60 values were within two errors of their mean."""
+    kind = gp.Species(2, 0.5, temperature=1.0, exact_temperature=True)
+    scene = gp.Scene(gp.Container((2.6, 2.9)), [kind])
+    values, errors = [], []
+    for seed in range(30):
+        path = gp.run(
+            scene, gp.EventDriven("direct"), seed, 60.0, 0.25, tmp_path / f"{seed}.nc", impulses="y:40"
+        )
+        found = gp.measure(path, "pressure").sel(face="y low")
+        assert "known mean" not in str(found.attrs["estimator"])
+        values.append(float(found.estimate))
+        errors.append(float(found.error))
+    ratio = np.std(values, ddof=1) / np.sqrt(np.mean(np.square(errors)))
+    assert 0.7 < ratio < 1.35  # of 29 degrees of freedom, and 15 of each error

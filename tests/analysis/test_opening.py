@@ -62,6 +62,16 @@ def test_nothing_passes_a_closed_box_on_average():
     assert found["component"].values.tolist() == ["z"]
 
 
+def test_a_piston_that_compresses_moves_particles_through_a_plane_at_rest(tmp_path):
+    """At speed u, those that were beyond the plane: no steady state, and no theory of one."""
+    kind = gp.Species(1000, 0.05, temperature=0.05)
+    scene = gp.Scene(gp.Container((6.0, 6.0, 6.0)), [kind], faces={"z_high": gp.Piston(speed=0.1)})
+    path = gp.run(scene, gp.EventDriven(), 1, 20.0, 0.25, tmp_path / "run.nc")
+    found = measure(path, "flux", axis="z")
+    assert found.theory is None
+    assert float(found.estimate[0]) < -3.0 * float(found.error[0])
+
+
 def test_the_area_that_walls_leave():
     assert opening(chamber(), 0, 20.0, 0.25) == pytest.approx(2.0 - 0.5)
     assert opening(chamber(), 0, 10.0, 0.25) is None

@@ -48,7 +48,7 @@ def test_g_of_a_run_has_less_error_with_impulses(run):
 
 def parts_of(run, bins):
     """(2, 16, bins) of the last three quarters of a run, and g(r) by counts in the same stretches."""
-    from gaspart.analysis.order import radial_distribution
+    from gaspart.analysis.bond_order import radial_distribution
 
     stretches = np.array_split(np.arange(len(run.time)), STRETCHES)
     g = [
@@ -91,6 +91,17 @@ def test_particles_that_hardly_meet_have_the_g_of_an_ideal_gas(tmp_path):
         found, other = A.rdf(data), A.rdf(counted(data), bins=20, furthest=2.0)
     assert ((found.estimate - 1.0) / found.error)[5:].values == pytest.approx(np.zeros(15), abs=4.0)
     assert float((other.error / found.error)[5:].median()) > 2.0
+
+
+def test_particles_that_never_meet_have_the_g_of_counts(tmp_path):
+    points = gp.Scene(SCENE.container, [gp.Species(40, 1e-4, temperature=1.0)])
+    path = gp.run(points, gp.EventDriven(), 2, 20.0, 0.5, tmp_path / "run.nc", pair_impulses="2:20")
+    with open_trajectory(path) as data:
+        assert data["collisions"][-1] == 0
+        found, other = A.rdf(data), A.rdf(counted(data), bins=20, furthest=2.0)
+    assert np.isfinite(found.estimate).all() and np.isfinite(found.error).all()
+    assert found.estimate.values == pytest.approx(other.estimate.values)
+    assert found.attrs["estimator"] == other.attrs["estimator"]
 
 
 def test_a_run_that_is_extended_keeps_its_impulses(tmp_path):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.room import mean_areas, sides, touched
+from gaspart.analysis.room import face_areas, sides, touched
 from gaspart.analysis.run import open_run
 
 A = gp.analysis
@@ -23,13 +23,14 @@ def pushed(tmp_path_factory):
 
 
 def test_the_side_walls_under_a_piston_feel_its_pressure(pushed):
-    """The pressure is one, by Pascal: that on the sides, of which only a part is touched, too. The load is
-    that on 8.0, of which centres touch 7.8."""
+    """The force per area that centres touch is one, by Pascal: that on the sides, of which only a part is
+    touched, too. The load, and the pressure across it, is that on 8.0, of which centres touch 7.8."""
     found = A.wall_pressure(pushed, start=300.0)
     with gp.open_trajectory(pushed) as data:
         length = float(data["piston_position"][300:].mean())
     assert length < 0.6 * 30.0
-    assert (abs(found.estimate - 2.0 * 8.0 / 7.8) < 3.0 * found.error).all()
+    exact = np.array([2.0, 2.0, 2.0 * 8.0 / 7.8, 2.0 * 8.0 / 7.8])
+    assert (abs(found.estimate - exact) < 3.0 * found.error).all()
     assert (found.error < 0.1).all()
 
 
@@ -42,9 +43,9 @@ def test_the_area_is_that_of_the_moment():
         with open_run(sim, 0.0) as run:
             fine = np.linspace(run.time[3], run.time[4], 20001)
             height = (touched(run, fine)[:, 1]).mean()
-            areas = mean_areas(run)
-        assert areas.shape == (len(run.time) - 1, 2)
-        assert areas[3] == pytest.approx([height, 29.8], rel=1e-3)
+            areas = face_areas(run)
+        assert areas.shape == (len(run.time) - 1, 4)
+        assert areas[3] == pytest.approx([height, height, 29.8, 29.8], rel=1e-3)
 
 
 def test_faces_of_both_ends_and_two_axes_move_at_once():
@@ -58,7 +59,7 @@ def test_faces_of_both_ends_and_two_axes_move_at_once():
     sim.advance(duration=4.0)
     with open_run(sim, 0.0) as run:
         found = sides(run, np.array([0.0, 1.0]))
-        area = mean_areas(run)[:, 2].mean()
+        area = face_areas(run)[:, 4].mean()
     assert found[:, 0].tolist() == [[0.0, 10.0], [2.0, 9.0]]
     assert found[:, 1].tolist() == [[0.0, 10.0], [0.0, 8.0]]
     # (9.8 - 1.5 a) (9.8 - a) with a = 1 - cos, whose square has the mean 3 / 2

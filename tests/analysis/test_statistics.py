@@ -8,6 +8,7 @@ from scipy.signal import lfilter
 from gaspart import theory
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics.blocks import ORDER
 
 
 def autoregressive(size, memory, seed):
@@ -71,6 +72,46 @@ def test_deviations_over_errors_follow_student(kind, size):
     width = np.sqrt(np.mean(np.square(deviations)))
     assert width == pytest.approx(1.0, abs=0.06)  # 3 / sqrt(2 * 1500), and the freedom is an estimate
     assert np.mean(np.abs(deviations) > 3.0) < 0.01
+
+
+@pytest.mark.parametrize("memory", [-0.9, -0.6, -0.5, 0.0, 0.5, 0.9])
+def test_the_correlation_time_of_a_markov_series(memory):
+    """(1 + m) / (1 - m) of twice the time, below 1 for an anticorrelated series, which holds more independent
+    values than samples."""
+    series = np.random.default_rng(1).standard_normal((20, 20500))
+    found = [
+        2.0 * statistics.autocorrelation_time(lfilter([1.0], [1.0, -memory], one)[500:]) for one in series
+    ]
+    assert np.mean(found) == pytest.approx((1.0 + memory) / (1.0 - memory), rel=0.05)
+
+
+@pytest.mark.parametrize(("period", "decay"), [(20, 0.97), (50, 0.98), (100, 0.99), (200, 0.995)])
+@pytest.mark.parametrize("white", [0.0, 1.0])
+def test_the_correlation_time_of_an_oscillation_longer_than_the_order_of_the_fit(period, decay, white):
+    """Of an autoregressive series of order 2, and of the same beside as much white noise, which hides
+    a period of six times the order: the time is then too long, and the error too large by less than 2."""
+    first, second = 2.0 * decay * math.cos(2.0 * math.pi / period), -(decay**2)
+    variance = (1.0 - second) / ((1.0 + second) * ((1.0 - second) ** 2 - first**2))
+    exact = 1.0 / (1.0 - first - second) ** 2 / variance
+    rng, found = np.random.default_rng(2), []
+    for noise in rng.standard_normal((20, 24000)):
+        one = lfilter([1.0], [1.0, -first, -second], noise)[4000:] / math.sqrt(variance)
+        one += math.sqrt(white) * rng.standard_normal(one.size)
+        found.append(2.0 * statistics.autocorrelation_time(one))
+    exact = (exact + white) / (1.0 + white)
+    hidden = white > 0.0 and period > 5.0 * ORDER * 20000 ** (1.0 / 3.0)
+    assert 0.9 * exact < np.mean(found) < (4.0 if hidden else 1.1) * exact
+
+
+@pytest.mark.parametrize("period", [2.0, 7.3, 30.0, 100.0])
+def test_the_error_of_a_periodic_series_is_never_too_small_and_falls_faster_than_the_root(period):
+    """The mean of a sine of amplitude 1 over n samples is off by 1 / (pi n / period) at most."""
+    errors = []
+    for size in (2**10, 2**16):
+        series = np.sin(2.0 * math.pi * np.arange(size) / period + 0.3)
+        errors.append(statistics.correlated_mean(series).estimate.error)
+        assert abs(series.mean()) < 2.0 * errors[-1] + 1e-12
+    assert errors[1] < errors[0] / 12.0  # 64 times as long
 
 
 @pytest.mark.parametrize("memory", [-0.5, 0.0, 0.5, 0.9])
@@ -300,3 +341,20 @@ def test_means_of_groups_count_what_is_in_them_alike():
         ratios.append(error**2 * sum(sizes))
     assert np.mean(ratios) == pytest.approx(1.0, abs=3.0 * np.std(ratios) / math.sqrt(len(ratios)))
     assert statistics.means_of([1.0, 3.0], [4, 4])[1] == statistics.means_of([1.0, 3.0])[1]
+
+
+@pytest.mark.parametrize("error", [0.0, np.nan, np.inf])
+def test_a_curve_fit_refuses_errors_that_are_not_positive(error):
+    x, errors = np.linspace(0.1, 2.0, 20), np.full(20, 0.01)
+    values = 3.0 * np.exp(-x)
+
+    def law(x, amplitude, rate):
+        return amplitude * np.exp(-rate * x)
+
+    found, covariance = statistics.fit_curve(law, x, Estimate(values, errors), (1.0, 2.0))
+    assert found == pytest.approx([3.0, 1.0])
+    doubled = statistics.fit_curve(law, x, Estimate(values, 2.0 * errors), (1.0, 2.0))[1]
+    assert doubled == pytest.approx(4.0 * covariance, rel=1e-3)
+    errors[7] = error
+    with pytest.raises(ValueError, match="positive and finite"):
+        statistics.fit_curve(law, x, Estimate(values, errors), (1.0, 2.0))

@@ -10,7 +10,6 @@ import xarray as xr
 import gaspart as gp
 from gaspart.analysis import declaration
 from gaspart.analysis.declaration import Along
-from gaspart.scene.moving_walls import moving_wall
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 AXES = "xyz"
@@ -237,7 +236,7 @@ def _flux_seen(scene, view, values, axis, time):
 def _piston(scene, view, name, values):
     """The place or the velocity of a piston along its axis."""
     axes = [AXES.index(face[0]) for face, it in scene.faces.items() if it.kind == "piston"]
-    axis = axes[0] if axes else moving_wall(scene).axis
+    axis = axes[0] if axes else scene.moving_wall.axis
     sign = view.signs[view.axis(axis)]
     start = scene.container.lengths[axis] if name == "piston_position" and sign < 0.0 else 0.0
     return start + sign * values

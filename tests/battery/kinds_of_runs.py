@@ -11,7 +11,6 @@ import gaspart as gp
 from gaspart.analysis.run import repeated
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.scene.open_faces import is_open
 from gaspart.state.optional_tallies import ImpulseTally, PairImpulseTally, StressTally
 from gaspart.state.state import State
 from gaspart.trajectory.correlator import Correlations
@@ -221,7 +220,7 @@ class Start:
         """Form of the file -> arguments of `gaspart.run`: with paths and pairs, with correlations of the
         motion, with those of the fluxes, and with impulses, where the engine has them."""
         half = self.interval / 2.0
-        if is_open(self.scene):  # nothing follows particles that come and go
+        if self.scene.is_open:  # nothing follows particles that come and go
             return {"frames": {}}
         found = {
             "frames": {"displacements": True, "pairs": self.engine.records_events},
@@ -279,4 +278,4 @@ def repeated_simulation(engine, name, form="frames"):
     simulation = gp.Simulation(start.scene, start.engine, start.seed, initial=start.initial, tallies=tallies)
     quantum = start.engine.quantum or 0.0
     simulation.advance(until=FRAMES * start.interval + 0.5 * quantum)
-    return repeated(simulation, pairs=start.engine.records_events and not is_open(start.scene))
+    return repeated(simulation, pairs=start.engine.records_events and not start.scene.is_open)

@@ -13,7 +13,6 @@ from battery.scaling import data_in_units, result_in_units
 
 import gaspart as gp
 from gaspart.errors import SceneError
-from gaspart.scene.open_faces import is_open
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 ROUNDING = 1e-9
@@ -199,8 +198,8 @@ def of_division(engine, name, observables):
     """The cells of two equal species against one."""
     kind, run = KINDS[name], recorded(engine, name)
     species = kind.scene.species
-    alike = all(one == species[0] and one.alike for one in species) and not is_open(kind.scene)
-    different = "of one species particles enter" if is_open(kind.scene) else "its particles differ"
+    alike = all(one == species[0] and one.alike for one in species) and not kind.scene.is_open
+    different = "of one species particles enter" if kind.scene.is_open else "its particles differ"
     other = {form: divided(data) for form, data in run.items()} if alike else {}
     for observable in observables:
         place, form = (observable, "one species", engine, name), form_of(observable)

@@ -1,7 +1,6 @@
-"""The table of what the battery covers, for the page of the site: `PYTHONPATH=tests python -m battery.table`.
+"""The table of what the battery covers, for a page of the site: `PYTHONPATH=tests python -m battery.table`.
 
-A row for each symmetry, observable, state and reason, with the runs of which it holds. A test compares all
-but the deviations with the battery.
+A row for each symmetry, observable, state and reason, with the runs of which it holds. `make docs` makes it.
 """
 
 import csv
@@ -17,7 +16,7 @@ from battery.observed import names
 
 from gaspart.analysis.observables import having
 
-FILE = Path(__file__).parents[2] / "docs/symmetries.csv"
+FILE = Path(__file__).parents[2] / "results/docs/symmetries.csv"
 COLUMNS = ("symmetry", "observable", "state", "reason", "runs", "deviation", "unit")
 SYMMETRIES = (
     "shifted", "mirrored", "exchanged", "renumbered", "moving", "units",
@@ -81,15 +80,10 @@ def _row(key, group):
     return dict(zip(COLUMNS, (symmetry, observable, state, reason, text, deviation, unit), strict=True))
 
 
-def stated():
-    """The rows of the file."""
-    with FILE.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def write():
     """Write the file."""
-    found = list(rows())  # before the page loses what it has
+    found = rows()
+    FILE.parent.mkdir(parents=True, exist_ok=True)
     with FILE.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()

@@ -14,7 +14,7 @@ from battery.observed import MEANS, SAMPLED, SINGLE, WITHOUT_NAME, names
 from gaspart.analysis.observables import having
 from gaspart.engines import ENGINES
 from gaspart.inspection.energy import energy_line
-from gaspart.scene.features import FEATURES, features
+from gaspart.scene.features import FEATURES
 
 RUNS, NOT_MODELLED = runs()
 ELSEWHERE = {
@@ -65,7 +65,7 @@ def test_the_energy_less_what_was_exchanged_is_constant(engine, name):
 def test_nothing_is_left_out():
     """Neither an observable, nor an engine, nor a feature of scenes, nor a symmetry."""
     assert {settings.name for settings in engines(1.0).values()} == set(ENGINES)
-    present = {feature for kind in KINDS.values() for feature in features(kind.scene)}
+    present = {feature for kind in KINDS.values() for feature in kind.scene.features}
     assert present | set(ELSEWHERE) == set(FEATURES)
     assert set(RUNS) | set(NOT_MODELLED) == set(product(engines(1.0), KINDS))
     everything = set(product(names(), table.SYMMETRIES))
@@ -96,12 +96,3 @@ def test_every_observable_is_tested_by_every_symmetry_somewhere():
 def test_exceptions_are_of_observables_that_exist():
     known = set(names())
     assert {name for name, _ in SAMPLED} | set(SINGLE) | set(MEANS) | set(WITHOUT_NAME) <= known
-
-
-def test_the_page_is_up_to_date():
-    """`PYTHONPATH=tests python -m battery.table` renews it."""
-    kept = [column for column in table.COLUMNS if column != "deviation"]
-    stated, found = (
-        [{key: row[key] for key in kept} for row in rows] for rows in (table.stated(), table.rows())
-    )
-    assert stated == found

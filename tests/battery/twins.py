@@ -11,7 +11,6 @@ from battery.symmetries import views
 
 import gaspart as gp
 from gaspart.errors import SceneError
-from gaspart.scene.features import features
 
 ALIKE = 2e-5
 """Relative difference of variables, some of which are in single precision, after `FEW` intervals."""
@@ -45,7 +44,7 @@ def refusal(engine, name, symmetry, view):
     if not isinstance(view, View):
         return view
     start = base(engine, name)
-    present = features(start.scene)
+    present = start.scene.features
     if "open" in present:
         return "what enters is drawn by the numbers of faces and the places on them"
     if engine.startswith("dsmc") and symmetry != "moving":

@@ -299,7 +299,7 @@ def test_advice_names_engine_length_cost_and_reason(folder, capsys):
     (folder / "gas.yaml").write_text(PERIODIC)
     assert main(["advise", "gas.yaml", "--observable", "Z", "--accuracy", "0.01", "--budget", "60s"]) == 0
     output = capsys.readouterr().out
-    for part in ("engine ", "replicas ", "run length ", "predicted cost ", "half-width ", "why not "):
+    for part in ("engine ", "replicas ", "run length ", "predicted cost ", "standard error ", "why not "):
         assert part in output
     (folder / "empty.yaml").write_text(PERIODIC.replace("200", "0"))
     for wrong, complaint in (

@@ -30,3 +30,25 @@ def test_an_unknown_scene_is_refused_before_any_runs(tmp_path, monkeypatch, caps
 
 def test_the_scenes_coloured_by_species_exist():
     assert set(_BY_SPECIES) <= set(templates())
+
+
+def test_a_trajectory_is_no_folder_of_films(capsys):
+    assert main(["films", "gas.nc"]) == 2
+    assert "of one trajectory: gaspart film gas.nc -o gas.mp4" in capsys.readouterr().err
+
+
+def test_a_film_of_a_trajectory_has_a_clock_unless_it_is_plain(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("gas.yaml").write_text(templates()["gas"].text)
+    words = ["run", "gas.yaml", "-o", "gas.nc", "--duration", "0.8", "--sample-interval", "0.4", "--quiet"]
+    assert main(words) == 0
+    made = {}
+    for name, more in {"clock": [], "plain": ["--plain"]}.items():
+        words = ["film", "gas.nc", "-o", f"{name}.gif", "--size", "240x180", *more]
+        assert main(words) == 0
+        with Image.open(f"{name}.gif") as picture:
+            made[name] = picture.convert("RGB").tobytes()
+    assert made["clock"] != made["plain"]
+    capsys.readouterr()
+    assert main(["film", "gas.nc", "-o", "gas.png"]) == 2
+    assert "must end in .mp4, .gif" in capsys.readouterr().err

@@ -90,7 +90,8 @@ def test_displacement_and_diffusion_along_each_axis(paths, capsys, tmp_path):
         float(found.estimate.sel(axis="y").sel(lag=float(lines[1].split()[0]), method="nearest")), rel=1e-4
     )
     _, *lines = printed(capsys, paths[0], "D", "--per-axis")
-    assert [line.split()[0] for line in lines] == ["x", "y", "z"]
+    assert [line.split()[0] for line in lines[:3]] == ["x", "y", "z"]
+    assert lines[3].startswith("(by the slope between the lags ") and len(lines) == 4
     printed(capsys, *paths, "msd", "--per-axis", "-o", str(tmp_path / "msd.csv"))
     table = rows(tmp_path / "msd.csv")
     assert {row["axis"] for row in table} == {

@@ -50,6 +50,14 @@ MISTAKES = {
     "no command": (line(), "the following arguments are required"),
     "misspelt command": (line("rnu"), "'rnu': unknown command; did you mean run?"),
     "unknown command": (line("fly"), "unknown command; known are new, run, resume"),
+    "scene instead of a trajectory": (
+        line("measure", "scene.yaml", "pressure"),
+        "must be a trajectory; run a scene first: gaspart run scene.yaml -o scene.nc",
+    ),
+    "accuracy of what ends no run": (
+        line(*RUN[:4], "--until", "temperature=1e-2"),
+        "'temperature': ends no run: those that do are Z, pressure",
+    ),
     "misspelt option": (line(*RUN, "--sede", "1"), "--sede: unknown option; did you mean --seed?"),
     "option of another command": (line(*RUN, "--eta", "1"), "--eta: unknown option"),
     "American colour": (line("render", "a.nc", "-o", "a.png", "--color", "speed"), "did you mean --colour?"),
@@ -82,7 +90,7 @@ MISTAKES = {
     "no such folder": (line(*RUN, "-o", "out/run.nc"), "must be a file in an existing folder"),
     "output is the scene": (line(*RUN, "-o", "scene.yaml"), "scene.yaml"),
     "no such trajectory": (line("info", "run.nc"), "run.nc"),
-    "a scene is no trajectory": (line("info", "scene.yaml"), "is not a readable NetCDF file"),
+    "a scene is no trajectory": (line("info", "scene.yaml"), "must be a trajectory; run a scene first"),
     "picture of an unknown kind": (line("render", "a.nc", "-o", "a.jpg"), "must end in .png, .mp4, .gif"),
     "frame of a film": (line("render", "a.nc", "-o", "a.mp4", "--frame", "1"), "has no meaning for a film"),
     "size is one number": (line("render", "a.nc", "-o", "a.png", "--size", "9"), "of the form 1000x750"),

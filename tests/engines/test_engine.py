@@ -7,7 +7,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.engines import ENGINES
-from gaspart.scene.features import FEATURES, features
+from gaspart.scene.features import FEATURES
 
 SKELETON = """
 from dataclasses import dataclass, field
@@ -88,8 +88,8 @@ def test_a_new_engine_appears_in_the_command_line_the_schema_and_the_reference()
 def test_every_feature_has_a_scene():
     assert set(WITH) == set(FEATURES)
     for name, parts in WITH.items():
-        assert name in features(scene_with(parts)), name
-    assert not features(gp.Scene(CONTAINER, [DISCS]))
+        assert name in scene_with(parts).features, name
+    assert not gp.Scene(CONTAINER, [DISCS]).features
 
 
 @pytest.mark.parametrize("name", FEATURES)
@@ -97,7 +97,7 @@ def test_every_feature_has_a_scene():
 def test_an_engine_refuses_what_it_does_not_model_and_names_one_that_does(engine, name):
     scene = scene_with(WITH[name])
     settings = engine(time_step=0.01) if "time_step" in engine.__dataclass_fields__ else engine()
-    missing = features(scene) - engine.models
+    missing = scene.features - engine.models
     if missing:
         with pytest.raises(gp.SceneError, match='needs the "event"') as refused:
             settings.check_features(scene)

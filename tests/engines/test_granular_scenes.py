@@ -26,7 +26,9 @@ def granular_scene(rng, dimension=2, tangential=(-1.0, -1.0, -0.5, 0.0, 0.5, 0.9
     few = int(rng.integers(1, 8))
     species = [
         gp.Species(int(rng.integers(8, 40)), radius, temperature=temperature),
-        gp.Species(few, radius * rng.uniform(0.3, 1.8), float(rng.choice([0.1, 3.0, 10.0])), temperature=1.0),
+        gp.Species(
+            few, radius * rng.uniform(0.3, 1.8), mass=float(rng.choice([0.1, 3.0, 10.0])), temperature=1.0
+        ),
     ]
     if rng.random() < 0.3:
         species.append(gp.Species(int(rng.integers(1, 4)), radius, fixed=True))

@@ -20,7 +20,7 @@ ENDS = np.array([[3.0, 2.0], [6.5, 5.0]])
 
 def start():
     """Positions, velocities, spins, masses, radii, moments of inertia and fixity of 24 particles."""
-    kinds = [gp.Species(14, 0.4, 1.0, temperature=1.0), gp.Species(9, 0.25, 3.0, temperature=1.0)]
+    kinds = [gp.Species(14, 0.4, mass=1.0, temperature=1.0), gp.Species(9, 0.25, mass=3.0, temperature=1.0)]
     kinds += [gp.Species(1, 0.5, fixed=True)]
     scene = gp.Scene(gp.Container(tuple(LENGTHS)), kinds, walls=[gp.Wall(*map(tuple, ENDS))])
     state = gp.Simulation(scene, gp.EventDriven(), seed=12).initial_state

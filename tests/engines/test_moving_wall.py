@@ -111,7 +111,7 @@ def between(draw):
         gp.Species(
             draw(st.integers(1, 8)),
             draw(st.floats(0.1, 0.4)),
-            draw(st.sampled_from([1.0, 0.01, 50.0])),
+            mass=draw(st.sampled_from([1.0, 0.01, 50.0])),
             temperature=draw(st.sampled_from([1.0, 9.0])),
             region=region,
         )

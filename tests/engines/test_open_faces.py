@@ -6,6 +6,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import gaspart as gp
 from gaspart import theory
@@ -128,6 +130,32 @@ def test_flow_between_two_reservoirs_without_collisions():
     assert agrees(heat, 2.0 * (one * dense[1] - other * thin[1]), 0.05)
 
 
+CHANNELS = {
+    "gradient": gp.Thermal({"x_low": 4.0, "x_high": 1.0}),
+    "partial": gp.Thermal(3.0, accommodation=0.6),
+}
+
+
+@pytest.mark.parametrize("wall", CHANNELS)
+def test_no_net_flow_between_reservoirs_that_send_equally_many(wall):
+    """z sqrt(T) is equal on both sides: without collisions as many pass each way, whatever the walls."""
+    faces = {"x_low": reservoir(0.5, 4.0), "x_high": reservoir(1.0, 1.0), "y_low": CHANNELS[wall]}
+    container = gp.Container(LENGTHS, ("wall", "wall", "periodic"))
+    species = [gp.Species(80, POINT, temperature=2.0)]
+    scene = gp.Scene(container, species, faces=faces, centres_to_walls=True)
+    simulation = gp.Simulation(scene, seed=11)
+    simulation.advance(duration=100.0)
+    _, tallies = blocks(simulation, 40, 50.0, 1)
+    each = 0.5 * math.sqrt(4.0 / (2.0 * math.pi)) * LENGTHS[1] * LENGTHS[2]
+    for face, sign in ((0, 1.0), (1, -1.0)):
+        assert agrees([tally.entries[face] / tally.time for tally in tallies], each, 0.01)
+        net = [sign * (tally.entries[face] - tally.wall_hits[face]) / tally.time for tally in tallies]
+        error = np.std(net, ddof=1) / math.sqrt(len(net))
+        assert abs(np.mean(net)) < 3.0 * error < 0.05 * each
+    heat = [-tally.wall_energy[0] / tally.time for tally in tallies]  # but hot ones pass to the cold side
+    assert np.mean(heat) > 10.0 * np.std(heat, ddof=1) / math.sqrt(len(heat))
+
+
 FEW = gp.Scene(
     gp.Container((1.5, 0.5), "wall"),
     [gp.Species(1, 0.5, temperature=1.0)],
@@ -234,6 +262,42 @@ def test_bits_depend_neither_on_the_search_nor_on_where_a_run_is_split(search):
         assert same(whole, one)
 
 
+@st.composite
+def scenes(draw):
+    """Random discs between open faces: dense, dilute or empty, one or more reservoirs or a vacuum."""
+    activities = st.one_of(st.none(), st.floats(-8.0, 4.0).map(lambda power: 10.0**power))
+    kinds = {}
+    for name in draw(st.sets(st.sampled_from(["x_low", "x_high", "y_low", "y_high"]), min_size=1)):
+        activity = draw(activities)
+        kinds[name] = gp.Open() if activity is None else gp.Open(activity, draw(st.sampled_from([0.5, 2.0])))
+    if "y_low" not in kinds and draw(st.booleans()):
+        kinds["y_low"] = gp.Thermal(1.0, accommodation=draw(st.sampled_from([None, 0.5])))
+    lengths = draw(st.tuples(*[st.floats(3.0, 9.0)] * 2))
+    species = [gp.Species(draw(st.integers(1, 4)), 0.5, temperature=1.0)]
+    return gp.Scene(gp.Container(lengths), species, faces=kinds, centres_to_walls=True)
+
+
+@given(scenes(), st.integers(0, 1000))
+@settings(max_examples=15)
+def test_random_open_scenes_keep_their_books_and_bits(scene, seed):
+    whole, parts = gp.Simulation(scene, seed=seed), gp.Simulation(scene, gp.EventDriven("pairs"), seed=seed)
+    begun, opened = whole.state.energy, [n for n, _ in scene.faces_of(gp.Open)]
+    whole.advance(max_events=400, until=50.0)
+    parts.advance(max_events=150, until=50.0)
+    other = gp.Simulation(scene, gp.EventDriven("direct"), seed=seed)
+    other.restore(parts.checkpoint())
+    other.advance(max_events=250, until=50.0)
+    state, tally = whole.state, whole.tally
+    assert np.array_equal(state.positions, other.state.positions)
+    assert np.array_equal(state.numbers, other.state.numbers)
+    assert np.array_equal(tally.entries, other.tally.entries)
+    assert state.count == scene.count + tally.entries.sum() - tally.wall_hits[opened].sum()
+    exchanged = np.abs(tally.wall_energy).sum() + begun
+    assert state.energy + tally.wall_energy.sum() == pytest.approx(begun, abs=1e-12 * exchanged)
+    assert state.count <= scene.capacity
+    whole.check_invariants()
+
+
 def test_units_of_powers_of_two_change_no_bit():
     """Lengths times 4, times a half, masses times 8: temperatures times 512."""
     faces = {"x_low": gp.Open(0.3, 1024.0), "x_high": gp.Open(0.1, 512.0)}
@@ -278,6 +342,42 @@ def test_a_full_container_ends_the_run():
         simulation.advance(duration=1000.0)
 
 
+def test_attempts_to_enter_are_events():
+    """Of a reservoir that sends 7000 times as many particles as there is room for, nearly all are refused."""
+    faces = {"x_low": gp.Open(2000.0, 1.0), "x_high": gp.Open()}
+    scene = gp.Scene(
+        gp.Container((6.0, 6.0), ("wall", "periodic")),
+        [gp.Species(12, 0.5, temperature=1.0)],
+        faces=faces,
+        centres_to_walls=True,
+    )
+    simulation, parts = gp.Simulation(scene, seed=1), gp.Simulation(scene, gp.EventDriven("pairs"), seed=1)
+    simulation.advance(max_events=20_000)
+    attempts = simulation.time * 2000.0 / (0.25 * math.pi) * 6.0 / math.sqrt(2.0 * math.pi)
+    tally = simulation.tally
+    events = tally.collisions + tally.wall_hits.sum() + attempts
+    assert events == pytest.approx(20_000, abs=5.0 * math.sqrt(20_000))
+    assert 5 < tally.entries[0] < 0.1 * attempts
+    for number in (1, 2, 6997, 13_000):
+        parts.advance(max_events=number)
+    assert same(simulation, parts)
+    simulation.check_invariants()
+
+
+def test_numbers_beyond_the_first_block_are_found():
+    """Of a thousand numbers those of the first 256 are taken, then the lowest that is vacant."""
+    from gaspart.kernels.model import Open
+    from gaspart.kernels.obstacles.open_face import NUMBERS, lowest_vacant
+
+    present = np.ones(1000, dtype=np.uint8)
+    opened = Open(present, np.zeros(4, dtype=np.int64), np.zeros(4, dtype=np.int64))
+    assert lowest_vacant.py_func(opened) == -1
+    for number in (999, 700, NUMBERS, NUMBERS - 1, 0):
+        present[number] = 0
+        opened.vacant[number // NUMBERS] += 1
+        assert lowest_vacant.py_func(opened) == number
+
+
 def test_files():
     scene = gp.Scene.from_dict(DISCS.to_dict())
     assert scene == DISCS and scene.faces["y_high"] == gp.Open()
@@ -288,15 +388,20 @@ def test_files():
     ("changes", "rule"),
     [
         ({"centres_to_walls": False}, "faces.x_low.*needs centres_to_walls: true"),
-        ({"gravity": (0.0, -1.0)}, "gravity.*excludes open faces"),
-        ({"restitution": gp.Restitution(0.9)}, "restitution.normal.*excludes open faces"),
+        ({"gravity": (0.0, -1.0)}, "gravity.*excludes open faces.*nothing acts on the gas"),
+        ({"restitution": gp.Restitution(0.9)}, "restitution.normal.*excludes open faces.*smooth and elastic"),
+        ({"faces": MIXED | {"y_low": gp.Thermal(1.0, velocity=(1.0, 0.0))}}, "a thermal one is at rest"),
+        (
+            {"faces": MIXED | {"y_high": gp.Open(1e20, 1.0)}},
+            "y_high.activity = 1e.20: must let at most",
+        ),
         ({"thermostat": gp.Thermostat(1.0, 0.1)}, "thermostat.*excludes open faces"),
         ({"species": [gp.Species(2, 0.5), gp.Species(1, 0.4)]}, "particles of one species"),
         ({"species": [gp.Species(0, 0.5)]}, "particles of one species"),
         ({"species": [gp.Species(9, 0.5, polydispersity=0.1)]}, "polydispersity.*excludes open faces"),
         ({"species": [gp.Species(9, 0.5, fixed=True)]}, "fixed.*excludes open faces"),
         ({"particles": [gp.Particle((3.0, 3.0), (0.0, 0.0), 0.5)]}, "particles of one species"),
-        ({"faces": MIXED | {"y_low": gp.Piston(1.0, 1.0)}}, "excludes"),
+        ({"faces": MIXED | {"y_low": gp.Piston(1.0, 1.0)}}, "excludes.*the others are hard or thermal"),
         ({"container": gp.Container((6.0, 6.0), ("periodic", "wall"))}, "a periodic axis has no faces"),
     ],
 )

@@ -99,7 +99,7 @@ def pressed(draw):
     species = [gp.Species(draw(st.integers(1, 12)), draw(st.floats(0.1, 0.4)), temperature=1.0)]
     if draw(st.booleans()):
         mass = draw(st.floats(0.01, 100.0)) if dimension == 2 else 1.0
-        species.append(gp.Species(3, 0.3, mass, temperature=1.0))
+        species.append(gp.Species(3, 0.3, mass=mass, temperature=1.0))
     piston = gp.Piston(draw(st.floats(1e-3, 1e4)), draw(st.sampled_from([0.0, 0.01, 0.5, 20.0])))
     boundary = (boundary * 2)[:dimension] if dimension == 3 else boundary[:2]
     return gp.Scene(

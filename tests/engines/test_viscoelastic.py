@@ -67,7 +67,7 @@ def test_the_damping_depends_on_radii_and_masses():
 def lossy(draw):
     """Discs of two sizes, rough and viscoelastic, between walls."""
     species = [
-        gp.Species(draw(st.integers(1, 12)), radius, mass, temperature=1.0)
+        gp.Species(draw(st.integers(1, 12)), radius, mass=mass, temperature=1.0)
         for radius, mass in ((0.4, 1.0), (draw(st.floats(0.1, 0.5)), draw(st.floats(0.1, 10.0))))
     ]
     normal, speed = draw(st.floats(0.5, 0.99)), draw(st.sampled_from([1.0, 30.0, 1e3]))

@@ -55,6 +55,19 @@ def test_a_healthy_short_run_gets_no_false_verdict(kind, tmp_path):
         assert found["energy"].passed and found["flights"].passed
 
 
+@pytest.mark.parametrize("foreign", [False, True])
+@pytest.mark.parametrize(("dimension", "count", "eta"), [(3, 500, 0.5113), (3, 300, 0.49), (2, 300, 0.69)])
+def test_a_healthy_dense_run_is_never_wrong(dimension, count, eta, foreign, tmp_path):
+    """As of another program, whose file has no collisions: by the contact value of positions."""
+    scene = gas(dimension, count, eta, arrangement="compressed", exact_temperature=True)
+    for seed in (1, 2):
+        frames = read_frames(gp.run(scene, EVENT, seed, 60.0, 0.2, tmp_path / f"{seed}.nc"))
+        checks = judge(replace(frames, counted=None) if foreign else frames)
+        assert [str(check) for check in checks if check.passed is False] == []
+        (pressure,) = [check for check in checks if check.name == "pressure Z"]
+        assert pressure.passed and ("by collisions" in pressure.text) != foreign
+
+
 @pytest.mark.thorough
 def test_at_most_one_false_verdict_in_four_hundred_runs(tmp_path):
     wrong = []

@@ -83,7 +83,7 @@ def test_a_gsd_file_of_a_changing_number_is_refused(tmp_path):
     ("old", "new", "rule"),
     [
         ("8.0 0.0 0.0 0.0", "8.0 0.0 0.0 1.0", "Lattice = .*a tilted box"),
-        ("8.0 0.0 0.0 0.0", "8.0 0.0 0.0", "lattice = .*must be 3 or 9 numbers"),
+        ("8.0 0.0 0.0 0.0", "8.0 0.0 0.0", "lattice = .*must be 3, 4 or 9 numbers; give --lengths"),
         ("pos:R:3", "pos:R:3:", "Properties = .*must be of the form"),
         ("pos:R:3", "forces:R:3", "must have pos"),
         ("pos:R:3", "pos:R:3:radius:R:1", "has a line of 4 columns in frame 0, where 5"),

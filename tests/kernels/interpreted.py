@@ -34,7 +34,7 @@ def event_scenes():
     """Scenes of the event-driven engine, by name; each with features of its own."""
     box, room = gp.Container((6.0, 5.0)), gp.Container((6.0, 6.0, 5.0), ("wall", "periodic", "wall"))
     around = gp.Container((4.0, 4.0), "periodic")
-    two = [gp.Species(6, 0.3, temperature=1.0), gp.Species(3, 0.4, 3.0, temperature=1.0)]
+    two = [gp.Species(6, 0.3, temperature=1.0), gp.Species(3, 0.4, mass=3.0, temperature=1.0)]
     fixed = gp.Species(2, 0.3, fixed=True)
     cross = [gp.Wall((1.0, 1.0), (4.0, 3.0)), gp.Wall((4.0, 1.5), (2.0, 4.0))]
     warm_wall = replace(cross[1], temperature=2.0)
@@ -50,11 +50,11 @@ def event_scenes():
     high = {"x_high": gp.Sticky(1.0), "z_high": gp.Thermal(1.5)}
     shaking = {"y_low": gp.Vibrating(0.2, 1.3), "y_high": gp.Vibrating(0.1, 0.5, "sawtooth")}
     electrons = [
-        gp.Species(6, 0.2, 0.5, temperature=1.0),
+        gp.Species(6, 0.2, mass=0.5, temperature=1.0),
         gp.Species(4, 0.3, fixed=True, temperature=2.0),
         gp.Species(2, 0.2, fixed=True),
     ]
-    small, large = gp.Species(12, 0.1, temperature=1.0), gp.Species(2, 0.6, 20.0, temperature=1.0)
+    small, large = gp.Species(12, 0.1, temperature=1.0), gp.Species(2, 0.6, mass=20.0, temperature=1.0)
     heat = {"x_low": gp.Thermal(3.0), "x_high": gp.Thermal(1.0)}
     down = (0.0, -1.0)
     return {
@@ -84,7 +84,7 @@ def step_scenes():
     """Scenes of the time-stepped engine, by name, each with its time step."""
     dense = gas(2, 40, 0.5, ("wall", "periodic"))
     container, species = dense.container, dense.species
-    thin = [gp.Species(16, 0.1, temperature=1.0), gp.Species(1, 0.8, 9.0)]
+    thin = [gp.Species(16, 0.1, temperature=1.0), gp.Species(1, 0.8, mass=9.0)]
     return {
         "steps": (dense, 0.05),
         "steps that fall": (gp.Scene(container, species, gravity=(-1.0, 0.0)), 0.02),

@@ -86,22 +86,35 @@ def one_astray(file):
     file["coordinates"][:, 7, 1] += ERROR * file["cell_lengths"][0, 1]
 
 
-def gsd_box(folder, to):
-    """A container that is 3 % longer along one axis, in the GSD file."""
-    path = copied(folder, to, "gas.gsd") / "gas.gsd"
+def heavier(file):
+    """The first species is 3 % heavier."""
+    masses = file["mass"][:]
+    file["mass"][:] = np.where(masses == masses[0], (1.0 + ERROR) * masses, masses)
+
+
+def without_walls(file):
+    """A container that states periodic faces where it has walls."""
+    file.boundary = "periodic periodic periodic"
+
+
+def gsd_box(folder, to, name="gas.gsd"):
+    """A container that is 3 % longer along one axis, in a GSD file."""
+    path = copied(folder, to, name) / name
     with gsd.hoomd.open(path) as file:
-        frame = file[0]
-    frame.configuration.box = frame.configuration.box * np.array([1.0, 1.0, 1.0 + ERROR, 1.0, 1.0, 1.0])
+        frames = list(file)
+    for frame in frames:
+        frame.configuration.box = frame.configuration.box * np.array([1.0, 1.0 + ERROR, 1.0, 1.0, 1.0, 1.0])
     with gsd.hoomd.open(path, "w") as file:
-        file.append(frame)
+        for frame in frames:
+            file.append(frame)
     return to
 
 
-def data_box(folder, to):
-    """The same in the LAMMPS data file."""
-    path = copied(folder, to, "gas.data") / "gas.data"
+def data_box(folder, to, name="gas.data"):
+    """The same in a LAMMPS data file."""
+    path = copied(folder, to, name) / name
     text = path.read_text()
-    (line,) = (line for line in text.splitlines() if line.endswith("zlo zhi"))
+    (line,) = (line for line in text.splitlines() if line.endswith("ylo yhi"))
     low, high, *names = line.split()
     path.write_text(text.replace(line, f"{low} {float(high) * (1.0 + ERROR)} {' '.join(names)}"))
     return to

@@ -1,11 +1,9 @@
-"""Programs that open the files of gaspart: the same positions, container and times."""
+"""Programs that open the exported states of gaspart: the same positions, container and times."""
 
-import ase.io.netcdftrajectory
 import MDAnalysis
 import mdtraj
 import numpy as np
 from finding import LENGTH, Finding
-from MDAnalysis.coordinates.TRJ import NCDFReader
 from ovito.io import import_file
 
 FRAMES = 0, 17, -1
@@ -29,18 +27,6 @@ def compared(folder, read):
     return Finding(number, "the same" if worst <= RESOLUTION else "different", worst, RESOLUTION, LENGTH)
 
 
-def ase_netcdf(folder):
-    file = ase.io.netcdftrajectory.NetCDFTrajectory(str(folder / "gas.nc"))
-    frames = [(k, file[k]) for k in range(len(file)) if k in (0, 17, len(file) - 1)]
-    return compared(folder, [(k, a.positions, a.cell.lengths(), float(a.info["time"])) for k, a in frames])
-
-
-def mdanalysis_netcdf(folder):
-    with NCDFReader(str(folder / "gas.nc"), convert_units=False) as file:
-        frames = [(k, file[k].copy()) for k in FRAMES]
-    return compared(folder, [(k, f.positions, f.dimensions[:3], f.time) for k, f in frames])
-
-
 def mdanalysis_gsd(folder):
     frame = MDAnalysis.Universe(str(folder / "gas.gsd")).trajectory[0]
     lengths = frame.dimensions[:3]
@@ -51,12 +37,6 @@ def mdanalysis_data(folder):
     columns = "id type diameter density x y z"
     frame = MDAnalysis.Universe(str(folder / "gas.data"), atom_style=columns).trajectory[0]
     return compared(folder, [(-1, frame.positions, frame.dimensions[:3], None)])
-
-
-def mdtraj_netcdf(folder):
-    with mdtraj.formats.NetCDFTrajectoryFile(str(folder / "gas.nc")) as file:
-        positions, time, lengths, _ = file.read()
-    return compared(folder, [(k, positions[k], lengths[k], time[k]) for k in FRAMES])
 
 
 def mdtraj_gsd(folder):

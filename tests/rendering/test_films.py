@@ -32,7 +32,7 @@ def runs(tmp_path_factory):
 @pytest.mark.parametrize("suffix", ["mp4", "gif"])
 def test_a_film_has_a_picture_for_every_frame(runs, suffix):
     path = runs / f"discs.{suffix}"
-    assert film(runs / "discs.nc", path, size=(121, 91), trail=0) == path
+    assert film(runs / "discs.nc", path, size=(121, 91), clock=False, trail=0) == path
     shape = (91, 121) if suffix == "gif" else (90, 120)
     images = imageio.imread(path, plugin="FFMPEG" if suffix == "mp4" else None)
     assert images.shape == (5, *shape, 3)
@@ -43,8 +43,10 @@ def test_a_film_has_a_picture_for_every_frame(runs, suffix):
 def test_a_film_of_a_part_has_its_frames(runs):
     with gp.open_trajectory(runs / "discs.nc") as data:
         times = data["time"].values
-        part = gp.film(data, runs / "part.gif", size=(64, 48), start=times[1], stop=times[4], every=2)
-        chosen = gp.film(data.isel(frame=[1, 3]), runs / "chosen.gif", size=(64, 48))
+        part = gp.film(
+            data, runs / "part.gif", size=(64, 48), clock=False, start=times[1], stop=times[4], every=2
+        )
+        chosen = gp.film(data.isel(frame=[1, 3]), runs / "chosen.gif", size=(64, 48), clock=False)
         with pytest.raises(gp.SceneError, match="start = 1000000000.0: there is no frame"):
             gp.film(data, runs / "none.gif", start=1e9)
     assert part.read_bytes() == chosen.read_bytes()
@@ -62,13 +64,13 @@ def test_what_a_signal_removes_is_not_made_again(runs, tmp_path, monkeypatch):
 
     monkeypatch.setattr(films, "_pictures", removing)
     with pytest.raises(gp.SceneError, match="cannot be written"):
-        film(runs / "discs.nc", tmp_path / "film.mp4", size=(120, 90))
+        film(runs / "discs.nc", tmp_path / "film.mp4", size=(120, 90), clock=False)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_the_poster_of_a_film_is_its_middle_picture(runs):
     path = runs / "shown.mp4"
-    film(runs / "discs.nc", path, size=(120, 90))
+    film(runs / "discs.nc", path, size=(120, 90), clock=False)
     poster(path, runs / "shown.jpg")
     still = imageio.imread(runs / "shown.jpg").astype(int)
     images = imageio.imread(path, plugin="FFMPEG").astype(int)
@@ -78,7 +80,7 @@ def test_the_poster_of_a_film_is_its_middle_picture(runs):
 
 def test_a_film_of_spheres_is_made_of_their_pictures(runs):
     with gp.open_trajectory(runs / "spheres.nc") as trajectory:
-        film(trajectory, runs / "spheres.gif", size=(64, 48), colour="species")
+        film(trajectory, runs / "spheres.gif", size=(64, 48), clock=False, colour="species")
         last = gp.render(trajectory, size=(64, 48), colour="species")
         first = gp.render(trajectory, 0, size=(64, 48), colour="species")
     images = imageio.imread(runs / "spheres.gif").astype(int)
@@ -209,5 +211,5 @@ def test_a_film_as_mp4_names_the_package_that_is_missing(runs, monkeypatch):
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     with pytest.raises(gp.SceneError, match=r"films as .mp4 .* not installed: pip install 'gaspart\[film\]'"):
         film(runs / "discs.nc", runs / "new.mp4")
-    film(runs / "discs.nc", runs / "without.gif", size=(40, 30))
+    film(runs / "discs.nc", runs / "without.gif", size=(40, 30), clock=False)
     assert not (runs / "new.mp4").exists() and (runs / "without.gif").exists()

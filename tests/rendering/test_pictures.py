@@ -9,6 +9,7 @@ from gaspart.rendering.discs import Canvas
 from gaspart.rendering.frames import parameters_of, particles_of, render
 from gaspart.rendering.particles import FIXED, DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import picture, pixels_per_length
+from gaspart.rendering.surfaces import surfaces_of
 
 BLACK = np.zeros((1, 3))
 
@@ -247,10 +248,12 @@ def test_an_interior_wall_that_moves_is_drawn_where_it_is(tmp_path):
         assert parameters_of(scene)[-1] == "a wall of mass 1 moves"
 
 
-def test_the_parameters_of_moving_faces_are_stated():
+def test_moving_faces_are_in_the_legend_not_among_the_parameters():
     scene = gp.Scene(gp.Container((8.0, 8.0)), [gp.Species(10, 0.3)])
     assert parameters_of(scene) == ("10 discs", "packing fraction 0.0442")
     shaken = replace(scene, faces={"y_low": gp.Vibrating(0.1, 2.0)})
-    assert parameters_of(shaken)[2:] == ("y_low vibrates: amplitude 0.1, period 2",)
+    assert parameters_of(shaken) == ("10 discs", "packing fraction 0.0442")
+    assert [one.text for one in surfaces_of(shaken)] == ["y low: vibrates, amplitude 0.1, period 2"]
     pressed = replace(scene, faces={"y_high": gp.Piston(20.0, 0.5)})
-    assert parameters_of(pressed) == ("10 discs", "y_high a piston: mass 20, pressure 0.5")
+    assert parameters_of(pressed) == ("10 discs",)
+    assert [one.text for one in surfaces_of(pressed)] == ["y high: piston, mass 20, pressure 0.5"]

@@ -64,10 +64,10 @@ def test_a_simulation_shows_its_present_state():
 
 def test_a_film_shows_itself(tmp_path, monkeypatch):
     path = gp.run(BOX, gp.EventDriven(), 1, 1.0, 0.25, tmp_path / "run.nc")
-    film = gp.film(path, tmp_path / "a.gif", size=(64, 48))
+    film = gp.film(path, tmp_path / "a.gif", size=(64, 48), clock=False)
     assert film == tmp_path / "a.gif" and film.with_suffix(".mp4")._repr_html_() is None
     assert base64.b64encode(film.read_bytes()).decode() in film._repr_html_()
-    moving = gp.film(path, tmp_path / "a.mp4", size=(64, 48))
+    moving = gp.film(path, tmp_path / "a.mp4", size=(64, 48), clock=False)
     assert moving._repr_html_().startswith('<video src="data:video/mp4;base64,')
     monkeypatch.setattr(shown, "LARGEST_FILM", 10)
     assert film._repr_html_().startswith("<a href=")

@@ -84,3 +84,31 @@ def test_estimates_are_points_with_error_bars_and_labels_are_those_stated():
     np.testing.assert_allclose(along[:, :, 1], [[2.7, 3.3], [3.6, 4.4]])
     assert (axis.get_xlabel(), axis.get_ylabel(), axis.get_xscale()) == ("time", "", "log")
     assert [text.get_text() for text in axis.get_legend().get_texts()] == ["seen"]
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_bar_below_zero_does_not_cut_the_lower_ends_of_others(first):
+    values, errors = np.array([1.0, 0.5, 0.02, 3.0, 0.3]), np.array([0.2, 0.1, 0.019, 0.3, 0.4])
+    figure, (axis,) = style.new((2.8,))
+    if first:
+        axis.set_yscale("log")
+    style.points(axis, np.arange(5.0), Estimate(values, errors))
+    axis.set_yscale("log")
+    style.finish(figure)
+    assert axis.get_ylim()[0] < 0.001 < 3.3 < axis.get_ylim()[1]  # 0.02 - 0.019, 3 + 0.3
+
+
+def test_an_end_near_zero_does_not_stretch_a_logarithmic_axis_without_bound():
+    figure, (axis,) = style.new((2.8,))
+    axis.set_yscale("log")
+    style.points(axis, [1.0, 2.0, 3.0], Estimate([1.0, 2.0, 0.5], [1.0 - 1e-12, 0.1, 0.6]))
+    style.finish(figure)
+    assert 1e-3 < axis.get_ylim()[0] < 0.4
+
+
+def test_limits_that_a_figure_states_remain():
+    figure, (axis,) = style.new((2.8,))
+    axis.set(yscale="log", ylim=(0.1, 5.0))
+    style.points(axis, [1.0, 2.0], Estimate([1.0, 2.0], [0.99, 3.0]))
+    style.finish(figure)
+    assert axis.get_ylim() == (0.1, 5.0)

@@ -9,7 +9,7 @@ import pytest
 from site_pages import CHROMIUM, found_on
 
 import gaspart as gp
-from gaspart.analysis import order
+from gaspart.analysis import bond_order as order
 from gaspart.cli import main
 
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scenes import mixtures
 
 import gaspart as gp
-from gaspart.scene.faces import mean_velocity, thermal_face
+from gaspart.scene.faces import thermal_face
 
 GOOD = {
     "container": {"lengths": [10.0, 10.0], "boundary": "wall"},
@@ -263,7 +263,7 @@ def test_the_mean_velocity_of_faces_is_that_of_all_that_drag():
 
     def mean(low, high):
         faces = {"x_low": low, "x_high": high}
-        return mean_velocity(gp.Scene(container, faces=faces))
+        return gp.Scene(container, faces=faces).frame_velocity
 
     still, sliding = gp.Thermal(1.0), gp.Thermal(1.0, velocity=(0.0, 3.0))
     assert mean(still, sliding) == (0.0, 1.5)

@@ -58,7 +58,7 @@ def test_species_that_have_it_are_scaled_together():
         gp.Species(10, 0.3, temperature=1.5),
         gp.Species(20, 0.3, mass=5.0, temperature=1.5, exact_temperature=True),
     ]
-    drawn = [gp.Species(it.count, it.radius, it.mass, temperature=1.5) for it in kinds]
+    drawn = [gp.Species(it.count, it.radius, mass=it.mass, temperature=1.5) for it in kinds]
     container = gp.Container((20.0, 20.0), "periodic")
     state, plain = (initial_state(gp.Scene(container, it), 1) for it in (kinds, drawn))
     chosen = np.r_[0:20, 30:50]

@@ -134,3 +134,41 @@ def test_a_wide_slit_holds_the_bulk():
 def test_invalid_containers_are_refused(arguments, message):
     with pytest.raises(ValueError, match=message):
         theory.wall_pressure(*arguments)
+
+
+def two_spheres_in_a_cube(length):
+    """The pressure of two spheres on the walls of a cube of at least two diameters: exact."""
+    moments = 4.0 * math.pi / 3.0, math.pi / 2.0, 8.0 / 15.0, 1.0 / 6.0
+
+    def logarithm(sides):
+        close = 0.0
+        for cut in range(8):
+            left = [side for axis, side in enumerate(sides) if not cut >> axis & 1]
+            close += (-1) ** (3 - len(left)) * moments[3 - len(left)] * math.prod(left)
+        return math.log(math.prod(sides) ** 2 - close)
+
+    inner, step = length - 1.0, 1e-5
+    change = logarithm((inner + step, inner, inner)) - logarithm((inner - step, inner, inner))
+    return change / (2.0 * step) / inner**2
+
+
+@pytest.mark.parametrize("length", [2.5, 3.0, 4.0, 6.0])
+def test_two_spheres_press_as_stated(length):
+    value, error = theory.wall_pressure(length, 2.0 / (length - 1.0) ** 3, 2, 3, 3)
+    assert abs(value - two_spheres_in_a_cube(length)) < 3.0 * error and error < 0.05 * value
+
+
+def test_opposite_walls_of_a_narrow_slit_are_in_the_uncertainty():
+    """24 spheres in 6 x 6 x L: 1.403(10) at L = 2 by an independent sampler; no fluid at 1.5."""
+    value, error = theory.wall_pressure(2.0, 24.0 / 36.0, 24, 3, 1)
+    assert abs(value - 1.403) < 3.0 * math.hypot(error, 0.010) and abs(value - 1.403) > 0.1
+    with pytest.raises(ValueError, match="length = 1.5: must be at least 2 diameters"):
+        theory.wall_pressure(1.5, 24.0 / 18.0, 24, 3, 1)
+
+
+def test_a_slit_is_that_of_the_density_functional_within_the_uncertainty():
+    for width in (3.0, 3.5, 4.0):
+        place, density = theory.white_bear_slit(0.573, width, 0.02)
+        mean = float(np.trapezoid(density, place)) / (width - 1.0)
+        value, error = theory.wall_pressure(width, mean, 10**9, 3, 1)
+        assert abs(value - density[0]) < 3.0 * error

@@ -52,7 +52,7 @@ def test_mdanalysis_reads_it_as_it_is(written):
             assert frame.time == 0.5 * n
             assert np.array_equal(frame.positions, vectors(states, "positions")[n])
             assert np.array_equal(frame.velocities, vectors(states, "velocities")[n])
-            thickness = () if scene.dimension == 3 else (1.5,)
+            thickness = () if scene.dimension == 3 else (9.0,)  # the longest side
             assert np.allclose(frame.dimensions, (*scene.container.lengths, *thickness, 90, 90, 90))
 
 
@@ -155,7 +155,9 @@ def test_a_file_states_its_recipe(tmp_path):
 def test_frames_begin_where_the_header_ends(tmp_path, length):
     """Whatever its length: the library returns memory by the page, with more than the header."""
     layout = amber.Layout(3, 2, [], 0, amber.counters(gp.EventDriven()), [], {})
-    header = layout.header({"note": "x" * length}, np.ones(3), np.zeros(3, int))
+    header = layout.header(
+        {"note": "x" * length}, {"radius": np.ones(3), "mass": np.ones(3), "type": np.zeros(3, int)}
+    )
     frame = np.zeros(1, layout.frame)
     frame["time"] = 7.0
     (tmp_path / "one.nc").write_bytes(header[:4] + bytes([0, 0, 0, 1]) + header[8:] + frame.tobytes())

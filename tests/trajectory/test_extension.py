@@ -13,7 +13,7 @@ from gaspart.trajectory.recipe import read_recipe
 
 MIXTURE = gp.Scene(
     gp.Container((12.0, 12.0), "periodic"),
-    [gp.Species(20, 0.5, temperature=1.0), gp.Species(10, 0.8, 3.0, temperature=1.0)],
+    [gp.Species(20, 0.5, temperature=1.0), gp.Species(10, 0.8, mass=3.0, temperature=1.0)],
 )
 FALLING = gp.Scene(
     gp.Container((20.0, 20.0), ("periodic", "wall")),

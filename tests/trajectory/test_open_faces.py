@@ -1,13 +1,18 @@
 """Trajectories of containers with open faces: the same bytes however they were made, and what is refused."""
 
 import math
+from dataclasses import replace
 
+import gsd.hoomd
 import numpy as np
 import pytest
 
 import gaspart as gp
 from gaspart import analysis
+from gaspart.analysis.observables import OBSERVABLES
+from gaspart.cli import main
 from gaspart.inspection.certificate import certificate
+from gaspart.inspection.open_runs import judge_open
 from gaspart.inspection.readers import read_frames
 from gaspart.rendering.live import LiveGas
 from gaspart.simulation import Simulation
@@ -129,7 +134,7 @@ def test_the_flux_through_a_plane_is_what_comes_in_less_what_stays(trajectory):
     low = np.nansum(places <= 4.0, axis=1)
     came = (data["entries"] - data["wall_hits"]).values[late, 0]
     passed = (came[-1] - came[0]) - (low[-1] - low[0])
-    found = analysis.particle_flux(path, "x")
+    found = analysis.particle_flux(path)
     assert found.estimate.values == pytest.approx(passed / 15.0) and passed > 0
     with pytest.raises(gp.SceneError, match="x_low.*come and go on either side"):
         analysis.particle_flux(path, "y")
@@ -186,22 +191,35 @@ def test_the_same_run_is_no_replica(trajectory):
     assert analysis.replicas("number", [path, other]).error > 0.0
 
 
-@pytest.mark.parametrize("name", ["density", "velocity", "pressure"])
-def test_no_length_of_a_run_is_planned(name, tmp_path):
-    with pytest.raises(gp.SceneError, match="length of such a run is not planned"):
-        gp.run(DISCS, until=gp.Accuracy(name, 0.1), path=tmp_path / "run.nc")
+@pytest.mark.parametrize(("name", "accuracy"), [("number", 0.05), ("density", 0.2), ("flux", 0.1)])
+def test_a_steady_run_ends_when_it_is_accurate(name, accuracy, tmp_path):
+    path = gp.run(DISCS, until=gp.Accuracy(name, accuracy), path=tmp_path / "run.nc", at_most=20_000.0)
+    (reached,) = gp.reached_accuracy(path)
+    assert reached.met and reached.accuracy < accuracy and reached.value > 0.0
+
+
+def test_what_is_not_steady_or_vanishes_ends_no_run(tmp_path):
+    closed = replace(DISCS, faces={"x_low": gp.Open(0.2, 2.0)})
+    for scene, name, rule in (
+        (EMPTY, "number", "x_low.*has no reservoir: all particles leave"),
+        (closed, "flux", "net flux between walls is 0 in a steady state"),
+        (closed, "velocity", "nothing drives a flow"),
+        (closed, "Z", "particles that stay"),
+    ):
+        with pytest.raises(gp.SceneError, match=rule):
+            gp.run(scene, until=gp.Accuracy(name, 0.1), path=tmp_path / "run.nc")
 
 
 def test_what_needs_particles_that_stay_is_refused(trajectory):
     """By one line that names the face: all observables but those that declare that they do not."""
     path, data = trajectory
-    served = {"number", "density", "velocity", "temperature", "pressure", "flux"}
+    served = {"number", "density", "velocity", "temperature", "pressure", "force", "flux"}
     for name, one in analysis.observables.OBSERVABLES.items():
         assert one.varying == (name in served)
         if name not in served:
             with pytest.raises(gp.SceneError, match="faces.x_low.*open.*particles that stay"):
                 getattr(analysis, one.function)(path)
-    for refused in (gp.view, analysis.by_species, read_frames):
+    for refused in (lambda path: gp.view(path, order=True), analysis.by_species, read_frames):
         with pytest.raises(gp.SceneError, match="faces.x_low.*changes the particles"):
             refused(path)
     with pytest.raises(gp.SceneError, match="faces.x_low.*a slider would state"):
@@ -211,3 +229,76 @@ def test_what_needs_particles_that_stay_is_refused(trajectory):
         closed.advance(duration=1.0)
         analysis.particle_number(closed)
     assert "count" not in data.attrs and math.isfinite(data.attrs["dimension"])
+
+
+def test_a_run_is_checked_by_its_books(trajectory, tmp_path):
+    path, data = trajectory
+    title, checks = judge_open(path)
+    counts = np.isfinite(data["coordinates"].values[..., 0]).sum(axis=1)
+    assert f"{counts.min()} to {counts.max()} discs in 41 frames" in title
+    passed = {check.name: check.passed for check in checks}
+    assert [name for name, one in passed.items() if one] == [
+        "overlaps", "container", "particles", "energy", "flights",
+    ]  # fmt: skip
+    assert main(["check", str(path)]) == 0
+    assert main(["check", str(path), "--radius", "0.5"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "frame", "change", "wrong"),
+    [
+        ("coordinates", 30, np.nan, "particles"),
+        ("coordinates", 30, 3.0, "flights"),
+        ("wall_energy", 30, 1e-3, "energy"),
+        ("coordinates", 30, -9.0, "container"),
+    ],
+)
+def test_a_damaged_run_is_found(trajectory, monkeypatch, name, frame, change, wrong):
+    path, data = trajectory
+    damaged = data.copy(deep=True)
+    velocities = data["velocities"].values
+    same_velocity = (velocities[frame] == velocities[frame - 1]).all(axis=1)
+    particle = int(np.flatnonzero(same_velocity)[0]) if name == "coordinates" else 0
+    damaged[name].values[frame, particle] += change
+    monkeypatch.setattr("gaspart.inspection.open_runs.open_trajectory", lambda _: damaged)
+    assert wrong in {check.name for check in judge_open(path)[1] if check.passed is False}
+
+
+EMPTY = gp.Scene(
+    gp.Container((6.0, 4.0, 4.0), ("wall", "periodic", "periodic")),
+    [gp.Species(4, 0.5, temperature=1.0)],
+    faces={"x_low": gp.Open(), "x_high": gp.Open()},
+    centres_to_walls=True,
+)
+"""Spheres that all leave into a vacuum."""
+
+
+@pytest.fixture(scope="module")
+def empty(tmp_path_factory):
+    path = tmp_path_factory.mktemp("empty") / "run.nc"
+    return gp.run(EMPTY, duration=400.0, sample_interval=2.0, path=path, keep_checkpoint=True)
+
+
+def test_a_frame_may_have_no_particle(empty, tmp_path):
+    """In every observable, file, picture and check."""
+    simulation = gp.Simulation(EMPTY)
+    simulation.advance(duration=400.0)
+    assert simulation.state.count == gp.last_state(empty).count == 0
+    for source in (empty, simulation):
+        for name, one in OBSERVABLES.items():
+            if one.varying:
+                found = getattr(analysis, one.function)(source, start=200.0, **one.arguments)
+                values = found.estimate.values
+                assert (
+                    np.isnan(values).all() if name in ("velocity", "temperature") else (values == 0.0).all()
+                )
+        picture = gp.render(source, size=(80, 60))
+        assert (picture[5, 5] == picture[30, 40]).all()
+        page = gp.view(source, frames=5).page
+        assert '"inside": [4, ' in page and ", 0]" in page
+    assert judge_open(empty)[1] and all(check.passed is not False for check in judge_open(empty)[1])
+    assert "0 atoms" in export(empty, tmp_path / "last.data").read_text()
+    with gsd.hoomd.open(export(empty, tmp_path / "last.gsd"), "r") as frames:
+        assert frames[0].particles.N == 0
+    text = export(empty, tmp_path / "all.xyz", frame="all").read_text()
+    assert text.startswith("4\n") and text.splitlines()[-2] == "0"

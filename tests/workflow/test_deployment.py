@@ -4,10 +4,12 @@ import json
 import re
 import shutil
 import zipfile
+from pathlib import Path
 
 import pytest
 from crates import faults
-from workspace import ROOT, Workspace
+from digests import digests
+from workspace import ROOT, Workspace, copy_of_project
 
 from gaspart.cli import main
 from gaspart.reproduction.archive.metadata import METADATA
@@ -26,6 +28,7 @@ module gaspart:
 use rule * from gaspart
 """
 FIGURE = "wall_pressure"
+KNOWN = json.loads((Path(__file__).parent / "digests.json").read_text())
 OWN = re.search(
     r"^```yaml\n(# my_gas\.yaml\n.*?)^```$",
     (ROOT / "docs/adding-a-figure.md").read_text(encoding="utf-8"),
@@ -33,7 +36,28 @@ OWN = re.search(
 )
 
 
-def test_another_workflow_uses_it_as_a_module(tmp_path):
+CITATION = """cff-version: 1.2.0
+message: cite it
+title: my gas
+version: "1"
+license: MIT
+authors:
+- {given-names: Ada, family-names: Example}
+"""
+PREFIXED = f"""
+module other:
+    snakefile: "{ROOT / "Snakefile"}"
+    config: config
+    prefix: "parts/walls"
+
+use rule * from other as other_*
+"""
+
+
+def test_a_module_with_a_prefix_makes_everything_below_it_with_the_same_bits(tmp_path, capsys):
+    """The project lies below the folder, where a prefix would apply to its paths too."""
+    project = tmp_path / "project"
+    copy_of_project(project)
     config, _ = merged_with_default(ROOT / "config/smoke.yaml")
     experiments = config["figures"][FIGURE]["experiments"]
     config |= {
@@ -43,19 +67,29 @@ def test_another_workflow_uses_it_as_a_module(tmp_path):
         "animations": {},
     }
     write_yaml(tmp_path / "settings.yaml", config)
-    (tmp_path / "Snakefile").write_text(SNAKEFILE)
-    here = Workspace(tmp_path)
-    result = here.snakemake("--cores", "1", "claims", f"results/figures/{FIGURE}.png", source=ROOT)
-    assert result.returncode == 0, result.stdout[-3000:]
-    assert (tmp_path / f"results/figures/{FIGURE}.png").read_bytes().startswith(b"\x89PNG")
-    assert f"{FIGURE}," in (tmp_path / "results/tables/claims.csv").read_text()
+    (tmp_path / "Snakefile").write_text((SNAKEFILE + PREFIXED).replace(str(ROOT), str(project)))
+    (tmp_path / "CITATION.cff").write_text(CITATION)
+    here, results = Workspace(tmp_path), tmp_path / "parts/walls/results"
+    done = here.snakemake("--cores", "1", "other_all", source=project)
+    assert done.returncode == 0, done.stdout[-3000:]
+    assert here.plan("other_all", source=project) == {}
+    assert (results / f"figures/{FIGURE}.png").read_bytes().startswith(b"\x89PNG")
+    assert f"{FIGURE}," in (results / "tables/claims.csv").read_text()
+    assert f"parts/walls/results/figures/{FIGURE}.png" in (results / "report.html").read_text()
+    made = digests(results / "smoke/points")
+    assert made and made == {name: KNOWN[name] for name in made}
+    archive = tmp_path / "walls.zip"
+    assert main(["archive", str(results), "-o", str(archive)]) == 0, capsys.readouterr().err
+    assert main(["verify", str(archive), "--rerun", "1"]) == 0, capsys.readouterr()
     assert sorted(path.name for path in tmp_path.iterdir() if path.name[0] != ".") == [
+        "CITATION.cff",
         "Snakefile",
-        "results",
+        "parts",
+        "project",
         "settings.yaml",
+        "walls.zip",
     ]
-    report = here.snakemake("--dry-run", "--cores", "1", "report", source=ROOT)
-    assert report.returncode == 0, report.stdout[-2000:]
+    assert "report" in here.plan("report", source=project)  # of the module without a prefix
 
 
 def test_a_module_without_a_config_is_one_line(tmp_path):
@@ -78,16 +112,6 @@ def test_a_module_may_have_figures_of_its_own_only(tmp_path):
     assert here.plan("all", source=ROOT) == {**STAGES, "claims": 1, "report": 1, "all": 1}
     write_yaml(tmp_path / "settings.yaml", config | {"figures": {}})
     assert here.plan("points", source=ROOT) == {"warm": 1, "simulate": 3, "points": 1}
-
-
-CITATION = """cff-version: 1.2.0
-message: cite it
-title: my gas
-version: "1"
-license: MIT
-authors:
-- {given-names: Ada, family-names: Example}
-"""
 
 
 def test_results_of_a_module_are_archived_and_verified(tmp_path, capsys):

@@ -1,5 +1,6 @@
 """Which rules run again after a change."""
 
+import re
 import resource
 import subprocess
 import sys
@@ -159,13 +160,25 @@ def test_warming_again_reruns_nothing_else(smoke):
 
 
 def test_one_figure_and_the_named_targets_can_be_requested(fresh):
+    plan_of_all = fresh.plan(*SMOKE)
+    assert "draw_for_journal" not in plan_of_all
     plan = fresh.plan(*SMOKE, "--", "results/smoke/figures/virial_discs.png")
     assert plan["draw"] == plan["measure"] == 1
     assert "judge" not in plan
     assert "draw" not in fresh.plan(*SMOKE, "--", "claims")
     assert "report" in fresh.plan(*SMOKE, "--", "report")
+    assert fresh.plan(*SMOKE, "--", "journal")["draw_for_journal"] == plan_of_all["draw"]
 
 
 def test_the_full_reproduction_can_be_planned(fresh):
     plan = fresh.plan()
     assert plan["draw"] == plan["measure"] == plan["judge"]
+
+
+def test_the_first_figures_are_of_the_full_reproduction():
+    """They are planned from its points, so that `make` after `make first` repeats nothing."""
+    text = (ROOT / "workflow/rules/common.smk").read_text(encoding="utf-8")
+    first = re.search(r"FIRST = \[name for name in \(([^)]*)\)", text)
+    assert first
+    named = re.findall(r'"(\w+)"', first[1])
+    assert len(named) == 3 and set(named) <= set(read_yaml(ROOT / "config/config.yaml")["figures"])

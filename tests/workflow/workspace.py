@@ -59,6 +59,7 @@ class Workspace:
 
 
 def copy_of_project(path):
+    path.mkdir(exist_ok=True)
     for part in PARTS:
         source = ROOT / part
         if source.is_dir():

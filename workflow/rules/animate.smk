@@ -19,7 +19,6 @@ rule animate:
         runtime=30,
     params:
         modules=digest(*sources("animate")),
-        trajectory=lambda wildcards: animated(wildcards).replica_path(0),
         settings=lambda wildcards: settings_of_animation(wildcards),
     script:
         "../scripts/animate.py"

@@ -19,6 +19,7 @@ sys.path.insert(0, str(ROOT / "src"))
 if " " in sys.executable:
     sys.executable = shlex.quote(sys.executable)
 
+from gaspart.reproduction import job_server
 from gaspart.reproduction.claims.captions import filled
 from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import check, explained
@@ -39,8 +40,8 @@ if workflow.is_main_process:
     try:
         read_numbers(config, files)
         POINTS = check(config, files)
-        for kept in ("results", ".snakemake"):
-            folder = kept if os.path.exists(kept) else "."
+        for kept in (workflow.modifier.modify_path("results"), ".snakemake"):
+            folder = next(path for path in (kept, *Path(kept).parents) if os.path.exists(path))
             if not os.access(folder, os.W_OK):
                 problem = f"this user may not write to it, where the workflow keeps {kept}"
                 raise SceneError("folder", os.path.abspath(folder), problem)
@@ -54,6 +55,7 @@ else:
     POINTS = all_points(config)
 
 FIGURES = {name: functions(name, block)[0] for name, block in config["figures"].items()}  # family of each
+FIRST = [name for name in ("virial_discs", "speed_relaxation", "speed_distribution_discs") if name in FIGURES]
 OWN_CAPTIONS = {name: caption(block) for name, block in config["figures"].items() if "kind" in block}
 # Where figures, claims, tables, logs and the report of this run lie.
 RESULTS = f"results/{config['run']}" if config.get("run") else "results"
@@ -65,6 +67,11 @@ pathvars:
 
 ANIMATIONS = [name for name, block in config.get("animations", {}).items() if block]
 FILMS = {name: config["animations"][name].get("figure", "") for name in ANIMATIONS}  # beside which figure
+
+
+def of_project(name):
+    """A file of this project, as an input: the prefix of a module is that of its results alone."""
+    return local(str(FOLDER / name))
 
 
 def share(paths):

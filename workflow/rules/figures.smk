@@ -7,9 +7,8 @@ rule draw:
     output:
         png=flagged("<results>/figures/{figure}.png", "png"),
         svg=flagged("<results>/figures/{figure}.svg", "svg"),
-        # The same for a column of a journal. The report shows these pictures on narrow screens.
+        # The same for a column of a journal, which the report shows on narrow screens.
         journal_png="<results>/figures/journal/{figure}.png",
-        journal_pdf="<results>/figures/journal/{figure}.pdf",
     log:
         "<results>/logs/draw/{figure}.log",
     benchmark:
@@ -29,23 +28,38 @@ rule draw:
         "../scripts/draw.py"
 
 
+use rule draw as draw_for_journal with:
+    output:
+        journal_pdf="<results>/figures/journal/{figure}.pdf",
+    log:
+        "<results>/logs/draw_for_journal/{figure}.log",
+    benchmark:
+        "<results>/benchmarks/draw_for_journal/{figure}.tsv"
+
+
+def page_of(figures, claims, films):
+    """The input of a page with some figures, the table of their claims and the films beside them."""
+    stated = [figure for figure in figures if figure not in OWN_CAPTIONS]
+    return dict(
+        pictures=expand("<results>/figures/{figure}.png", figure=figures),
+        vectors=expand("<results>/figures/{figure}.svg", figure=figures),
+        columns=expand("<results>/figures/journal/{figure}.png", figure=figures),
+        datasets=expand("<results>/measurements/{figure}.nc", figure=figures),
+        captions=[of_project(f"workflow/report/{figure}.rst") for figure in stated],
+        claims=claims,
+        films=expand("<results>/animations/{animation}.mp4", animation=films),
+        posters=expand("<results>/animations/{animation}.jpg", animation=films),
+        template=of_project("workflow/report/report.html.j2"),
+        style=of_project("workflow/report/page.css"),
+        behaviour=[of_project(f"workflow/report/{name}") for name in ("page.js", "engines.js", "states.js")],
+        findings=of_project("workflow/report/findings.yaml"),
+        references=of_project("workflow/report/references.yaml"),
+    )
+
+
 rule report:
     input:
-        pictures=expand("<results>/figures/{figure}.png", figure=FIGURES),
-        vectors=expand("<results>/figures/{figure}.svg", figure=FIGURES),
-        columns=expand("<results>/figures/journal/{figure}.png", figure=FIGURES),
-        datasets=expand("<results>/measurements/{figure}.nc", figure=FIGURES),
-        captions=[
-            str(FOLDER / f"workflow/report/{figure}.rst") for figure in FIGURES if figure not in OWN_CAPTIONS
-        ],
-        claims="<results>/tables/claims.csv",
-        films=expand("<results>/animations/{animation}.mp4", animation=ANIMATIONS),
-        posters=expand("<results>/animations/{animation}.jpg", animation=ANIMATIONS),
-        template=str(FOLDER / "workflow/report/report.html.j2"),
-        style=str(FOLDER / "workflow/report/page.css"),
-        behaviour=[str(FOLDER / "workflow/report" / name) for name in ("page.js", "engines.js", "states.js")],
-        findings=str(FOLDER / "workflow/report/findings.yaml"),
-        references=str(FOLDER / "workflow/report/references.yaml"),
+        **page_of(FIGURES, "<results>/tables/claims.csv", ANIMATIONS),
     output:
         "<results>/report.html",
     log:
@@ -84,3 +98,22 @@ use rule report as report_in_one_file with:
         films=FILMS,
         title=lambda wildcards: config["title"],
         one_file=True,
+
+
+# Three figures of the sources on a page of their own, which a newcomer has in two minutes.
+use rule report as report_of_first with:
+    input:
+        **page_of(FIRST, "<results>/tables/first.csv", []),
+    output:
+        "<results>/first.html",
+    log:
+        "<results>/logs/report_of_first.log",
+    benchmark:
+        "<results>/benchmarks/report_of_first.tsv"
+    params:
+        modules=digest(*sources("report"), *FAMILIES),
+        figures={figure: FIGURES[figure] for figure in FIRST},
+        own_captions={},
+        films={},
+        title=lambda wildcards: f"{len(FIRST)} of {len(FIGURES)} figures",
+        one_file=False,

@@ -78,3 +78,14 @@ rule claims:
         modules=digest(*sources("claims")),
     script:
         "../scripts/claims.py"
+
+
+use rule claims as claims_of_first with:
+    input:
+        tables=expand("<results>/claims/{figure}.csv", figure=FIRST),
+    output:
+        "<results>/tables/first.csv",
+    log:
+        "<results>/logs/claims_of_first.log",
+    benchmark:
+        "<results>/benchmarks/claims_of_first.tsv"

@@ -15,6 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 
 from gaspart.errors import SceneError, SimulationError
 from gaspart.interruption import exit_on_signals
+from gaspart.reproduction import job_time
 
 exit_on_signals()  # before the slow imports of the scripts
 # What is loaded or compiled are some million objects, which stay. They are not searched repeatedly: 0.15 s of
@@ -27,7 +28,8 @@ def job(snakemake):
     """Send output to the rule's log. A failure is one line, there and on the terminal.
 
     A user's mistake leaves no traceback and gives exit code 2; any other failure leaves a traceback in the
-    log alone. A signal is one line too, with exit code 130 or 143, after the state has been saved.
+    log alone. A signal is one line too, with exit code 130 or 143, after the state has been saved. The log of
+    a job that succeeds ends with its processor time.
     """
     name = " ".join(["gaspart:", snakemake.rule, *snakemake.wildcards])
     terminal = os.dup(2)
@@ -54,6 +56,7 @@ def job(snakemake):
                     traceback.print_exc(file=log)
             report(str(error) if expected else f"{type(error).__name__}: {error}")
             sys.exit(2 if expected else 1)
+        print(job_time.stated())
 
 
 def function(module, name):

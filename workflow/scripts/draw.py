@@ -1,4 +1,4 @@
-"""One figure in both layouts; the log states what cannot be read in it."""
+"""One figure in the layouts that are requested; the log states what cannot be read in it."""
 
 from _job import function, job
 
@@ -8,11 +8,14 @@ with job(snakemake):
     from gaspart.rendering import style
     from gaspart.rendering.legibility import flaws
 
-    figure, output = snakemake.wildcards.figure, snakemake.output
+    figure, output = snakemake.wildcards.figure, dict(snakemake.output.items())
     draw = function(snakemake.params.module, snakemake.params.function)
     dataset = xr.load_dataset(snakemake.input.dataset)
-    pictures = {"page": (output.png, output.svg), "journal": (output.journal_png, output.journal_pdf)}
-    for layout, paths in pictures.items():
+    layouts = {"page": ("png", "svg"), "journal": ("journal_png", "journal_pdf")}
+    for layout, names in layouts.items():
+        paths = [output[name] for name in names if name in output]
+        if not paths:
+            continue
         with style.applied(layout):
             picture = draw(dataset)
             for path in paths:

@@ -12,7 +12,10 @@ with job(snakemake):
     figure = snakemake.wildcards.figure
     # The claims of other figures, or points of experiments.
     tables = list(snakemake.input.tables)
-    points = tables or [Point.from_dict(values) for values in snakemake.params.points]
+    points = tables or [
+        Point.from_dict(values, path)
+        for values, path in zip(snakemake.params.points, snakemake.input.points, strict=True)
+    ]
     settings = {key: value for key, value in snakemake.params.settings.items() if key != "experiments"}
     dataset = function(snakemake.params.module, snakemake.params.function)(points, settings)
     dataset.attrs.update(

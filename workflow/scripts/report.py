@@ -1,6 +1,5 @@
 """The report: figures, captions, claims, their provenance and run times."""
 
-import csv
 import json
 import os
 import platform
@@ -8,19 +7,18 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from _job import job
+from _job import job, job_time
 
 TOOLS = ["numpy", "numba", "scipy", "xarray", "matplotlib", "snakemake"]
 
 
-def run_times(folder):
-    """Seconds of every rule: number of jobs, their sum, the longest."""
-    spent = {}
-    for path in sorted(Path(folder).rglob("*.tsv")):
-        rule = path.relative_to(folder).parts[0].removesuffix(".tsv")
-        with path.open(newline="", encoding="utf-8") as file:
-            times = [float(row["s"]) for row in csv.DictReader(file, delimiter="\t")]
-        spent.setdefault(rule, []).extend(times)
+def run_times(results):
+    """Seconds of processor time of every rule: number of jobs, their sum, the longest."""
+    spent, folder = {}, results / "logs"
+    for path in sorted(folder.rglob("*.log")):
+        rule, *names = path.relative_to(folder).with_suffix("").parts
+        if used := job_time.used(results, rule, *names):
+            spent.setdefault(rule, []).append(used.seconds)
     return [
         {"rule": rule, "jobs": len(times), "total": sum(times), "longest": max(times)}
         for rule, times in spent.items()
@@ -103,7 +101,7 @@ with job(snakemake):
         references=sources,
         words=table.COUNTED,
         kinds=table.PLURALS,
-        times=run_times(folder / "benchmarks"),
+        times=run_times(folder),
         versions={"gaspart": __version__, "python": platform.python_version()}
         | {name: version(name) for name in TOOLS},
         machine=f"{platform.machine()}, {os.cpu_count()} processors, {platform.system()}",

@@ -2,6 +2,7 @@
 
 import sys
 
-from _job import function
+from _job import function, job_time
 
 function("gaspart.reproduction.points.variants", "compile_kernels")(sys.argv[1])
+print(job_time.stated())

@@ -12,9 +12,7 @@ from gaspart.analysis.observables import OBSERVABLES, require_modelled
 from gaspart.engines import Engine, offered
 from gaspart.engines.asked import Asked, Candidate
 from gaspart.errors import SceneError
-from gaspart.scene.faces import sliding_faces
 from gaspart.scene.scene import Scene
-from gaspart.scene.thermal_faces import face_temperatures
 
 
 def suited(target: Target) -> tuple[list[Engine], dict[str, str]]:
@@ -49,12 +47,14 @@ def candidates(
 def asked_of(target: Target, accuracy: float, conditions: Conditions) -> Asked:
     """What engines are asked for."""
     governed = transported(target.scene, target.observable)
-    return Asked(target.observable, accuracy, conditions, target.face, governed, target.initial)
+    presses = target.declared.of_impulses  # a force has the relative errors of a pressure
+    observable = "pressure" if presses else target.observable
+    return Asked(observable, accuracy, conditions, target.face, governed, target.initial)
 
 
 def transported(scene: Scene, observable: str) -> bool:
     """Whether transport coefficients govern an observable: those of lags, and any where something drives a
     flow of heat or of momentum."""
-    lost = scene.restitution is not None and scene.restitution.dissipative
-    flows = len(face_temperatures(scene)) > 1 or lost or bool(sliding_faces(scene))
+    lost = scene.dissipates
+    flows = len(scene.face_temperatures) > 1 or lost or bool(scene.sliding_faces)
     return OBSERVABLES[observable].memory or flows

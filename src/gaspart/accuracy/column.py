@@ -13,10 +13,10 @@ from functools import cached_property
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines.dsmc.rates import accessible
 from gaspart.scene.faces import Thermal
 from gaspart.scene.scene import Scene
-from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.state.state import State
 
 _POINTS = 1200
@@ -135,7 +135,7 @@ def pulled(scene: Scene) -> Pulled | None:
     hard walls, or ones at one temperature, that lose no energy."""
     pull = [(k, g) for k, g in enumerate(scene.gravity or ()) if g]
     kinds = [kind for kind in scene.kinds if kind.count]
-    law, thermal = scene.restitution, face_temperatures(scene)
+    law, thermal = scene.restitution, scene.face_temperatures
     if len(pull) != 1 or scene.thermostat is not None or scene.walls or not kinds:
         return None
     if law is not None and (law.dissipative or law.rough):
@@ -162,7 +162,7 @@ def between(real: Column, ideal: Column, observable: str, top: bool | None) -> f
         "temperature": abs(ideal.temperature / real.temperature - 1.0),
         "density": _of_profiles(real, ideal),
     }
-    if observable == "pressure" and top is not None:
+    if OBSERVABLES[observable].of_impulses and top is not None:
         exact = real.pressure(top)
         return abs(ideal.pressure(top) / exact - 1.0) if exact > 0.0 else math.inf
     return differences.get(observable, max(differences.values()))

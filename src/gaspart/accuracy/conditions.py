@@ -20,7 +20,6 @@ from gaspart.engines.dsmc.rates import accessible, contact_values
 from gaspart.scene.faces import Thermal
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
-from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.state.state import State
 
 _LAYERS = 12
@@ -58,7 +57,7 @@ class Conditions:
     @cached_property
     def _kinds(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(K,) radii, masses and mean number densities of the kinds of particles that move."""
-        kinds = [kind for kind in self.scene.kinds if kind.count and not kind.fixed]
+        kinds = self.scene.moving_kinds
         radii = np.array([kind.radius for kind in kinds])
         masses = np.array([kind.mass for kind in kinds])
         return radii, masses, np.array([kind.count for kind in kinds]) / float(self.free.prod())
@@ -118,7 +117,7 @@ class Conditions:
     @property
     def quickened(self) -> float:
         """How often particles collide over how often they would in an even gas as hot as they start."""
-        kinds = [kind for kind in self.scene.kinds if kind.count and not kind.fixed]
+        kinds = self.scene.moving_kinds
         d = self.scene.dimension
         start = sum(kind.count * kind.initial_temperature(d) for kind in kinds) / self.scene.count
         hotter = np.sqrt(self.temperature / (start or math.inf))
@@ -168,7 +167,7 @@ def known_conditions(scene: Scene, start: State) -> Conditions | None:
             return None
     if not _is_even(scene):
         return None
-    heat = max(face_temperatures(scene), default=0.0)
+    heat = max(scene.face_temperatures, default=0.0)
     return even_conditions(scene, heat or kinetic_temperature(scene, start))
 
 
@@ -179,7 +178,7 @@ def _is_even(scene: Scene) -> bool:
         scene.gravity is not None,
         law is not None and (law.dissipative or law.rough),
         scene.thermostat is not None,
-        len(face_temperatures(scene)) > 1,
+        len(scene.face_temperatures) > 1,
         any(not isinstance(face, Thermal) or face.slides for face in scene.faces.values()),
         bool(scene.walls),
     ]
@@ -200,7 +199,7 @@ def even_conditions(scene: Scene, temperature: float) -> Conditions:
 
 def _of_column(scene: Scene, pulled_scene: Pulled, start: State) -> Conditions:
     """Under gravity. Raises ValueError where theory knows nothing."""
-    energy, heat = pulled_scene.energy_of(start), max(face_temperatures(scene), default=None)
+    energy, heat = pulled_scene.energy_of(start), max(scene.face_temperatures, default=None)
     real, ideal = (pulled_scene.settled(energy, heat, one) for one in (False, True))
     z, numbers = real.heights, real.numbers.sum(axis=0)
     share = numbers * np.gradient(z)

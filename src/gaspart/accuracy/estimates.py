@@ -95,9 +95,9 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     from gaspart.analysis.measuring import measure
     from gaspart.analysis.run import open_run
 
-    with open_run(data, start, sheared=True) as run:
-        if observable == "pressure":
-            return _pressures(run)
+    with open_run(data, start, sheared=True, varying=True) as run:
+        if OBSERVABLES[observable].of_impulses:
+            return _on_walls(run, observable)
         time = float(run.time[-1] - run.time[0])
     declared, found = OBSERVABLES[observable], measure(data, observable, start)
     parts = [np.asarray(of, dtype=float) for of in (found.estimate, found.error, _freedom(found))]
@@ -143,17 +143,18 @@ def _norm(values: np.ndarray) -> float:
     return float(np.sqrt(np.mean(values**2))) if values.size else 0.0
 
 
-def _pressures(run: Run) -> dict[str, Component]:
-    """The pressures on walls, each from a series over intervals of frames."""
+def _on_walls(run: Run, observable: str) -> dict[str, Component]:
+    """The pressures or forces on walls, each from a series over intervals of frames."""
     from gaspart.analysis.controls import stores
-    from gaspart.analysis.pressure import controlled_pressures, pressures_on_walls
+    from gaspart.analysis.counters import controlled_on_walls, on_walls
 
-    faces, series = pressures_on_walls(run, np.arange(len(run.time)))
+    faces, series = on_walls(run, np.arange(len(run.time)), observable)
     if np.isnan(series).any():
-        raise SceneError("particles at rest", "NaN", "their thrust on walls is not known")
+        rule = "is not known of every wall: particles rest, or have several sizes between walls that move"
+        raise SceneError(observable, "NaN", rule)
     if len(series) < LEAST_FREEDOM + 1:
         raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_FREEDOM + 2:g} or more")
-    improved, stored = controlled_pressures(run), stores(run)
+    improved, stored = controlled_on_walls(run, observable), stores(run)
     interval = float(np.diff(run.time).mean())
     found = {}
     for place, (face, one) in enumerate(zip(map(str, faces), series.T, strict=True)):

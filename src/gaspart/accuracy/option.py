@@ -1,8 +1,8 @@
 """An engine with its settings for a scene, and what a run with it costs.
 
-A run of a measured time t is off by at most |bias| + 1.96 sqrt(variance(t)) in 95 % of all runs, relatively.
-The bias is bounded by the engine, from theory or from measurements; noise and processor time are those of a
-pilot run, or of the table, which has those of pilots that were kept.
+The relative error of a run of a measured time t is its standard error sqrt(variance(t)) and, in full, the
+bound on its bias. The bias is bounded by the engine, from theory or from measurements; noise and processor
+time are those of a pilot run, or of the table, which has those of pilots that were kept.
 """
 
 from __future__ import annotations
@@ -12,11 +12,13 @@ import os
 from dataclasses import dataclass
 
 from gaspart.accuracy.estimates import Component
-from gaspart.accuracy.noise import half_width, room
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
 from gaspart.engines.asked import Candidate
+from gaspart.trajectory.recipe import MOST_REPLICAS
 
+WORTH = 1.5
+"""Cost of the exact engine, divided by that of another engine, from which on the other one is preferred."""
 _PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilibration
 
 
@@ -59,10 +61,10 @@ class Option:
         return self.duration * self.speed
 
     @property
-    def half_width(self) -> float:
-        """Of the 95 % interval that the run reaches, relative, inf likewise."""
+    def error(self) -> float:
+        """Relative standard error that the run reaches, with the bound on its bias; inf likewise."""
         measured = self.measured
-        return half_width(self.bias, self.noise.reaches(measured)) if math.isfinite(measured) else math.inf
+        return self.bias + self.noise.reaches(measured) if math.isfinite(measured) else math.inf
 
     def cost(self, accuracy: float) -> float:
         """Processor seconds for an accuracy, without a budget; inf if it is never reached."""
@@ -79,12 +81,20 @@ class Option:
 
     def _length(self, accuracy: float) -> float:
         """The measured time for an accuracy, of a run that is not too short."""
-        return max(self.noise.length(room(accuracy, self.bias)), self.part(self.least))
+        return max(self.noise.length(accuracy - self.bias), self.part(self.least))
 
 
 def ordered(options: list[Option]) -> list[Option]:
-    """The best first: the cheapest of those that reach the accuracy, or else the most accurate one."""
-    return sorted(options, key=lambda one: (max(one.half_width, one.accuracy * (1.0 + 1e-9)), one.seconds))
+    """Sort the best first: the cheapest of those that reach the accuracy, or else the most accurate one.
+
+    The exact engine is preferred unless another one is `WORTH` times as cheap.
+    """
+
+    def key(one: Option) -> tuple[float, float]:
+        seconds = one.seconds * (1.0 if one.engine.reference else WORTH)
+        return max(one.error, one.accuracy * (1.0 + 1e-9)), seconds
+
+    return sorted(options, key=key)
 
 
 def replicas_of(option: Option, longest: float) -> int:
@@ -94,4 +104,4 @@ def replicas_of(option: Option, longest: float) -> int:
         return 1
     shortest = max(_PER_EQUILIBRATION * option.settling, option.part(option.least))
     shared = min(os.cpu_count() or 1, int(option.measured / shortest)) if shortest > 0.0 else 1
-    return max(1, shared, math.ceil(option.duration / longest))
+    return min(MOST_REPLICAS, max(1, shared, math.ceil(option.duration / longest)))

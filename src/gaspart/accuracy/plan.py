@@ -10,10 +10,9 @@ import math
 from dataclasses import dataclass, replace
 
 from gaspart import theory
-from gaspart.accuracy import PILOT_SECONDS, speed
+from gaspart.accuracy import PILOT_SECONDS
 from gaspart.accuracy import tabulated as known
 from gaspart.accuracy.candidates import suited
-from gaspart.accuracy.noise import room
 from gaspart.accuracy.option import Option, ordered, replicas_of
 from gaspart.accuracy.pilot import Pilot
 from gaspart.accuracy.scatter import Scatter, start_scatter
@@ -29,7 +28,7 @@ from gaspart.engines import Engine
 from gaspart.keys.values import number
 from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
-from gaspart.trajectory.recipe import Recipe
+from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.replicas import differ
 from gaspart.trajectory.until import Requirement, Until
 
@@ -44,6 +43,8 @@ _SETTLED = 2.0
 """The part of a run that is not measured, over the time in which the energy came to its mean in the pilot."""
 _CROSSINGS = 10.0
 """How often a particle crosses a container with walls at least in a run."""
+_OF_STARTS = 0.5
+"""Scatter of the mean of replicas by their starts, divided by the accuracy, beyond which one run is made."""
 _BULK = 4.0  # the finite size of a gas should cost no more than this part of the accuracy
 
 
@@ -53,7 +54,7 @@ class Plan:
     their names in the table; value: of the observable, by the pilots or by theory; replicas: runs that share
     the measured time; pilots: their results, none of what is in the table; differing: those that differ from
     that of the exact engine by more than their bounds; places: of a curve, how many the pilots know, of which
-    the accuracy is, and how many there are."""
+    the accuracy is, and how many there are; budget: processor time of the run in s, if it is limited."""
 
     target: Target
     accuracy: float
@@ -64,6 +65,7 @@ class Plan:
     pilots: tuple[Pilot, ...] = ()
     differing: tuple[Pilot, ...] = ()
     places: tuple[int, int] = (1, 1)
+    budget: float | None = None
 
     @property
     def best(self) -> Option:
@@ -73,7 +75,7 @@ class Plan:
     @property
     def affordable(self) -> bool:
         """Whether the best option reaches the accuracy within the budget."""
-        return self.best.half_width <= self.accuracy * (1.0 + 1e-6)
+        return self.best.error <= self.accuracy * (1.0 + 1e-6)
 
     @property
     def scatter(self) -> Scatter:
@@ -97,6 +99,13 @@ class Plan:
     def duration(self) -> float:
         """Of each run, with what is not measured."""
         return self.best.whole(self.best.measured / self.replicas)
+
+    @property
+    def runs(self) -> int:
+        """Number of runs like the best option whose mean has the accuracy, if one run lacks it."""
+        best = self.best
+        noise, left = best.error - best.bias, self.accuracy - best.bias
+        return math.ceil((noise / left) ** 2) if left > 0.0 and math.isfinite(noise) else 0
 
     @property
     def seconds(self) -> float:
@@ -146,7 +155,8 @@ class Plan:
     def _until(self, duration: float) -> Until:
         """What ends a run of about a duration."""
         target = self.target
-        relative = float(f"{0.99 * room(self.accuracy, self.best.bias):.3g}")
+        left = self.accuracy - self.best.bias
+        relative = float(f"{0.99 * left if self.best.bias else left:.3g}")
         longest = max(_LONGEST * duration, *(one.duration for one in self.pilots))
         longest = min(longest, target.span[1])
         asked = Requirement(target.observable, relative, face=target.face)
@@ -161,8 +171,11 @@ def plan(
     pilot_seconds: float = PILOT_SECONDS,
     announce: Announce = lambda text: None,
 ) -> Plan:
-    """The cheapest run for a relative accuracy, half of a 95 % interval, of an observable of `gaspart
-    measure`; of the pressure on one wall as `pressure:x low`.
+    """The cheapest run for a relative accuracy of an observable of `gaspart measure`; of the pressure on one
+    wall as `pressure:x low`.
+
+    accuracy: the standard error and, in full, the bound on systematic errors, divided by the value: without
+    these what `--until` requires.
 
     budget: processor time in seconds of the run; if it does not suffice, the most accurate run within it is
     advised. The others are of scenes and observables that the table does not cover: pilot_seconds: of the two
@@ -183,19 +196,19 @@ def tabulated(
     observable: str,
     accuracy: float,
     budget: float | None = None,
-    speed_of: known.SpeedOf = speed.factor,
 ) -> Plan:
-    """`plan` by the table; speed_of: this machine's time over the table's (see `gaspart.accuracy.speed`).
-    Raises SceneError for anything that the table does not cover."""
+    """`plan` by the table, whose machine the times are of. Raises SceneError for anything that the table does
+    not cover."""
     gas, target = known.tabulated_target(scene, observable)
     accuracy, budget = _checked(accuracy, budget)
     engines, refused = suited(target)
-    options = known.options_of(target, engines, accuracy, budget, speed_of)
+    options = known.options_of(target, engines, accuracy, budget)
     able = {one.engine.timed_as for one in options}
     missing = (engine.timed_as for engine in engines if engine.timed_as not in able)
     refused |= dict.fromkeys(missing, "no setting is known to be as accurate at this density")
     replicas = replicas_of(options[0], target.span[1])
-    return Plan(target, accuracy, tuple(options), refused, known.value_of(gas, observable), replicas)
+    value = known.value_of(gas, observable)
+    return Plan(target, accuracy, tuple(options), refused, value, replicas, budget=budget)
 
 
 def piloted(
@@ -223,10 +236,14 @@ def piloted(
     reference = trials.reference
     places = reference.component.places if reference.component else (1, 1)
     shown = tuple(trials.pilots), trials.differing, places
-    made = Plan(target, accuracy, tuple(options), trials.refused, reference.value, 1, *shown)
-    # only of runs until they are accurate: otherwise the scatter of a few runs would be the error
-    able = made.affordable and target.declared.ends_runs and differ(made.recipe)
-    return replace(made, replicas=replicas_of(made.best, target.span[1])) if able else made
+    made = Plan(target, accuracy, tuple(options), trials.refused, reference.value, 1, *shown, budget)
+    if not made.affordable or not _shared(target, made.best.engine):
+        return made
+    replicas = replicas_of(made.best, target.span[1])
+    of_starts = made.scatter.value / math.sqrt(replicas)
+    if made.best.duration <= target.span[1] and of_starts > _OF_STARTS * accuracy:
+        return made  # one run has no scatter of starts
+    return replace(made, replicas=replicas)
 
 
 def _checked(accuracy: float, budget: float | None) -> tuple[float, float | None]:
@@ -244,12 +261,19 @@ def _options(trials: Trials, budget: float | None) -> list[Option]:
     options = []
     for one, cost in trials.speeds.items():
         affordable = math.inf if budget is None else budget / cost
-        most = min(affordable, _longest(target, longest), target.span[1])
+        shared = MOST_REPLICAS if _shared(target, one.engine) else 1
+        most = min(affordable, _longest(target, longest), shared * target.span[1])
         limits = _least(target, one.engine, longest), most
         bias = trials.bias(one)
         noise = trials.noise(one.engine)
         options.append(Option(one, bias, noise, cost, trials.accuracy, *limits))
     return ordered(options)
+
+
+def _shared(target: Target, engine: Engine) -> bool:
+    """Return True if replicas can share the measured time: runs until accurate, which differ by their
+    seeds. Otherwise the scatter of a few runs would be the error."""
+    return target.declared.ends_runs and differ(target.scene, engine)
 
 
 def _longest(target: Target, pilot: Pilot) -> float:
@@ -267,7 +291,7 @@ def _least(target: Target, engine: Engine, pilot: Pilot) -> float:
     correlations the frames that give an error."""
     scene, frequency = target.scene, target.frequency
     collisions = (EQUILIBRATED + LEAST) / frequency if frequency > 0.0 else 0.0
-    crossings = 0.0 if all(scene.container.periodic) else _CROSSINGS * target.crossing
+    crossings = 0.0 if scene.is_periodic else _CROSSINGS * target.crossing
     settled = _SETTLED * pilot.settled / EQUILIBRATION
     if target.correlated:
         sampled = target.schedule(engine, 0.0)[0]

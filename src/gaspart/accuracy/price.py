@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from gaspart.accuracy import table
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import Engine
-from gaspart.scene.features import FEATURES, features
+from gaspart.scene.features import FEATURES
 from gaspart.scene.scene import Scene
 
 _NAMES = {
@@ -38,13 +38,13 @@ def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
     """The price of an observable of a scene with an engine, measured in a gas of 4000 spheres at a packing
     fraction of 0.2 (figure `price_of_features`), where a feature that is absent costs nothing."""
     has = {
-        "walls": not all(scene.container.periodic),
+        "walls": not scene.is_periodic,
         "gravity": any(scene.gravity or ()),
         "spin": scene.rough,
         "two_masses": len({kind.mass for kind in scene.kinds}) > 1,
         "stress": OBSERVABLES[observable].needs == "fluxes",
     }
-    known, present = table.prices(engine.timed_as), features(scene)
+    known, present = table.prices(engine.timed_as), scene.features
     ratios = {_NAMES[name]: known[name] for name in _NAMES if has[name] and name in known}
     unknown = [_NAMES[name] for name in _NAMES if has[name] and name not in known]
     unknown += [FEATURES[name].meaning for name in FEATURES if name in present and name not in _MEASURED]

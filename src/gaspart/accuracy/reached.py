@@ -15,6 +15,11 @@ small: its 95 % intervals would cover the true value in 88 to 94 % of runs. Two 
 Of replicas, which are independent, the value is the mean, and the error follows from those of each, by which
 degrees of freedom add up. They are examined when all have so many frames.
 
+Where a run keeps the energy of its start, which its seed draws, the run shows only the error for this
+energy: other seeds scatter by more (`gaspart.accuracy.scatter`). The mean of replicas is of no single energy,
+so that its error has the scatter of the starts in it. No longer run reduces this part. Noise has to be as
+small as what the part leaves of the required accuracy, or as the accuracy itself if nothing is left.
+
 Both were measured with autoregressive series (`tests/accuracy/test_until.py`); for fixed widths and
 independent samples the first is the problem of Chow and Robbins, Ann. Math. Stat. 36, 457 (1965).
 """
@@ -46,51 +51,79 @@ IDLE = 16384
 
 @dataclass(frozen=True)
 class AccuracyStatus:
-    """What a run knows of an observable.
+    """Estimate of an observable by a run, compared with the required accuracy.
 
-    asked: what is required; component: the face or axis that is known worst, "" for a scalar; value; error:
-    its standard error, correlations included, the larger one of the last two examinations, inf where nothing
-    was measured, for the reason in `rule`; freedom: its degrees of freedom; confirmed: whether there were
-    two examinations.
+    asked: what is required; component: the face or axis that is known worst, "" for a scalar; value; noise:
+    its standard error at the energies of the runs, correlations included, the larger one of the last two
+    examinations, inf where nothing was measured, for the reason in `rule`; freedom: degrees of freedom of the
+    noise; confirmed: whether there were two examinations; scatter: relative standard deviation of the value
+    from seed to seed by the energy of the start, beyond the noise; replicas: number of runs.
     """
 
     asked: Requirement
     component: str = ""
     value: float = math.nan
-    error: float = math.inf
+    noise: float = math.inf
     freedom: float = math.inf
     confirmed: bool = False
     rule: str = ""
+    scatter: float = 0.0
+    replicas: int = 1
+
+    @property
+    def of_starts(self) -> float:
+        """Relative standard error of the mean of replicas by the energies of their starts; 0 for a single
+        run, whose interval is for its energy."""
+        return self.scatter / math.sqrt(self.replicas) if self.replicas > 1 else 0.0
+
+    @property
+    def error(self) -> float:
+        """The standard error: of a single run for its energy, of replicas with the scatter of the starts."""
+        return math.hypot(self.noise, self.of_starts * self.value) if self.of_starts else self.noise
 
     @property
     def accuracy(self) -> float:
         """The relative standard error; inf where it is not known."""
-        known = math.isfinite(self.value) and self.value != 0.0
-        return self.error / abs(self.value) if known else math.inf
+        return self._relative(self.error)
 
     @property
     def bound(self) -> float:
         """The upper bound of `accuracy`, which the true one exceeds with probability 10 % by itself."""
-        return self.accuracy * bound(self.freedom)
+        return math.hypot(self._relative(self.noise) * bound(self.freedom), self.of_starts)
 
     @property
     def interval(self) -> tuple[float, float]:
         """The interval that covers the true value in 95 % of runs."""
-        half = self.error * _student(self.freedom) if math.isfinite(self.error) else math.inf
+        if not math.isfinite(self.error):
+            return -math.inf, math.inf
+        half = math.hypot(
+            self.noise * _student(self.freedom), self.of_starts * self.value * _student(math.inf)
+        )
         return self.value - half, self.value + half
 
     @property
     def excess(self) -> float:
-        """The upper bound of the error over the required one; above 1 while it is not confirmed."""
+        """The upper bound of the noise divided by the required one; above 1 while it is not confirmed."""
         if not self.confirmed or not math.isfinite(self.accuracy):
             return math.inf
         few = math.sqrt(LEAST_FREEDOM / self.freedom)
-        return max(self.bound / self.asked.accuracy, few if few > 1.0 else 0.0)
+        noise = self._relative(self.noise) * bound(self.freedom)
+        return max(noise / noise_allowed(self.asked.accuracy, self.of_starts), few if few > 1.0 else 0.0)
 
     @property
     def met(self) -> bool:
-        """Whether the required accuracy was reached."""
-        return self.excess <= 1.0
+        """True if the required accuracy was reached."""
+        return self.excess <= 1.0 and self.of_starts < self.asked.accuracy
+
+    def _relative(self, error: float) -> float:
+        """Return an error divided by the value; inf if the value is not known."""
+        known = math.isfinite(self.value) and self.value != 0.0
+        return error / abs(self.value) if known else math.inf
+
+
+def noise_allowed(accuracy: float, of_starts: float) -> float:
+    """Return the relative noise at which a run ends, beside a relative error of the mean by its starts."""
+    return math.sqrt(accuracy**2 - of_starts**2) if of_starts < accuracy else accuracy
 
 
 def _student(freedom: float) -> float:
@@ -140,12 +173,13 @@ class Examiner:
     def __init__(self, report: Callable[[list[AccuracyStatus]], None] | None = None) -> None:
         self._report = report
         self._known: dict[tuple[Requirement, int], dict[str, Estimate] | str] = {}
+        self._scatters: dict[Requirement, float] = {}
 
     def __call__(self, runs: Sequence[xr.Dataset], until: Until, frames: int) -> float:
         """The largest error over the required one, by the first frames of open trajectories; 0 for a run
         without a longest duration that is given up, since nothing happens that could be measured."""
         reached = self.examine(runs, until.accuracies, frames)
-        collisions = sum(float(data["collisions"][frames - 1]) for data in runs)
+        collisions = sum(_contacts(data.isel(frame=frames - 1)) for data in runs)
         if self._report:
             self._report(reached)
         if until.at_most is None and frames >= IDLE and _is_idle(reached, collisions):
@@ -173,15 +207,22 @@ class Examiner:
                     for time in (times[before - 1], times[frames - 1])
                 )
                 ratio = max(first, 0.0) / last
-            parts = []
+            parts, starts = [], (self._scatter(runs[0], asked), len(runs))
             for name, estimate in now.items():
                 other = None if isinstance(earlier, str) else earlier.get(name)
                 made = confirmed(estimate, other, ratio)
-                parts.append(
-                    AccuracyStatus(asked, name, made.value, made.error, made.freedom, other is not None)
-                )
+                known = made.value, made.error, made.freedom, other is not None
+                parts.append(AccuracyStatus(asked, name, *known, "", *starts))
             results.append(max(parts, key=lambda one: (one.excess, one.accuracy)))
         return results
+
+    def _scatter(self, run: xr.Dataset, asked: Requirement) -> float:
+        """Return the relative scatter of an observable from seed to seed by the energy of the start."""
+        from gaspart.accuracy.scatter import scatter_of_run  # loads the analysis
+
+        if asked not in self._scatters:
+            self._scatters[asked] = scatter_of_run(run, asked.observable, asked.face).value
+        return self._scatters[asked]
 
     def _estimates(
         self, runs: Sequence[xr.Dataset], asked: Requirement, frames: int
@@ -197,6 +238,14 @@ class Examiner:
                     raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
                 self._known[key] = f"{error.key}: {error.rule}"
         return self._known[key]
+
+
+def _contacts(frame: xr.Dataset) -> float:
+    """Return the number of collisions until a frame; with open faces, also of particles that entered or hit
+    a face."""
+    entered = "entries" in frame and bool(frame["entries"].any())  # not of every engine
+    names = ("collisions", "entries", "wall_hits") if entered else ("collisions",)
+    return float(sum(frame[name].sum() for name in names))
 
 
 def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:

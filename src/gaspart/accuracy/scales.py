@@ -10,14 +10,18 @@ import math
 from dataclasses import dataclass
 
 from gaspart import theory
-from gaspart.engines.dsmc.rates import moving_kinds, rates, square_of
+from gaspart.engines.dsmc.rates import rates, square_of
 from gaspart.scene.face_checks import piston_end
+from gaspart.scene.faces import Open
+from gaspart.scene.open_faces import attempt_rate
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
 
 _COLLISIONS, _CROSSINGS = 200.0, 10.0
 """Of a particle, in the suggested duration: both."""
 _FRAMES = 1000  # the most that are suggested
+_KNUDSEN = 10.0
+"""Mean free path, in lengths of the shortest side, beyond which a gas is free-molecular."""
 _KINDS = 200
 """Each pair of so many is evaluated; single particles are one each."""
 _REDUCED = 1e5
@@ -29,7 +33,8 @@ class Scales:
     """thermal_speed: sqrt(k_B T / m), 0 if nothing moves at the start; mean_free_path and collision_time, of
     a particle between two collisions, infinite if there are none; crossing_time: in which a particle crosses
     the shortest side of the container, as fast as it is or as it falls; packing_fraction; end: the longest
-    run that is suggested, where a piston moves at a stated speed."""
+    run that is suggested, where a piston moves at a stated speed; walled: whether any side is not periodic;
+    attempts: particles of reservoirs that try to enter per time."""
 
     thermal_speed: float
     mean_free_path: float
@@ -37,12 +42,21 @@ class Scales:
     crossing_time: float
     packing_fraction: float
     end: float = math.inf
+    walled: bool = False
+    attempts: float = 0.0
+
+    @property
+    def free_molecular(self) -> bool:
+        """True if particles meet walls far more often than one another."""
+        known = self.walled and math.isfinite(self.mean_free_path)
+        return known and self.collision_time > _KNUDSEN * self.crossing_time
 
     @property
     def event_time(self) -> float:
-        """The time between collisions, or, where there are none, to cross the container; infinite if nothing
-        moves."""
-        return self.collision_time if math.isfinite(self.collision_time) else self.crossing_time
+        """The time between collisions, or, where there are none or a `free_molecular` gas has walls, to cross
+        the container; infinite if nothing moves."""
+        collides = math.isfinite(self.collision_time) and not self.free_molecular
+        return self.collision_time if collides else self.crossing_time
 
     @property
     def interval(self) -> float | None:
@@ -54,7 +68,8 @@ class Scales:
 
     @property
     def duration(self) -> float | None:
-        """A duration, a multiple of the interval: 200 collisions of a particle and ten crossings."""
+        """A duration, a multiple of the interval: 200 collisions of a particle and ten crossings, or 200
+        crossings of a `free_molecular` gas."""
         if self.interval is None:
             return None
         number = min(
@@ -64,7 +79,7 @@ class Scales:
 
     @property
     def _longest(self) -> float:
-        collisions = _COLLISIONS * self.collision_time if math.isfinite(self.collision_time) else 0.0
+        collisions = _COLLISIONS * self.event_time if math.isfinite(self.collision_time) else 0.0
         return max(collisions, _CROSSINGS * self.crossing_time)
 
     @property
@@ -85,6 +100,8 @@ class Scales:
         }
         words = [f"{name} {value:.3g}" for name, value in known.items() if 0.0 < value < math.inf]
         lines = [f"scales: {', '.join(words)}; packing fraction {self.packing_fraction:.3g}"]
+        if self.attempts:
+            lines += [f"reservoirs: {self.attempts:.3g} particles try to enter per time"]
         lines += [f"suggested: {self.proposal}"]
         if self.thermal_speed and not 1.0 / _REDUCED < self.thermal_speed < _REDUCED:
             rule = "k_B is 1: a temperature is an energy, of one system of units with the masses and lengths"
@@ -107,20 +124,22 @@ def scales(scene: Scene) -> Scales:
         crossing_time=side / fastest if fastest else math.inf,
         packing_fraction=scene.packing_fraction,
         end=0.5 * piston_end(scene),  # at which there is no room left
+        walled=not all(scene.container.periodic),
+        attempts=sum(attempt_rate(scene, number, face) for number, face in scene.faces_of(Open)),
     )
 
 
 def _few_kinds(scene: Scene) -> list[Species | Particle]:
     """The kinds of particles that move; of very many one that stands for all, of their mean volume, mass and
     energy."""
-    kinds, d = moving_kinds(scene), scene.dimension
+    kinds, d = list(scene.moving_kinds), scene.dimension
     if len(kinds) <= _KINDS:
         return kinds
     count = sum(kind.count for kind in kinds)
     volume = sum(kind.count * kind.radius**d for kind in kinds) / count
     mass = sum(kind.count * kind.mass for kind in kinds) / count
     energy = sum(kind.count * kind.mass * square_of(kind, d) for kind in kinds) / count
-    return [Species(count, volume ** (1.0 / d), mass, temperature=energy)]
+    return [Species(count, volume ** (1.0 / d), mass=mass, temperature=energy)]
 
 
 def collision_frequency(scene: Scene) -> float:

@@ -1,13 +1,15 @@
-"""How much an observable differs from run to run because their starts differ in energy.
+"""Scatter of an observable from seed to seed by the energy of the start.
 
-Where nothing exchanges energy with the particles each run keeps that of its start. Velocities that are drawn
-have a temperature only on average; under gravity so have random places, whatever their velocities.
+Where nothing exchanges energy with the particles, each run keeps the energy of its start; under a piston with
+a load, its enthalpy. Velocities that are drawn have a temperature only on average. So have random positions
+under gravity, whatever the velocities.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,9 +20,15 @@ from gaspart.accuracy.steady import keeps_energy
 from gaspart.accuracy.target import Target
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
+from gaspart.trajectory.reading import GIVEN_START
+from gaspart.yaml_text import parse_yaml
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _STRATIFIED = 1.5
-"""That of a gas under gravity of which theory knows nothing: its density changes with it too."""
+"""Power of the temperature, at least, if the density changes with it: under a piston, and under gravity where
+theory knows nothing."""
 _CHANGE = 0.01
 """Relative change of the energy by which derivatives are taken."""
 _DENSEST = 0.45
@@ -29,16 +37,36 @@ _DENSEST = 0.45
 
 @dataclass(frozen=True)
 class Scatter:
-    """value: relative standard deviation from run to run; drawn, placed: whether velocities and places make
-    it."""
+    """Relative standard deviation of an observable from seed to seed by the energy of the start.
+
+    value: it; drawn, placed: whether drawn velocities and random positions contribute.
+    """
 
     value: float = 0.0
     drawn: bool = False
     placed: bool = False
 
+    @property
+    def remedy(self) -> str:
+        """The change of a scene or a run that removes the scatter."""
+        if not self.placed:
+            return "exact_temperature: true removes it"
+        drawn = "; exact_temperature: true removes the part of the velocities" if self.drawn else ""
+        return f"it is of random positions under gravity{drawn}"
+
+
+def scatter_of_run(run: xr.Dataset, observable: str, face: str | None = None) -> Scatter:
+    """Compute the scatter of an observable between runs like an open trajectory with other seeds.
+
+    Runs from a given state have one energy.
+    """
+    if GIVEN_START in run.attrs:
+        return Scatter()
+    return start_scatter(Target(Scene.from_dict(parse_yaml(run.attrs["scene"])), observable, face))
+
 
 def start_scatter(target: Target) -> Scatter:
-    """That of an observable of a scene."""
+    """Compute the scatter of an observable of a scene."""
     scene = target.scene
     if not keeps_energy(scene):
         return Scatter()
@@ -91,12 +119,14 @@ def _of_observable(target: Target, deviation: float) -> float:
     scene = target.scene
     freedom = 0.5 * scene.dimension * scene.count
     power = target.declared.power
+    kinetic = sum(one.count * one.initial_temperature(scene.dimension) for one in scene.kinds)
+    mean = 0.5 * scene.dimension * kinetic
+    for _, piston in scene.pistons:
+        if target.observable == "pressure":
+            return 0.0  # the load
+        mean += (piston.pressure or 0.0) * scene.container.volume
+        power = max(power, _STRATIFIED)
     if not scene.gravity:
-        mean = (
-            0.5
-            * scene.dimension
-            * sum(one.count * one.initial_temperature(scene.dimension) for one in scene.kinds)
-        )
         return power * deviation / mean if mean else 0.0
     temperature = kinetic_temperature(scene, target.initial)
     if target.conditions is not None and target.conditions.columns:
@@ -130,7 +160,7 @@ def _change(target: Target, low: Column, middle: Column, high: Column) -> float:
         profiles = [np.interp(z, one.heights, one.numbers.sum(axis=0), right=0.0) for one in (low, high)]
         exact = middle.numbers.sum(axis=0)
         return float(np.sqrt(((profiles[1] - profiles[0]) ** 2).sum() / (exact**2).sum()))
-    if target.observable == "pressure":
+    if target.declared.of_impulses:
         changes = []
         for top in (False, True):
             if middle.pressure(top) > 0.0:

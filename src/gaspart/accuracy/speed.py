@@ -50,8 +50,3 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
 def _named(name: str) -> Engine:
     """An engine by its name in the table."""
     return next(one for one in offered() if one.timed_as == name)
-
-
-def as_measured(dimension: int, engine: str, precision: str, count: int) -> float:
-    """Factor 1, the machine of the table: for choices that must be the same on every machine."""
-    return 1.0

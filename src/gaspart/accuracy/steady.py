@@ -5,7 +5,6 @@ from __future__ import annotations
 from gaspart.errors import SceneError
 from gaspart.scene.faces import LeesEdwards, Vibrating
 from gaspart.scene.scene import Scene
-from gaspart.scene.thermal_faces import face_temperatures
 
 
 def require_steady(scene: Scene) -> None:
@@ -33,10 +32,12 @@ def is_driven(scene: Scene) -> bool:
 
 def at_temperature(scene: Scene) -> bool:
     """Whether a face or an interior wall gives particles the velocities of a temperature."""
-    return bool(face_temperatures(scene))
+    return bool(scene.face_temperatures)
 
 
 def keeps_energy(scene: Scene) -> bool:
-    """Whether a run keeps the energy of its start."""
-    law = scene.restitution
-    return not is_driven(scene) and (law is None or not law.dissipative)
+    """Return True if a run keeps the energy of its start, or its enthalpy under a piston with a load."""
+    loaded = [piston for _, piston in scene.pistons if piston.pressure is not None]
+    moved = any(face.moves for face in scene.faces.values() if face not in loaded)
+    exchanged = moved or at_temperature(scene) or scene.thermostat is not None or scene.is_open
+    return not exchanged and not scene.dissipates

@@ -1,17 +1,15 @@
 """Options from the table: for the fluids and observables whose errors, noise and times were measured.
 
 A row of the table is a pilot that was kept: its noise is that of a pilot, in contacts instead of time, and
-its processor time is carried over to this machine.
+its processor time that of the machine of the table. Nothing is run or compiled for a look-up.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from typing import TypeAlias
 
 from gaspart import theory
-from gaspart.accuracy import speed, table
+from gaspart.accuracy import table
 from gaspart.accuracy.estimates import Component
 from gaspart.accuracy.models import model_error
 from gaspart.accuracy.option import Option, ordered
@@ -27,9 +25,6 @@ from gaspart.scene.scene import Scene
 
 FEWEST = 64
 """Particles of a gas that is like those of the table, to 1 % of Z - 1: fewer have pilots of their own."""
-SpeedOf: TypeAlias = Callable[[int, str, str, int], float]
-"""A function as `gaspart.accuracy.speed.factor`."""
-_WORTH = 3.0  # how many times as cheap the best engine may be by the table, so that another is timed
 
 
 def fluid_of(scene: Scene) -> Gas:
@@ -75,47 +70,25 @@ def is_tabulated(scene: Scene, observable: str) -> bool:
     return True
 
 
-def options_of(
-    target: Target, engines: list[Engine], accuracy: float, budget: float | None, speed_of: SpeedOf
-) -> list[Option]:
-    """Those of all settings that were measured, of the cheapest one of each engine, the best first.
-
-    An engine that is three times as expensive as another one by the table is not timed: it is taken to be as
-    fast as the reference.
-    """
-
-    def made(factor: SpeedOf) -> Iterator[Option]:
-        for engine in engines:
-            for precision, step in table.steps(target.scene.dimension, engine.timed_as):
-                one = _option(
-                    target, engine.at_step(target.scene, step, precision), accuracy, budget, step, factor
-                )
-                if math.isfinite(one.speed):
-                    yield one
-
-    known = [one for one in made(speed.as_measured) if one.bias < accuracy]
-    limit = _WORTH * min(one.cost(accuracy) for one in known)
-    timed = {(one.engine.timed_as, one.engine.precision) for one in known if one.cost(accuracy) < limit}
-    reference = engines[0].timed_as, engines[0].precision
-
-    def factor(dimension: int, engine: str, precision: str, count: int) -> float:
-        near = (engine, precision) if (engine, precision) in timed else reference
-        return speed_of(dimension, *near, count)
-
+def options_of(target: Target, engines: list[Engine], accuracy: float, budget: float | None) -> list[Option]:
+    """Return the cheapest option of each engine, of all settings that were measured, the best first."""
+    made = [
+        _option(target, engine.at_step(target.scene, step, precision), accuracy, budget, step)
+        for engine in engines
+        for precision, step in table.steps(target.scene.dimension, engine.timed_as)
+    ]
     best: dict[str, Option] = {}
-    for one in ordered([one for one in made(factor) if one.bias < accuracy]):
+    for one in ordered([one for one in made if math.isfinite(one.speed) and one.bias < accuracy]):
         best.setdefault(one.engine.timed_as, one)
     return list(best.values())
 
 
-def _option(
-    target: Target, engine: Engine, accuracy: float, budget: float | None, step: float, speed_of: SpeedOf
-) -> Option:
+def _option(target: Target, engine: Engine, accuracy: float, budget: float | None, step: float) -> Option:
     """That of an engine with the settings of a row; step: in the unit of the table."""
     gas = fluid_of(target.scene)
     frequency = float(theory.collision_rate(**gas.parameters))
     row = gas.dimension, gas.packing_fraction, engine.timed_as, engine.precision, step
-    each = table.seconds(*row) * speed_of(gas.dimension, engine.timed_as, engine.precision, gas.count)
+    each = table.seconds(*row)
     candidate = _bounded(target, engine, gas, step)
     each_time = 0.5 * gas.count * frequency  # contacts
     value = value_of(gas, target.observable)

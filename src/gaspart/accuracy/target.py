@@ -26,8 +26,8 @@ from gaspart.engines import Engine, reference_engine
 from gaspart.engines.dsmc.rates import rates
 from gaspart.errors import SceneError
 from gaspart.scene.faces import wall_of
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
-from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import ImpulseTally, useful_impulses
@@ -66,7 +66,7 @@ class Target:
         one that the scene does not have, and a wall that is not there."""
         observable, colon, face = str(name).partition(":")
         face = wall_of(face)
-        known(observable)
+        observable = known(observable)
         walls = walls_of(observable, scene)
         if scene.count:  # an empty one has no advice at all
             _require_defined(scene, observable, name)
@@ -122,7 +122,7 @@ class Target:
             for kind in scene.species
         ]
         squares += [sum(v * v for v in particle.velocity) for particle in scene.particles]
-        squares += face_temperatures(scene)
+        squares += scene.face_temperatures
         if scene.gravity:
             squares.append(max(map(abs, scene.gravity)) * min(scene.container.lengths))
         fastest = math.sqrt(max(squares))
@@ -217,6 +217,7 @@ def _require_defined(scene: Scene, observable: str, name: str) -> None:
     try:
         require_defined(observable, scene)
         require_steady_value(observable, scene)
+        refuse_open(scene, "changes the particles: no cost is predicted; a run --until ends by itself")
     except SceneError as error:
         raise SceneError("observable", name, f"{error.key}: {error.rule}") from None
 

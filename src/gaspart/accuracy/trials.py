@@ -11,7 +11,6 @@ from typing import TypeAlias
 from gaspart.accuracy.candidates import candidates, suited
 from gaspart.accuracy.conditions import Conditions, measured_conditions
 from gaspart.accuracy.estimates import Component
-from gaspart.accuracy.noise import half_width
 from gaspart.accuracy.pilot import Pilot, require_defined, run_pilot, speed_of
 from gaspart.accuracy.target import Target
 from gaspart.engines import Engine, reference_engine
@@ -22,6 +21,8 @@ from gaspart.trajectory.last_state import last_state
 
 DIFFERS = 2.5
 """Standard errors by which two pilots differ if one is biased more than theory says."""
+_CERTAIN = 1.96
+"""Standard errors of a difference that are added to it for a bound on a bias."""
 _PREPARED = 5.0
 """Processor seconds until pilots begin that are not taken from theirs."""
 Announce: TypeAlias = Callable[[str], None]
@@ -124,8 +125,8 @@ class Trials:
             return max(accurate, key=lambda one: one.measured)
         target = self.target
         rule = f"{self.pilots[0].rule or 'does not change in the pilot run'}; allow longer pilots"
-        if target.observable == "pressure" and not target.face:
-            rule += f", or state a wall, as in pressure:{target.scene.container.walls[0]}"
+        if target.declared.of_impulses and not target.face:
+            rule += f", or state a wall, as in {target.observable}:{target.scene.container.walls[0]}"
         raise SceneError("observable", target.observable, rule)
 
     def noise(self, engine: Engine) -> Component:
@@ -182,4 +183,4 @@ def raised_bias(candidate: Candidate, own: Pilot, pilots: list[Pilot]) -> float:
     error = math.hypot(own.accuracy, exact[0].accuracy)
     if difference <= candidate.bias + DIFFERS * error:
         return candidate.bias
-    return half_width(difference, error)
+    return difference + _CERTAIN * error

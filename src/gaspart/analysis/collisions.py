@@ -79,7 +79,7 @@ def collision_data(
         alone = 0 if part.sizes["collision"] else alone + events
         if alone > _PATIENCE:
             raise SimulationError(f"none of the last {_PATIENCE} events was a collision of two particles")
-    return xr.concat(parts, "collision").assign_attrs(
+    return xr.concat(parts, "collision", join="exact", compat="equals").assign_attrs(
         scene=json.dumps(scene.to_dict()),
         seed=json.dumps(seed),
         equilibration=equilibration,

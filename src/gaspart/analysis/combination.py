@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gaspart import analysis
 from gaspart.analysis.impulses import kept
-from gaspart.analysis.measuring import measure
+from gaspart.analysis.measuring import measure, until_time
 from gaspart.analysis.observable import Observable
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.analysis.run import Source
 from gaspart.analysis.statistics import means_of
 from gaspart.engines import engine_from_dict, engine_to_dict
@@ -53,12 +55,33 @@ def replicas(
     found: list[Observable] = []
     recipes: list[_Recipe] = []
     for number, source in enumerate(sources, 1):
-        with open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source) as run:
+        with _opened(source) as run:
             recipe = _recipe(run, str(source) if isinstance(source, str | Path) else f"run {number}")
             _check_replica(recipe, recipes)
             recipes.append(recipe)
             found.append(measure(run, name, start, end, **selection))
+    if OBSERVABLES[name].ends:
+        found = _in_joint_bins(name, sources, found, start, end)
     return _mean(found, recipes)
+
+
+def _opened(source: Source) -> AbstractContextManager[xr.Dataset | Simulation]:
+    """Return a context with an open trajectory or a simulation."""
+    return open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source)
+
+
+def _in_joint_bins(
+    name: str, sources: Sequence[Source], found: list[Observable], start: float | None, end: float | None
+) -> list[Observable]:
+    """Measure an observable again in the widest of the bins that follow from each run."""
+    declared = OBSERVABLES[name]
+    middles = [one[declared.along[-1]].values for one in found]
+    widest = max(float(middle[-1] + 0.5 * (middle[1] - middle[0])) for middle in middles)
+    function, again = getattr(analysis, declared.function), []
+    for source in sources:
+        with _opened(source) as run, until_time(run, end) as part:
+            again.append(function(part, start=start, **declared.arguments, **{declared.ends: widest}))
+    return again
 
 
 @dataclass(frozen=True)
@@ -163,6 +186,26 @@ def _difference(one: Any, two: Any, key: str = "") -> tuple[str, Any, Any] | Non
     return next((difference for difference in found if difference), None)
 
 
+def _other_coordinate(one: Observable, other: Observable, name: str, other_name: str) -> SceneError:
+    """Return the error of two results of one observable with different coordinates, which it names."""
+    for dim in map(str, one.estimate.dims):
+        first, second = one[dim].values, other[dim].values
+        if not np.array_equal(first, second):
+            rule = (
+                f"{_described(first)} in {name}: all runs need the same values of it, as with one "
+                "sample_interval and duration (--start, --end)"
+            )
+            return SceneError(dim, _described(second), rule, other_name)
+    raise AssertionError("equal coordinates")
+
+
+def _described(values: np.ndarray) -> str:
+    """Return a coordinate in words."""
+    if values.dtype.kind in "US" or not values.size:
+        return ", ".join(map(str, values)) or "none"
+    return f"{values.size} values from {values[0]:.6g} to {values[-1]:.6g}"
+
+
 def _mean(found: list[Observable], recipes: list[_Recipe]) -> Observable:
     """The mean of independent measurements of one observable, of runs with these recipes."""
     first, quantity = found[0], str(found[0].attrs["quantity"])
@@ -173,8 +216,7 @@ def _mean(found: list[Observable], recipes: list[_Recipe]) -> Observable:
             if recipe.impulses != recipes[0].impulses:
                 rule = f"are {recipes[0].impulses} in {recipes[0].name}: {quantity} is in the bins of these"
                 raise SceneError("impulses", recipe.impulses, rule, recipe.name)
-            rule = "have their values at different places: let all have one sample_interval and duration"
-            raise SceneError("sources", quantity, rule)
+            raise _other_coordinate(first, one, recipes[0].name, recipe.name)
     each = np.array([one.estimate.values for one in found])
     values, errors = means_of(each)
     parts = {"": values, "_error": errors}

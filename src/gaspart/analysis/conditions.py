@@ -11,14 +11,12 @@ from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
-from gaspart.scene.driving import has_dragged_faces
-from gaspart.scene.faces import FACES, Open, faces_of, sliding_faces, thermal_numbers
+from gaspart.scene.faces import FACES, Open
 from gaspart.scene.gas import plain_mixture
-from gaspart.scene.open_faces import is_open
+from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.stress import require_tallied
-from gaspart.scene.thermal_faces import face_temperatures
 
 Selection = Mapping[str, Any]
 GROUPS = 16
@@ -34,9 +32,17 @@ def unsheared(scene: Scene, selection: Selection) -> None:
     refuse_sheared(scene, SLIDING)
 
 
+def steady_flow(scene: Scene, selection: Selection) -> None:
+    """No flow that changes with time, unless motion is about rest."""
+    if scene.flow_changes and selection.get("about") != "rest":
+        faces = [name for name, face in scene.faces.items() if face.moves] or MOVING_WALL
+        rule = 'move the gas: motion about a flow that changes is not known from frames; pass about="rest"'
+        raise SceneError("faces", faces, rule)
+
+
 def opened(scene: Scene, selection: Selection) -> None:
     """Faces that are open."""
-    if not is_open(scene):
+    if not scene.is_open:
         raise SceneError(
             "faces", list(scene.faces), f"none is open: there are always {scene.count} particles"
         )
@@ -45,7 +51,7 @@ def opened(scene: Scene, selection: Selection) -> None:
 def open_across(scene: Scene, selection: Selection) -> None:
     """No open face along the selected axis, where particles would pass its plane outside the container."""
     axis = walled_axis_of(scene, selection.get("axis"))
-    for face, _ in faces_of(scene, Open):
+    for face, _ in scene.faces_of(Open):
         if face // 2 != axis:
             rule = f"is open: particles come and go on either side of a plane across {'xyz'[axis]}"
             raise SceneError(f"faces.{FACES[face]}", "open", rule)
@@ -62,7 +68,7 @@ def periodic_virial(scene: Scene, selection: Selection) -> None:
 
 
 def _periodic(scene: Scene, rule: str) -> None:
-    if not all(scene.container.periodic):
+    if not scene.is_periodic:
         raise SceneError("container.boundary", scene.container.boundary, rule)
 
 
@@ -75,13 +81,13 @@ def walled(scene: Scene, selection: Selection) -> None:
 
 def thermal_walls(scene: Scene, selection: Selection) -> None:
     """A face at a temperature."""
-    if not thermal_numbers(scene):
+    if not scene.thermal_numbers:
         raise SceneError("faces", list(scene.faces), "none is at a temperature, and takes heat")
 
 
 def dragged_walls(scene: Scene, selection: Selection) -> None:
     """Faces at a temperature that slide, or along which a force drives the gas."""
-    if not has_dragged_faces(scene):
+    if not scene.drags_faces:
         rule = "none is at a temperature and slides, or has a force along it: nothing drags them"
         raise SceneError("faces", list(scene.faces), rule)
 
@@ -99,11 +105,11 @@ def walled_axis(scene: Scene, selection: Selection) -> None:
 
 
 def walled_axis_of(scene: Scene, name: str | None) -> int:
-    """The number of the named axis, by default of the last one with walls. Raises SceneError for one without,
-    and for an unknown one."""
+    """The number of the named axis, by default of the last one with open faces, or else with walls. Raises
+    SceneError for one without, and for an unknown one."""
     has_axis(scene, {"axis": name})
     walled = [axis for axis, periodic in enumerate(scene.container.periodic) if not periodic]
-    axis = "xyz".index(name) if name is not None else max(walled, default=0)
+    axis = "xyz".index(name) if name is not None else max(scene.open_axes or walled, default=0)
     if axis not in walled:
         rule = "images pass a plane across a periodic axis; the velocity times the density is the flux"
         raise SceneError("axis", "xyz"[axis], rule)
@@ -117,10 +123,25 @@ def elastic(scene: Scene, selection: Selection) -> None:
         raise SceneError("restitution.normal", law.normal, "a gas that loses energy is in no equilibrium")
 
 
-def all_move(scene: Scene, selection: Selection) -> None:
-    """No fixed particles."""
-    if any(kind.fixed and kind.count for kind in scene.kinds):
-        raise SceneError("species.fixed", True, "the virial of fixed particles is not a pressure")
+def homogeneous(scene: Scene, selection: Selection) -> None:
+    """Neither walls, nor interior walls and fixed particles, around which places are not alike."""
+    _periodic(scene, "this observable needs a periodic container")
+    _without_obstacles(
+        scene,
+        "make places unlike each other: g(r), contact values, S(k) and order are those of a homogeneous gas",
+    )
+
+
+def without_obstacles(scene: Scene, selection: Selection) -> None:
+    """No interior walls and fixed particles, which carry a part of the pressure."""
+    _without_obstacles(scene, "carry a part of the pressure, which the virial of the particles does not have")
+
+
+def _without_obstacles(scene: Scene, rule: str) -> None:
+    if scene.walls:
+        raise SceneError("walls", len(scene.walls), rule)
+    if scene.has_fixed:
+        raise SceneError("species.fixed", True, rule)
 
 
 def some_move(scene: Scene, selection: Selection) -> None:
@@ -131,7 +152,7 @@ def some_move(scene: Scene, selection: Selection) -> None:
 
 def _moving(scene: Scene) -> int:
     """The number of particles that are not fixed."""
-    return sum(kind.count for kind in scene.kinds if not kind.fixed)
+    return scene.moving_count
 
 
 def thermal(scene: Scene, selection: Selection) -> None:
@@ -269,10 +290,9 @@ def shears(scene: Scene, selection: Selection) -> None:
 
 def heat_flows(scene: Scene, selection: Selection) -> None:
     """Faces or interior walls at two temperatures, or something that heats the gas or takes its energy."""
-    law = scene.restitution
-    heated = (law is not None and law.dissipative) or scene.thermostat is not None or _flows(scene)
+    heated = scene.dissipates or scene.thermostat is not None or _flows(scene)
     if (
-        len(face_temperatures(scene)) < 2
+        len(scene.face_temperatures) < 2
         and not heated
         and not any(face.moves for face in scene.faces.values())
     ):
@@ -280,19 +300,23 @@ def heat_flows(scene: Scene, selection: Selection) -> None:
 
 
 def velocity_flows(scene: Scene, selection: Selection) -> None:
-    """Faces that slide, sheared images, or a force along faces."""
-    if not _flows(scene):
+    """Faces that slide, sheared images, a force along faces, or open faces that differ."""
+    if not _flows(scene) and not _streams(scene):
         raise SceneError("faces", list(scene.faces), "nothing drives a flow: the mean velocity is 0")
 
 
 def _flows(scene: Scene) -> bool:
     periodic = scene.container.periodic
     along = any(g and around for g, around in zip(scene.gravity or (), periodic, strict=False))
-    return bool(along or scene.shear_rate or sliding_faces(scene))
+    return bool(along or scene.shear_rate or scene.sliding_faces)
 
 
-def never_steady(scene: Scene, selection: Selection) -> None:
-    """No scene: what is between two walls does not flow on average."""
-    raise SceneError(
-        "container.boundary", scene.container.boundary, "the net flux between walls is 0 in a steady state"
-    )
+def streams(scene: Scene, selection: Selection) -> None:
+    """Open faces that differ, between which particles flow: otherwise nothing flows between walls."""
+    if not _streams(scene):
+        rule = "the net flux between walls is 0 in a steady state"
+        raise SceneError("container.boundary", scene.container.boundary, rule)
+
+
+def _streams(scene: Scene) -> bool:
+    return len({(face.activity, face.temperature) for _, face in scene.faces_of(Open)}) > 1

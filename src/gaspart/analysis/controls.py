@@ -21,6 +21,9 @@ from gaspart.analysis.run import Run
 _LEAST, _MOST = 32, 128
 """Groups of a run, from half of which coefficients are estimated: with fewer they are not, with more no
 better. In each a particle collides once or more, so that its energy turns to other directions."""
+FEWEST = 10
+"""Moving particles without which pressures have no controls: fewer share their energy among directions too
+slowly for coefficients of a regression. Of two discs in 2.6 x 2.9, 52 of 60 values were within two errors."""
 
 
 def wall_controls(run: Run, axis: int) -> np.ndarray | None:
@@ -36,7 +39,7 @@ def wall_controls(run: Run, axis: int) -> np.ndarray | None:
     width = float(run.scene.container.lengths[axis]) / has.bins
     carried = run.increments("momentum_flux_sum").sum(axis=(1, 2)) * width / time
     changes = np.diff(stores(run)[axis], axis=0) / time[:, None]
-    return np.column_stack([carried - run.moving.sum() * run.temperature, changes])
+    return np.column_stack([carried - run.scene.moving_count * run.temperature, changes])
 
 
 def stores(run: Run) -> np.ndarray:
@@ -51,7 +54,10 @@ def stores(run: Run) -> np.ndarray:
 
 
 def group_count(run: Run) -> int:
-    """In how many groups the intervals of a run are for a regression; 0 if they are too few."""
+    """Return in how many groups the intervals of a run are for a regression; 0 if they or the particles are
+    too few."""
+    if run.moving.sum() < FEWEST:
+        return 0
     collided = 2.0 * run.increments("collisions").sum() / max(1, int(run.moving.sum()))
     found = min(_MOST, len(run.time) - 1, int(collided))
     return found if found >= _LEAST else 0

@@ -96,8 +96,8 @@ class Named:
     faces, which some engines tally; conditions: of a scene, see `Condition`; whole: whether the file must
     have all particles: "always", "never", "mixed", of several kinds of them, or "unless fluxes" are kept,
     which have the temperature; varying: whether it is defined where particles come and go through open faces;
-    nothing: the equations that an engine solves (`Engine.equation`) whose runs say nothing of it, each with
-    the reason.
+    ends: keyword argument of the function with the end of its bins, if that follows from the run; nothing:
+    equations that an engine solves (`Engine.equation`) whose runs say nothing of it, each with the reason.
 
     What it is compared with. theory: a function in `analysis.expected`, which knows the equation of the
     engine; bulk: a function of `analysis.bulk`, of an infinite plain gas by each equation, and source: where
@@ -113,10 +113,11 @@ class Named:
     How it is planned. power: of the temperature that it grows with; memory: whether it depends on the memory
     of collisions, which no kinetic equation has; lags: of its correlations in a pilot, 0 without; samples:
     what frames are spaced for: "" a mean over time, "structure" independent positions, "paths" lags;
-    by_impulses: whether impulses that a run keeps make it more accurate; ends_runs: whether `--until` may
-    require it; drives: conditions of a scene in whose steady state it is not 0, asked besides `conditions`
-    before an accuracy is; tabulated: whether costs and errors are in the table; relative_to: what its
-    accuracy is relative to, each "value", or their "norm" where some vanish on average.
+    of_impulses: whether it is of the impulses that all walls are given; by_impulses: whether impulses that a
+    run keeps make it more accurate; ends_runs: whether `--until` may require it; drives: conditions of a
+    scene in whose steady state it is not 0, asked besides `conditions` before an accuracy is; tabulated:
+    whether costs and errors are in the table; relative_to: what its accuracy is relative to, each "value",
+    or their "norm" where some vanish on average.
     """
 
     title: str
@@ -131,6 +132,7 @@ class Named:
     conditions: tuple[Condition, ...] = ()
     whole: str = "always"
     varying: bool = False
+    ends: str = ""
     nothing: dict[str, str] = field(default_factory=dict)
     theory: str = ""
     bulk: str = ""
@@ -143,6 +145,7 @@ class Named:
     memory: bool = False
     lags: int = 0
     samples: str = ""
+    of_impulses: bool = False
     by_impulses: bool = False
     ends_runs: bool = False
     drives: tuple[Condition, ...] = ()

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
+from gaspart.analysis import series
 from gaspart.analysis.conditions import DISCS, GROUPS
 from gaspart.analysis.expected.described import described
+from gaspart.analysis.flow import FLOW
 from gaspart.analysis.motion import Groups, axes_of, groups_of, stride_of
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
@@ -21,12 +22,15 @@ from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import number
-from gaspart.scene.faces import mean_velocity
 
 LINEAR_FROM = 12.0
-"""Collisions per particle, from which on the mean-squared displacement grows evenly, if there is a D."""
-_CONSTANT = 0.06  # of a slope: what it may change, as by the slow decay of correlations in a fluid
-_SIGNIFICANT = 4.0  # standard errors of 15 degrees of freedom: exceeded by chance once in a thousand
+"""Collisions per particle from which on the slope of the mean-squared displacement is examined."""
+_WITHIN = 2.0
+"""Standard errors of a change of the slope, up to which the slope is constant."""
+_SLOW = 0.06
+"""Relative change of the slope, up to which a tail of correlations is all that is missing."""
+_TAIL = 1.0 / (math.sqrt(2.0) - 1.0)
+"""Sum of all later changes, divided by the last one, for lags that double: D lacks t^(-1/2) of a tail."""
 
 
 def diffusion_coefficient(
@@ -36,13 +40,18 @@ def diffusion_coefficient(
     particles: Sequence[int] | None = None,
     per_axis: bool = False,
     lag: float | None = None,
+    about: str = FLOW,
 ) -> Observable:
-    """D in length^2 / time, by the rise of the mean-squared displacement from 12 to 24 collisions a particle.
+    """D in length^2 / time, by the slope of the mean-squared displacement where it no longer changes.
+
+    Slopes are taken between 6, 12, 24, 48 ... collisions of a particle, as far as the run allows. The first
+    one that equals the one before within two standard errors of their difference is D; `lags` are its ends.
+    If the last one has changed by less than 6 %, a slow tail is missing, whose size is added to the error.
 
     Of a periodic container the mean over axes, a scalar; of one with walls, or `per_axis`, that along each
-    periodic axis, (axis,): across walls displacements are bounded, and there is none. species, particles, and
-    the condition of zero momentum: as in `mean_squared_displacement`; of fewer than 16 particles, such as one
-    tracer, each of 16 stretches of the run must be long enough.
+    periodic axis, (axis,): across walls displacements are bounded, and there is none. species, particles,
+    about, and the condition of zero momentum: as in `mean_squared_displacement`; of fewer than 16 particles,
+    such as one tracer, each of 16 stretches of the run must be long enough.
 
     lag: the time at which half of the slope of the mean-squared displacement along an axis is taken instead,
     from the frames before and after it. That is the integral of the velocity autocorrelation until then,
@@ -51,41 +60,61 @@ def diffusion_coefficient(
     Theory: of spheres in a periodic cube, Erpenbeck and Wood's with the shift of Yeh and Hummer, half of
     which is its uncertainty; at a lag that of the mean-squared displacement. Raises SceneError without a
     periodic axis; for runs that are too short, or have too few frames; and, without a lag, for discs whose
-    momentum lasts longer than these collisions, so that their squared displacement grows like t ln t, and
-    where the slope from 6 to 12 collisions is another one, so that there is no D.
+    momentum lasts longer than 12 collisions, so that their squared displacement grows like t ln t, and
+    where the slope still changes at the longest lags.
     """
-    with open_run(source, start) as run:
-        require_defined("D", run.scene, species=species, particles=particles, lag=lag)
+    with open_run(source, start, about=about) as run:
+        require_defined("D", run.scene, species=species, particles=particles, lag=lag, about=about)
         chosen = selected(run, species, particles)
         stride = stride_of(run, len(chosen))
         if lag is not None:  # frames so near that the slope is that at the lag
             stride = min(stride, max(1, int(number("lag", lag, "must be a time") / (4.0 * run.interval))))
         parts = GROUPS if len(chosen) < GROUPS else 1
-        lags = lags_of_slopes(run, stride, parts) if lag is None else _lags_about(run, lag, stride, parts)
+        lags = _all_lags(run, stride, parts) if lag is None else _lags_about(run, lag, stride, parts)
         lasting = _lasting_momentum(run, lags[1] * stride)
         if lag is None:
             require_spheres(run, lasting)
-        groups = groups_of(run, about=lasting, chosen=chosen, stride=stride)
+        of_mean = lasting & (run.about == FLOW)
+        groups = groups_of(run, about=of_mean, chosen=chosen, stride=stride)
         slopes = _slopes(groups, lags)[..., run.periodic]
         along = axes_of(run, run.periodic)
         if run.periodic.all() and not per_axis:
             slopes, along = slopes.mean(axis=2), {}
-        if lag is None:
-            _require_constant(slopes, groups.sizes)
-        values, errors = means_of(slopes[:, -1], groups.sizes)
-        ends = None if lag is None else groups.interval * np.array(lags)
-        return observable("diffusion_coefficient", along, values, errors, **_about(run, ends))
+        times = groups.interval * np.array(lags)
+        if lag is not None:
+            values, errors = means_of(slopes[:, -1], groups.sizes)
+            attributes = described("D", run, times)
+            attributes["long_name"] += f" at the lag {times.mean():.4g}"
+            return observable("diffusion_coefficient", along, values, errors, **attributes)
+        last, tail = settled_slope(slopes, groups.sizes)
+        values, errors = means_of(slopes[:, last], groups.sizes)
+        ends, rate = times[last : last + 2], _rate(run)
+        attributes = described("D", run, None, rate * ends)
+        errors = np.hypot(errors, tail)
+        result = observable("diffusion_coefficient", along, values, errors, **attributes)
+        collisions = " to ".join(f"{rate * end:.3g}" for end in ends)
+        result.attrs["lags"] = ends
+        result.attrs["note"] = (
+            f"by the slope between the lags {ends[0]:.4g} and {ends[1]:.4g}, {collisions} collisions"
+        )
+        return result
 
 
-def _about(run: Run, ends: np.ndarray | None) -> dict[str, Any]:
-    """Units, label and theory, of the slope between the lags `ends` (2,) if they are given."""
-    about = described("D", run, ends)
-    if ends is not None:
-        about["long_name"] += f" at the lag {ends.mean():.4g}"
-    return about
+def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
+    """Return lags in frames, of 6, 12, 24, 48 ... collisions of a particle, as far as each of the parts of a
+    run has twice as many frames. Raises SceneError as `lags_of_slopes`."""
+    lags = lags_of_slopes(run, stride, parts)
+    while 4 * lags[-1] * stride * parts <= len(run.time):
+        lags = (*lags, 2 * lags[-1])
+    return lags
 
 
-def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, int]:
+def _rate(run: Run) -> float:
+    """Return the number of collisions of a moving particle per time."""
+    return float(series.collisions(run).sum() / (run.time[-1] - run.time[0]))
+
+
+def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, ...]:
     """The numbers of frames before and after a lag. Raises SceneError for one that is shorter than the time
     between frames, or longer than half of each of the equal parts of a run."""
     interval = run.interval * stride
@@ -111,13 +140,11 @@ def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
     return first, middle, last
 
 
-def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, int, int]:
+def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]:
     """The `linear_lags` of a run, of which every so many frames are taken, no two of them equal; parts: that
     a run has, in each of which they must be. Raises SceneError for too few frames."""
     interval = run.interval * stride
-    collisions = float(run.increments("collisions").sum())
-    duration = float(run.time[-1] - run.time[0])
-    rate = 2.0 * collisions / (run.moving.sum() * duration)
+    duration, rate = float(run.time[-1] - run.time[0]), _rate(run)
     if rate * (duration / parts + interval) < 4.0 * LINEAR_FROM:
         rule = f"must cover {parts * 4.0 * LINEAR_FROM:g} collisions of a particle or more"
         raise SceneError("duration", duration, rule)
@@ -134,7 +161,7 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, int,
 def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
     """(d,) along which axes the total momentum of the moving particles is kept for so many frames: where it
     is conserved, and where more than half of it is left, as with a few obstacles among many particles."""
-    velocities = run.velocities[:, run.moving] - np.array(mean_velocity(run.scene))
+    velocities = run.motion.velocities if run.flow_axes else run.velocities[:, run.moving]
     momentum = np.einsum("tnd,n->td", velocities, run.masses[run.moving])
     left = (momentum[lag:] * momentum[:-lag]).mean(axis=0)
     return run.conserved | (run.periodic & (left > 0.5 * (momentum**2).mean(axis=0)))
@@ -151,16 +178,24 @@ def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
     return 0.5 * np.diff(squares, axis=1) / (groups.interval * np.diff(lags))[:, None]
 
 
-def _require_constant(slopes: np.ndarray, sizes: list[int]) -> None:
-    """Raise SceneError if the slope of the second stretch differs from that of the first, (G, 2, ...), by
-    more than `_CONSTANT` of it, beyond its error. sizes (G,): numbers of particles."""
-    early, late = np.atleast_2d(means_of(slopes, sizes)[0].T).T
-    change, error = means_of(slopes[:, 1] - slopes[:, 0], sizes)
-    beyond = np.abs(change) - _CONSTANT * np.abs(early) - _SIGNIFICANT * error
+def settled_slope(slopes: np.ndarray, sizes: Sequence[int] | None = None) -> tuple[int, np.ndarray | float]:
+    """Find the slope that no longer changes, among slopes (G, K, ...) of groups at increasing lags.
+
+    Returns its number and the size of the tail that it lacks: 0 if the slope equals the one before within its
+    error along every axis. sizes (G,): numbers of particles. Raises SceneError if the last slopes change by
+    more than a slow tail makes them.
+    """
+    for k in range(1, slopes.shape[1]):
+        change, error = means_of(slopes[:, k] - slopes[:, k - 1], sizes)
+        if (np.abs(change) <= _WITHIN * error).all():
+            return k, 0.0
+    early, late = (np.atleast_1d(means_of(slopes[:, k], sizes)[0]) for k in (-2, -1))
+    beyond = np.abs(np.atleast_1d(change)) - _WITHIN * np.atleast_1d(error) - _SLOW * np.abs(early)
     if (beyond > 0.0).any():
         n = int(np.argmax(beyond))
         rule = (
-            f"there is none: the slope of the squared displacement, over 2, changes from {early[n]:.3g} "
-            f"before {LINEAR_FROM:g} collisions to {late[n]:.3g} after them; measure msd"
+            f"the slope of the squared displacement, over 2, changes from {early[n]:.3g} to {late[n]:.3g} at "
+            "the longest lags of this run: make a longer one, take the value at a lag (--lag), or measure msd"
         )
         raise SceneError("D", "not constant", rule)
+    return k, _TAIL * np.abs(change)

@@ -29,5 +29,6 @@ def diffusion(gas: Gas) -> tuple[float, float]:
     side = (gas.count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
     value = float(theory.enskog_diffusion(fraction, dimension))
     carried = float(theory.number_density(fraction, dimension)) * value  # modes decay with nu + D
-    lost = theory.yeh_hummer(side, float(theory.enskog_viscosity(fraction, dimension)) + carried)
+    viscosity = float(theory.enskog_viscosity(fraction, dimension) * theory.viscosity_ratio(fraction))
+    lost = theory.yeh_hummer(side, viscosity + carried)
     return -float(lost) / value, float(dimension)

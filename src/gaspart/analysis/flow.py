@@ -1,4 +1,7 @@
-"""The mean motion of a gas, and its temperature about it.
+"""The rule of motion: what velocities, displacements and temperatures are relative to.
+
+Temperature, speeds, msd, vacf, D and all of `by_species` are about the same local flow, by default; with
+about="rest", about the container at rest, whatever flows.
 
 Of a group of particles in local equilibrium, u = sum m v / M their mean velocity, M their mass, a particle's
 component has <m (v - u)^2> = (1 - m / M) k_B T, exactly, whatever u is: the part m / M of a degree of freedom
@@ -11,6 +14,11 @@ is spent on u. What is taken as a group depends on how the gas can move:
   flow changes.
 
 A flow that is known, between sheared faces (`LeesEdwards`), is taken off before.
+
+A displacement about a steady flow is that of the particle less the time integral of the flow where it is, by
+the trapezoidal rule over frames: <|dr|^2> is then twice the integral of the velocity autocorrelation about
+the flow, without what a gradient of the flow adds (Taylor's dispersion). About a flow that changes it is not
+known from frames.
 """
 
 from __future__ import annotations
@@ -22,14 +30,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.analysis.bins import Grid
-from gaspart.analysis.room import moving_axes
-from gaspart.scene.faces import Open, faces_of, sliding_faces
-from gaspart.scene.open_faces import is_open
 from gaspart.scene.shear import flow
 
 if TYPE_CHECKING:
     from gaspart.analysis.run import Run
 
+ABOUT = FLOW, REST = "flow", "rest"
+"""What motion may be about."""
 _SAMPLES = 500  # particles in frames, in each cell, from which a steady flow is known well enough
 _CELLS = 20  # along an axis, by default
 _CROWD = 8  # particles in a cell whose flow changes, by default
@@ -78,28 +85,19 @@ def _about_known(run: Run) -> np.ndarray:
 
 
 def flow_axes(run: Run) -> list[int]:
-    """The axes along which the velocity of the gas may vary; none if it moves as a whole only."""
-    if moving := moving_axes(run):
-        return moving
-    if opened := {number // 2 for number, _ in faces_of(run.scene, Open)}:
-        return sorted(opened)
-    across = {number // 2 for number, _ in sliding_faces(run.scene)}
-    pulls = run.scene.gravity or (0.0,) * run.dimension
-    driven = any(pull and periodic for pull, periodic in zip(pulls, run.periodic, strict=True))
-    if not across and (driven or any(wind(run))):
-        across = set(np.flatnonzero(~run.periodic).tolist()) or {0}
-    if across and (run.scene.walls or not run.moving.all()):  # obstacles
-        across = set(range(run.dimension))
-    return sorted(across)
+    """The axes along which the velocity of the gas may vary: those of the scene (`Facts.flow_axes`), or those
+    of a wind; none if it moves as a whole only."""
+    scene = run.scene
+    return list(scene.flow_axes or (scene.resolved_axes() if wind(run).any() else ()))
 
 
 def wind(run: Run) -> np.ndarray:
     """(d,) whether the gas moves along an axis without an end, although its momentum is not conserved there:
     the mean over the run is more than three times what it scatters by in equilibrium, sqrt(M k_B T). A wind
-    that is weaker adds at most 9 / (d N) to the temperature."""
+    that is weaker adds at most 9 / (d N) to the temperature. One particle has no scatter to compare with."""
     found = np.zeros(run.dimension, dtype=bool)
     masses = run.masses[run.moving]
-    for axis in np.flatnonzero(run.periodic & ~run.conserved & bool(len(masses))):
+    for axis in np.flatnonzero(run.periodic & ~run.conserved & (len(masses) > 1)):
         velocities = run.velocities[:, run.moving, axis]
         momentum = velocities @ masses
         square = (velocities**2 @ masses - momentum**2 / masses.sum()).mean() / len(masses)
@@ -108,13 +106,17 @@ def wind(run: Run) -> np.ndarray:
 
 
 def about_the_flow(run: Run, along: Mapping[int, int] | None = None) -> Peculiar:
-    """Velocities about the local flow of mass, if the gas can have one, in cells along `flow_axes`; otherwise
-    those `about_the_whole`. along: axis -> number of cells, where these are not the default ones; further
-    axes are resolved too, unless the flow changes or there is none."""
+    """Velocities about rest, if the run is about it; about the local flow of mass, if the gas can have one,
+    in cells along `flow_axes`; otherwise those `about_the_whole`. along: axis -> number of cells, where
+    these are not the default ones; further axes are resolved too, unless the flow changes or there is
+    none."""
+    if run.about == REST:
+        velocities = run.velocities[:, run.moving]
+        return Peculiar(velocities, np.ones((1, velocities.shape[1], 1)))
     across = run.flow_axes
     if not across:
         return about_the_whole(run)
-    changes = bool(moving_axes(run)) or is_open(run.scene)
+    changes = run.scene.flow_changes
     stated = dict(along or {})
     axes = across if changes else sorted({*across, *stated})
     return about_cells(run, {axis: stated.get(axis, _number(run, axes, changes)) for axis in axes}, changes)

@@ -41,7 +41,7 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     """
     scene, state = simulation.scene, simulation.state
     refuse_sheared(scene, "free flights are those of a gas at rest")
-    if not all(scene.container.periodic) or scene.walls:
+    if not scene.is_periodic or scene.walls:
         rule = "has walls, which end flights: only the flights of a periodic gas are between collisions"
         raise SceneError("container.boundary", scene.container.boundary, rule)
     events, count = simulation.events, int(np.isfinite(state.masses).sum())

@@ -17,7 +17,6 @@ import xarray as xr
 from gaspart.analysis.estimators import engine_tallies, estimator
 from gaspart.analysis.profiles import BLOCKS, LEAST_FRAMES, Cells, Means, ratio
 from gaspart.analysis.run import Run
-from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.state.optional_tallies import ImpulseTally, stored_tally, useful_impulses
 
 USUAL_BINS = 40
@@ -147,7 +146,7 @@ def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
     has left of it, and the temperature at a place is the mean over the states with a particle there. Of a
     momentum that is conserved each particle has its part.
     """
-    hot = face_temperatures(run.scene)
+    hot = run.scene.face_temperatures
     spread = np.full(bins, min(hot) if hot else run.temperature)
     if _has_potential(run) and not hot:
         _, cells = _places(run, axis, bins, members)

@@ -16,13 +16,13 @@ import numpy as np
 from gaspart.analysis.conditions import GROUPS
 from gaspart.analysis.correlations import accumulated_mean, autocorrelation, correlate
 from gaspart.analysis.expected.described import described
+from gaspart.analysis.flow import FLOW
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
-from gaspart.scene.faces import mean_velocity
 
 MOST_FRAMES = 1000
 """That are correlated of each group; of a longer run, every second or third ..."""
@@ -51,13 +51,14 @@ def mean_squared_displacement(
     species: int | None = None,
     particles: Sequence[int] | None = None,
     per_axis: bool = False,
+    about: str = FLOW,
 ) -> Observable:
     """<|r(t) - r(0)|^2> over moving particles and time origins, (lag,), in length^2.
 
     source: a trajectory, by its path or open, or a simulation; lags: their number, in frames (by default half
-    of them); start: the time from which frames count (by default a quarter of the run). Along axes on which
-    the total momentum is conserved it is that about the centre of mass, times N / (N - 1), between faces that
-    slide about their mean velocity. species,
+    of them); start: the time from which frames count (by default a quarter of the run). It is about the local
+    flow where the gas flows, otherwise, along axes on which the total momentum is conserved, about the centre
+    of mass, times N / (N - 1); with about="rest" about the container (`gaspart.analysis.flow`). species,
     particles: of one species, by its number in the scene (single particles have the number after the last),
     or of these particles only; of fewer than 16 the error is the scatter of as many stretches of the run.
     per_axis: that along each axis instead of their sum, (axis, lag).
@@ -65,11 +66,11 @@ def mean_squared_displacement(
     Of a run with correlations and displacements the lags are those of the correlations, and all samples
     count, unless lags, species, particles or per_axis are given. Theory: that of Enskog's diffusion
     coefficient and the linear Boltzmann equation. Raises SceneError for fewer than 16 moving particles,
-    unless they are selected, frames at uneven times, and frames too far apart to follow particles across
-    periodic faces.
+    unless they are selected, a flow that changes with time, frames at uneven times, and frames too far apart
+    to follow particles across periodic faces.
     """
-    with open_run(source, start) as run:
-        require_defined("msd", run.scene, species=species, particles=particles)
+    with open_run(source, start, about=about) as run:
+        require_defined("msd", run.scene, species=species, particles=particles, about=about)
         if _accumulates(run, _SQUARES, lags, species, particles) and not per_axis:
             time, values, errors = accumulated_mean(run, _SQUARES)
             return _displacement(run, time, values, errors)
@@ -93,6 +94,7 @@ def velocity_autocorrelation(
     start: float | None = None,
     species: int | None = None,
     particles: Sequence[int] | None = None,
+    about: str = FLOW,
 ) -> Observable:
     """<v(0) . v(t)> / d over moving particles and time origins, (lag,), in length^2 / time^2.
 
@@ -100,8 +102,8 @@ def velocity_autocorrelation(
     m) exp(-2 nu t / d), nu the collision rate: exact at short times, without the long-time tail. Raises
     SceneError for fewer than 16 moving particles, and frames at uneven times.
     """
-    with open_run(source, start) as run:
-        require_defined("vacf", run.scene, species=species, particles=particles)
+    with open_run(source, start, about=about) as run:
+        require_defined("vacf", run.scene, species=species, particles=particles, about=about)
         if _accumulates(run, _PRODUCTS, lags, species, particles):
             time, values, errors = accumulated_mean(run, _PRODUCTS)
             return _autocorrelation(run, time, values / run.dimension, errors / run.dimension)
@@ -114,15 +116,19 @@ def velocity_autocorrelation(
 def _accumulates(
     run: Run, name: str, lags: int | None, species: int | None, particles: Sequence[int] | None
 ) -> bool:
-    """Whether a run has accumulated what is asked for, under a name of `SUMS`."""
-    return name in run.data and lags is None and species is None and particles is None
+    """Return True if a run has accumulated what is asked for, under a name of `SUMS`: of a gas that does not
+    flow."""
+    whole = lags is None and species is None and particles is None
+    if not (name in run.data and whole and run.about == FLOW):
+        return False
+    return not (run.scene.flow_axes if run.is_subset else run.flow_axes)  # some particles show no wind
 
 
 def _displacement(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:
     """The mean-squared displacement (lag,) or (axis, lag), with theory."""
-    about = described("msd", run, time, axes=values.ndim > 1)
+    attributes = described("msd", run, time, axes=values.ndim > 1)
     along = {**(axes_of(run) if values.ndim > 1 else {}), **_lag(time)}
-    return observable("mean_squared_displacement", along, values, errors, **about)
+    return observable("mean_squared_displacement", along, values, errors, **attributes)
 
 
 def _autocorrelation(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:
@@ -160,7 +166,7 @@ def groups_of(
     (d,), by default those along which its velocity is conserved.
 
     There its square for a particle of mass m is 1 - m / M of that without this condition, M the mass of all.
-    Between faces that slide motion is about their mean velocity (`faces.mean_velocity`).
+    Where the gas flows it is about the local flow (`analysis.flow`).
     """
     moving = run.moving
     steps = np.diff(run.time)
@@ -175,10 +181,16 @@ def groups_of(
         raise SceneError("count", len(masses), "a single particle keeps its velocity")
     free = np.where(about, np.sqrt(masses.sum() / np.where(others > 0.0, others, 1.0))[:, None], 1.0)
 
-    frame, time = np.array(mean_velocity(run.scene)), run.time[::stride, None, None]
+    velocities, carried = run.velocities[:, moving], None
+    if run.flow_axes:
+        peculiar, free_part = run.motion.velocities, run.motion.freedom
+        from scipy.integrate import cumulative_trapezoid
 
-    def parts(values: np.ndarray, drift: np.ndarray) -> list[np.ndarray]:
-        values = values - drift
+        carried = cumulative_trapezoid(velocities - peculiar, run.time, axis=0, initial=0.0)
+        velocities = peculiar / np.sqrt(np.where(free_part > 0.0, free_part, 1.0))
+
+    def parts(values: np.ndarray) -> list[np.ndarray]:
+        values = values[::stride]
         centre = np.einsum("tnd,n->td", values, masses) / masses.sum()
         motion = free * (values[:, chosen] - np.where(about, centre, 0.0)[:, None])
         if len(chosen) >= GROUPS:
@@ -190,10 +202,16 @@ def groups_of(
         return [motion[first : first + length] for first in range(0, GROUPS * length, length)]
 
     return Groups(
-        paths=parts(unwrapped(run)[::stride, moving], frame * time) if paths else [],
-        velocities=parts(run.velocities[::stride, moving], frame),
+        paths=parts(paths_of(run, carried)) if paths else [],
+        velocities=parts(velocities),
         interval=float(steps.mean()) * stride,
     )
+
+
+def paths_of(run: Run, carried: np.ndarray | None) -> np.ndarray:
+    """(T, M, d) the paths of the moving particles, less those by which the flow has carried them."""
+    paths = unwrapped(run)[:, run.moving]
+    return paths if carried is None else paths - carried
 
 
 def _alike(species: np.ndarray) -> list[np.ndarray]:

@@ -8,11 +8,13 @@ reference page and the completion of a shell read these declarations, and no oth
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from gaspart.analysis import conditions as where
 from gaspart.analysis.declaration import Named, units_in
 from gaspart.errors import SceneError, unknown_word
+from gaspart.scene.faces import Open
 from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 
@@ -45,7 +47,13 @@ OBSERVABLES: dict[str, Named] = {
         units="1",
         function="compressibility_factor",
         whole="unless fluxes",
-        conditions=(where.unsheared, where.periodic_virial, where.elastic, where.all_move, where.thermal),
+        conditions=(
+            where.unsheared,
+            where.periodic_virial,
+            where.elastic,
+            where.without_obstacles,
+            where.thermal,
+        ),
         nothing={"boltzmann": "is 1 of particles without extent, whatever happens"},
         theory="equilibrium.compressibility_factor",
         bulk="compressibility_factor",
@@ -59,6 +67,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="pressure on each wall",
         units="energy / length^d",
         function="wall_pressure",
+        of_impulses=True,
         varying=True,
         whole="never",
         along=("face",),
@@ -66,6 +75,20 @@ OBSERVABLES: dict[str, Named] = {
         theory="equilibrium.wall_pressure",
         power=1.0,
         by_impulses=True,
+        ends_runs=True,
+    ),
+    "force": Named(
+        title="force",
+        definition="force on each wall",
+        units="energy / length",
+        function="wall_force",
+        of_impulses=True,
+        varying=True,
+        whole="never",
+        along=("face",),
+        conditions=(where.walled, where.unsheared),
+        theory="equilibrium.wall_force",
+        power=1.0,
         ends_runs=True,
     ),
     "heat_flux": Named(
@@ -136,7 +159,7 @@ OBSERVABLES: dict[str, Named] = {
         conditions=(
             where.unsheared,
             where.of_species,
-            where.periodic,
+            where.homogeneous,
             where.elastic,
             where.one_size_each,
             where.thermal,
@@ -150,9 +173,9 @@ OBSERVABLES: dict[str, Named] = {
         units="length^2",
         function="mean_squared_displacement",
         along=("lag",),
-        selections=("species", "particles", "per_axis"),
+        selections=("species", "particles", "per_axis", "about"),
         needs="paths",
-        conditions=(where.unsheared, where.grouped),
+        conditions=(where.unsheared, where.grouped, where.steady_flow),
         theory="transport.mean_squared_displacement",
         scatter="particles",
         power=0.5,
@@ -165,9 +188,15 @@ OBSERVABLES: dict[str, Named] = {
         definition="diffusion coefficient",
         units="length^2 / time",
         function="diffusion_coefficient",
-        selections=("species", "particles", "per_axis", "lag"),
+        selections=("species", "particles", "per_axis", "lag", "about"),
         needs="paths",
-        conditions=(where.unsheared, where.free_axis, where.no_lasting_discs, where.grouped),
+        conditions=(
+            where.unsheared,
+            where.free_axis,
+            where.no_lasting_discs,
+            where.grouped,
+            where.steady_flow,
+        ),
         theory="transport.diffusion",
         bulk="diffusion",
         source="Enskog's theory times the ratio of Erpenbeck and Wood 1991; discs have none",
@@ -203,8 +232,8 @@ OBSERVABLES: dict[str, Named] = {
         units="length^2 / time^2",
         function="velocity_autocorrelation",
         along=("lag",),
-        selections=("species", "particles"),
-        conditions=(where.unsheared, where.grouped),
+        selections=("species", "particles", "about"),
+        conditions=(where.unsheared, where.grouped, where.steady_flow),
         theory="transport.velocity_autocorrelation",
         scatter="particles",
         power=1.0,
@@ -217,6 +246,8 @@ OBSERVABLES: dict[str, Named] = {
         units="time / length",
         function="speed_distribution",
         along=("speed",),
+        selections=("about",),
+        ends="fastest",
         conditions=(where.unsheared, where.grouped),
         theory="equilibrium.speeds",
         scatter="particles",
@@ -230,7 +261,7 @@ OBSERVABLES: dict[str, Named] = {
         function="rdf",
         whole="never",
         along=("distance",),
-        conditions=(where.unsheared, where.periodic, where.a_pair),
+        conditions=(where.unsheared, where.homogeneous, where.a_pair),
         theory="places.radial_distribution",
         **_OF_PAIRS,
     ),
@@ -241,7 +272,7 @@ OBSERVABLES: dict[str, Named] = {
         units="1",
         function="structure_factor",
         along=("wave_number",),
-        conditions=(where.unsheared, where.periodic),
+        conditions=(where.unsheared, where.homogeneous),
         theory="places.structure_factor",
         **_OF_PAIRS,
     ),
@@ -252,7 +283,7 @@ OBSERVABLES: dict[str, Named] = {
         units="1",
         function="partial_structure_factors",
         along=("pair", "wave_number"),
-        conditions=(where.unsheared, where.periodic, where.of_species),
+        conditions=(where.unsheared, where.homogeneous, where.of_species),
         theory="places.partial_structure_factors",
         merged="split",
         relative_to="norm",
@@ -311,7 +342,8 @@ OBSERVABLES: dict[str, Named] = {
         conditions=(where.unsheared, where.walled_axis, where.open_across, where.has_species),
         theory="flows.flux",
         power=0.5,
-        drives=(where.never_steady,),
+        ends_runs=True,
+        drives=(where.streams,),
         relative_to="norm",
     ),
     "number": Named(
@@ -323,6 +355,7 @@ OBSERVABLES: dict[str, Named] = {
         whole="never",
         varying=True,
         conditions=(where.unsheared, where.opened),
+        ends_runs=True,
     ),
     "temperature": Named(
         title="temperature",
@@ -332,7 +365,7 @@ OBSERVABLES: dict[str, Named] = {
         arguments={"of": "temperature"},
         varying=True,
         along=("position",),
-        selections=("axis", "species"),
+        selections=("axis", "species", "about"),
         conditions=(where.unsheared, where.has_axis, where.has_species, where.thermal),
         theory="places.temperature",
         power=1.0,
@@ -405,7 +438,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="global bond order, periodic",
         units="1",
         function="order_parameter",
-        conditions=(where.unsheared, where.periodic, where.a_neighbourhood),
+        conditions=(where.unsheared, where.homogeneous, where.a_neighbourhood),
         **_OF_PAIRS,
     ),
 }
@@ -416,13 +449,30 @@ TOO_SHORT = ("frames", "duration", "collisions", "wall_hits", "start", "D")
 """Keys of the errors of an analysis that a longer run may not have."""
 
 
+ALIASES: dict[str, str] = {
+    "P": "pressure",
+    "g(r)": "rdf",
+    "S(k)": "structure_factor",
+    "viscosity": "shear_viscosity",
+    "conductivity": "thermal_conductivity",
+    **{
+        declared.function: name
+        for name, declared in OBSERVABLES.items()
+        if declared.function != name and not declared.arguments
+    },
+}
+"""Other names of observables, among them those of their functions in `gaspart.analysis`."""
+
+
 def known(name: object) -> str:
-    """The name of an observable. Raises SceneError for any other value."""
-    if not isinstance(name, str) or name not in OBSERVABLES:
-        here = [one for one, declared in OBSERVABLES.items() if declared.function == name]
-        rule = f"is called {here[0]} here" if here else unknown_word(name, OBSERVABLES, "observable")
-        raise SceneError("observable", name, rule)
-    return name
+    """Return the name of an observable, given by its name or an alias. Raises SceneError for other values."""
+    if isinstance(name, str):
+        if name in OBSERVABLES:
+            return name
+        if name in ALIASES:
+            return ALIASES[name]
+    words = (*OBSERVABLES, *get_close_matches(str(name), ALIASES, n=1))
+    raise SceneError("observable", name, unknown_word(name, words, "observable"))
 
 
 def having(**traits: Any) -> tuple[str, ...]:
@@ -490,15 +540,16 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
     pressure, of others those at a temperature."""
     if "face" not in OBSERVABLES[name].along:
         return ()
-    if name == "pressure":
+    if OBSERVABLES[name].of_impulses:
         return scene.container.walls
     return tuple(key.replace("_", " ") for key, face in scene.faces.items() if face.temperatures)
 
 
 def require_steady_value(name: str, scene: Scene) -> None:
     """Raise SceneError, with the reason, for an observable that is 0 on average in the steady state of a
-    scene: no run makes it accurate relatively; and where particles come and go, of which none is planned."""
-    refuse_open(scene, "changes the particles: the length of such a run is not planned; give a duration")
+    scene: no run makes it accurate relatively. In a container that is open to a vacuum alone all are."""
+    if scene.is_open and not any(face.temperatures for _, face in scene.faces_of(Open)):
+        refuse_open(scene, "has no reservoir: all particles leave, and nothing is steady; give a duration")
     for condition in OBSERVABLES[known(name)].drives:
         condition(scene, {})
 

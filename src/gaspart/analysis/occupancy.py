@@ -9,14 +9,14 @@ from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import Observable, scalar
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.run import Source, open_run
-from gaspart.scene.faces import Open, faces_of
+from gaspart.scene.faces import Open
 from gaspart.scene.scene import Scene
 
 
 def particle_numbers(scene: Scene, data: xr.Dataset) -> np.ndarray:
     """(T,) particles inside in each frame: those at the start, with all that have entered since, less those
     that have left."""
-    opened = [number for number, _ in faces_of(scene, Open)]
+    opened = [number for number, _ in scene.faces_of(Open)]
     moved = data["entries"].values.sum(axis=1) - data["wall_hits"].values[:, opened].sum(axis=1)
     return np.asarray(scene.count + moved).astype(np.int64)
 

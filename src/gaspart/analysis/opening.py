@@ -29,9 +29,9 @@ def particle_flux(
     passed between frames: those that come back do not count, nor those that come and go through an open face
     beyond. The plane is that of the whole container; where interior walls lie in it, all pass their openings.
     source: a trajectory, by its path or open, or a simulation; axis: "x", "y" or "z", by default the last one
-    with walls; at: the place of the plane along it, by default the middle; species: of one alone, by its
-    number in the scene; start: the time from which frames count (by default a quarter of the run; 0 of a gas
-    that streams out from the start).
+    with open faces, or else with walls; at: the place of the plane along it, by default the middle; species:
+    of one alone, by its number in the scene; start: the time from which frames count (by default a quarter of
+    the run; 0 of a gas that streams out from the start).
 
     Theory: 0 in a steady state without interior walls; of free flight through openings of walls in the plane
     n sqrt(k_B T / 2 pi m) times their area, with the density on both sides. Raises SceneError for a periodic

@@ -31,8 +31,8 @@ def shell_volumes(bins: int, dimension: int) -> np.ndarray:
 
 def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> np.ndarray | None:
     """(2, S, bins) what the pairs that collide and all others give to g(r), in S stretches of a run that
-    begin at the frames `starts` (S,). None if the run has not kept it, or not in parts of these shells, or
-    if a stretch takes no time."""
+    begin at the frames `starts` (S,). None if the run has not kept it, or not in parts of these shells, if a
+    stretch takes no time, and if no pair has collided: then impulses say nothing of g(r), which is not 0."""
     has = kept(run)
     if has is None or starts[-1] == len(run.time) - 1 or furthest > has.furthest * (1.0 + _ALIKE):
         return None
@@ -42,6 +42,8 @@ def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> n
         return None
     ends = np.append(starts, len(run.time) - 1)
     sums = np.stack([run.data[name].values[ends] for name in ("contact_impulse_sum", "other_impulse_sum")])
+    if not (sums[0, -1] - sums[0, 0]).any():
+        return None
     rates = np.diff(sums, axis=1) / (run.temperature * np.diff(run.time[ends])[:, None])
     fine = shell_volumes(bins * merged, run.dimension)
     parts = (rates[..., : len(fine)] * fine).reshape(2, len(starts), bins, merged).sum(axis=3)

@@ -40,7 +40,7 @@ def rdf(
     belongs to the pressure of N particles, at the first bins beyond the diameter only. Raises SceneError for
     walls, fewer than two particles, too few frames and too large a distance.
     """
-    from gaspart.analysis.order import radial_distribution
+    from gaspart.analysis.bond_order import radial_distribution
 
     with open_run(source, start) as run:
         require_defined("rdf", run.scene)
@@ -56,7 +56,7 @@ def rdf(
         end = number("furthest", end, rule, above=0.0, most=half)
         stretches = np.array_split(chosen_frames(run, np.arange(len(run.time))), STRETCHES)
         found = [radial_distribution(run.positions[part], lengths, bins, end) for part in stretches]
-        each = stored / (stored - 1.0) * np.array([g for _, g in found], dtype=float)
+        each = np.array([g for _, g in found], dtype=float)
         parts = g_by_impulses(run, np.array([part[0] for part in stretches]), bins, end)
         if parts is not None:
             each = mixed_g(each, parts, shell_volumes(bins, run.dimension))

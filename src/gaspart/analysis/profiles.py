@@ -16,7 +16,7 @@ import numpy as np
 from gaspart.analysis.bins import Grid
 from gaspart.analysis.flow import Peculiar, about_cells, about_the_flow
 from gaspart.analysis.observable import Observable
-from gaspart.analysis.room import moving_axes, sides
+from gaspart.analysis.room import sides
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
@@ -118,7 +118,7 @@ class Cells:
 
     def room(self) -> np.ndarray:
         """(K, *cells) the volume of the cells that is within the container, summed over the frames."""
-        moving, ends = moving_axes(self.run), sides(self.run, self.run.time[:1])
+        moving, ends = self.run.scene.moving_axes, sides(self.run, self.run.time[:1])
         lengths = np.diff(ends[0], axis=1)[:, 0]
         across = [axis for axis in range(self.run.dimension) if axis not in self.axes]
         volume = self.grid.volume * lengths[across].prod()

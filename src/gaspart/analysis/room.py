@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import Vibrating, faces_of, pistons
-from gaspart.scene.moving_walls import moving_wall
+from gaspart.scene.faces import Vibrating
 
 if TYPE_CHECKING:
     from gaspart.analysis.run import Run
@@ -21,23 +20,16 @@ _GOLDEN = 0.6180339887498949
 _NUMBERS = 2_000_000  # of all intervals together
 
 
-def moving_axes(run: Run) -> list[int]:
-    """The axes along which a face or an interior wall moves, and the gas with it."""
-    faces = [*pistons(run.scene), *faces_of(run.scene, Vibrating)]
-    wall = moving_wall(run.scene)
-    return sorted({number // 2 for number, _ in faces} | ({wall.axis} if wall else set()))
-
-
 def sides(run: Run, times: np.ndarray) -> np.ndarray:
     """(S, d, 2) the lower and the upper end of the container along each axis at times (S,) of the run. A
     piston moves evenly between frames. Raises SceneError for frames without its place."""
     scene = run.scene
     found = np.zeros((len(times), run.dimension, 2))
     found[:, :, 1] = scene.container.lengths
-    for number, face in faces_of(scene, Vibrating):
+    for number, face in scene.faces_of(Vibrating):
         inwards = face.places(times)
         found[:, number // 2, number % 2] += -inwards if number % 2 else inwards
-    for number, _ in pistons(scene):
+    for number, _ in scene.pistons:
         if "piston_position" not in run.data:
             raise SceneError("source", "frames", "lack the place of the piston")
         place = np.interp(times, run.time, run.data["piston_position"].values)
@@ -46,23 +38,71 @@ def sides(run: Run, times: np.ndarray) -> np.ndarray:
 
 
 def touched(run: Run, times: np.ndarray) -> np.ndarray:
-    """(S, d) sides of the volume that centres of the largest particles can reach, at times (S,)."""
-    lower, upper = run.scene.reach(run.scene.largest_radius)
+    """(S, d) sides of the box that centres of the largest moving particles can reach, at times (S,)."""
+    lower, upper = run.scene.reach(run.scene.largest_moving_radius)
     margins = np.array(run.scene.container.lengths) - np.subtract(upper, lower)
     return np.diff(sides(run, times), axis=2)[:, :, 0] - margins
 
 
-def mean_areas(run: Run) -> np.ndarray:
-    """(T - 1, d) the area across each axis that centres can touch, its mean over each interval between
-    frames: of a face that moves, over instants that are spread evenly, but not at its period."""
-    if not moving_axes(run):
-        return np.broadcast_to(_across(touched(run, run.time[:1])), (len(run.time) - 1, run.dimension))
+def face_areas(run: Run) -> np.ndarray:
+    """Compute the area that a pressure or a flux on each face is divided by, its mean over each interval
+    between frames, (T - 1, 2d): the area that centres can reach.
+
+    Across the axis of a piston with a load it is the area of the container, by which the load is defined. If
+    particles of several sizes reach other areas, it is NaN: what faces are given is tallied per area then.
+    Faces move where no fixed particle or interior wall is.
+    """
+    scene, intervals = run.scene, len(run.time) - 1
+    if scene.has_unequal_areas:
+        found = np.full((1, 2 * run.dimension), np.nan)
+    else:
+        found = run.accessible.areas(np.array([scene.largest_moving_radius]))
+    if not scene.has_unequal_areas and scene.moving_axes:
+        lower, upper = scene.reach(scene.largest_moving_radius)
+        found = found + _mean_areas(run) - _across(np.subtract(upper, lower)[None]).repeat(2, axis=1)
+    found = np.array(np.broadcast_to(found, (intervals, 2 * run.dimension)))
+    if scene.load_axis is not None:
+        loaded = slice(2 * scene.load_axis, 2 * scene.load_axis + 2)
+        found[:, loaded] = np.delete(scene.container.lengths, scene.load_axis).prod()
+    return found
+
+
+def _mean_areas(run: Run) -> np.ndarray:
+    """(T - 1, 2d) areas without obstacles, their means over each interval between frames: of a face that
+    moves, over instants that are spread evenly, but not at its period."""
     intervals = len(run.time) - 1
     number = int(np.clip(_NUMBERS // intervals, *_INSTANTS))
     parts = (np.arange(number) + np.arange(1, number + 1) * _GOLDEN % 1.0) / number
     times = run.time[:-1, None] + np.diff(run.time)[:, None] * parts
     areas = _across(touched(run, times.ravel()))
-    return areas.reshape(intervals, number, run.dimension).mean(axis=1)
+    return areas.reshape(intervals, number, run.dimension).mean(axis=1).repeat(2, axis=1)
+
+
+def per_area(run: Run, given: np.ndarray, tallied: str) -> np.ndarray:
+    """Divide what each face is given in each interval between frames, (T - 1, 2d, ...), by the area that
+    centres can reach.
+
+    If particles of several sizes reach other areas, it is the sum over sizes of what particles of each give
+    divided by their area, by the tally of this name, with the component along the normal where `given` has
+    none. NaN of faces whose area then changes with time. Raises SceneError for a file without that tally.
+    """
+    areas = face_areas(run)
+    found = given / areas.reshape(*areas.shape, *[1] * (given.ndim - 2))
+    if not run.scene.has_unequal_areas:
+        return np.asarray(found)
+    if tallied not in run.data:
+        rule = (
+            "particles of several sizes reach other areas of the faces; make the run again, or measure force"
+        )
+        raise SceneError(tallied, "missing", rule)
+    faces = np.arange(2 * run.dimension)
+    weighted = run.increments(tallied)[:, faces].astype(float)
+    if weighted.ndim > given.ndim:
+        weighted = weighted[:, faces, faces // 2]
+    moved = {number // 2 for number, face in run.scene.numbered_faces if face.moves}
+    weighted[:, [bool(moved - {face // 2}) for face in faces]] = np.nan
+    known = np.isfinite(areas)  # of a piston with a load
+    return np.asarray(np.where(known.reshape(*known.shape, *[1] * (given.ndim - 2)), found, weighted))
 
 
 def _across(lengths: np.ndarray) -> np.ndarray:

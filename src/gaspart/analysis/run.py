@@ -15,12 +15,13 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.conditions import SLIDING, VARYING
-from gaspart.analysis.flow import Peculiar, about_the_flow, flow_axes
+from gaspart.analysis.flow import ABOUT, FLOW, Peculiar, about_the_flow, flow_axes
 from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
-from gaspart.keys.values import count_of, number
+from gaspart.keys.values import count_of, number, one_of
+from gaspart.scene.accessible import Accessible
 from gaspart.scene.gas import Gas, Mixture
-from gaspart.scene.open_faces import is_open, refuse_open
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
@@ -46,15 +47,17 @@ _MOST = 20_000_000  # numbers that such frames hold
 class Run:
     """T frames of N particles in d dimensions: the measured part of a run.
 
-    time (T,); data: the frames, with cumulative counters (T,) or (T, walls). centred: along the axes on which
-    the total momentum is conserved it is known to be zero, so that a file that lacks particles, or their
-    velocities, has a temperature too.
+    time (T,); data: the frames, with cumulative counters (T,) or (T, walls). centred: along the axes on
+    which the total momentum is conserved it is known to be zero, so that a file that lacks particles, or
+    their velocities, has a temperature too. about: what velocities and displacements are relative to
+    (`analysis.flow`): the local "flow" of the gas, or "rest".
     """
 
     scene: Scene
     time: np.ndarray
     data: xr.Dataset
     centred: bool = False
+    about: str = FLOW
 
     @property
     def count(self) -> int:
@@ -141,8 +144,18 @@ class Run:
 
     @property
     def conserved(self) -> np.ndarray:
-        """(d,) the axes along which the total momentum is."""
-        return np.array(self.scene.conserved_axes)
+        """(d,) the axes along which the total momentum is, and about whose mean motions are: none about
+        rest."""
+        return np.array(self.scene.conserved_axes) & (self.about == FLOW)
+
+    @cached_property
+    def accessible(self) -> Accessible:
+        """The volume and the areas that centres can reach around the fixed particles of the run. Raises
+        SceneError if fixed species are not in the file."""
+        if not any(kind.fixed and kind.count for kind in self.scene.species):
+            return Accessible(self.scene)
+        fixed = ~self.moving
+        return Accessible(self.scene, (self.positions[0, fixed], self.radii[fixed]))
 
     @cached_property
     def motion(self) -> Peculiar:
@@ -152,8 +165,8 @@ class Run:
 
     @cached_property
     def flow_axes(self) -> list[int]:
-        """The axes along which the velocity of the gas may vary (see `flow.flow_axes`)."""
-        return flow_axes(self)
+        """The axes along which the velocity of the gas may vary (see `flow.flow_axes`): none about rest."""
+        return flow_axes(self) if self.about == FLOW else []
 
     @property
     def peculiar(self) -> np.ndarray:
@@ -207,6 +220,7 @@ class Run:
         if freedom < 1:
             raise SceneError("count", count, "too few moving particles for a temperature")
         drift = self.data["flux_velocity"].values[-1] if "flux_velocity" in self.data else np.zeros(d)
+        drift = drift * (self.about == FLOW)
         whole = self.masses.sum() * (drift @ drift)
         return np.asarray((2.0 * self.data["kinetic_energy"].values - whole) / freedom)
 
@@ -239,7 +253,7 @@ class Run:
     @property
     def dissipates(self) -> bool:
         """Whether contacts lose energy."""
-        return self.scene.restitution is not None and self.scene.restitution.dissipative
+        return self.scene.dissipates
 
     @property
     def fluid(self) -> Gas | None:
@@ -303,15 +317,21 @@ def require_collisions(run: Run) -> None:
 
 @contextmanager
 def open_run(
-    source: Source, start: float | None, pairs: bool = False, sheared: bool = False, varying: bool = False
+    source: Source,
+    start: float | None,
+    pairs: bool = False,
+    sheared: bool = False,
+    varying: bool = False,
+    about: str = FLOW,
 ) -> Iterator[Run]:
     """The part of a source from the time `start` on; by default without its first quarter.
 
     A simulation is run again, from its start to the present time; with `pairs`, the collisions of each pair
     of species are counted then. sheared: whether the observable has a meaning in a sheared gas; varying:
-    whether it has one where faces are open. Raises SceneError where it has none, for fewer than two frames,
-    and for what `open_trajectory` refuses.
+    whether it has one where faces are open; about: see `Run`. Raises SceneError where it has none, for fewer
+    than two frames, and for what `open_trajectory` refuses.
     """
+    one_of("about", about, ABOUT)
     if isinstance(source, Simulation):
         opened = nullcontext(repeated(source, pairs))
     elif isinstance(source, xr.Dataset):
@@ -335,7 +355,7 @@ def open_run(
             refuse_sheared(scene, SLIDING)
         if not varying:
             refuse_open(scene, VARYING)
-        yield Run(scene, time[chosen], part)
+        yield Run(scene, time[chosen], part, about=about)
 
 
 def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
@@ -367,7 +387,7 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
         rows.append({name: value for name, value in row.items() if value is not None})
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]
-    if is_open(scene):
+    if scene.is_open:
         del columns["displacements"]  # from no place from which all have started
     sums = {field.name: field.metadata.get("along", ()) for field in fields(Tally)}
     along = {**dict.fromkeys(("coordinates", "displacements", "velocities"), ("atom", "spatial")), **sums}

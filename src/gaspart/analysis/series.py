@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.analysis.bins import Grid
-from gaspart.analysis.room import mean_areas
+from gaspart.analysis.room import per_area
 from gaspart.analysis.run import Run
+from gaspart.errors import SceneError
 from gaspart.state.tally import compressibility_factor
 
 
@@ -33,17 +34,33 @@ def compressibility(run: Run) -> np.ndarray:
     )
 
 
+def collisions(run: Run) -> np.ndarray:
+    """(T - 1,) collisions of one moving particle in each interval: each counts for both, if both move. Raises
+    SceneError for a file that does not count those with fixed particles, or lacks particles."""
+    scene, met, count = run.scene, run.increments("collisions"), int(run.moving.sum())
+    if count == 1:
+        return np.asarray(met)
+    if scene.has_fixed and "fixed_collisions" not in run.data:
+        rule = "collisions with fixed particles are not counted apart; make the run again"
+        raise SceneError("fixed_collisions", "missing", rule)
+    with_fixed = run.increments("fixed_collisions") if scene.has_fixed else 0.0
+    return np.asarray((2.0 * met - with_fixed) / count)
+
+
 def collision_rate(run: Run) -> np.ndarray:
-    """(T - 1,) collisions of one moving particle per time in each interval: each counts for both."""
-    return np.asarray(2.0 * run.increments("collisions") / (run.moving.sum() * np.diff(run.time)))
+    """(T - 1,) the same per time."""
+    return collisions(run) / np.diff(run.time)
+
+
+def face_impulses(run: Run) -> np.ndarray:
+    """(T - 1, 2d) momentum given to each face in each interval; 0 where there is no wall."""
+    return np.asarray(np.abs(run.increments("wall_impulse")[:, : 2 * run.dimension]))
 
 
 def face_pressures(run: Run) -> np.ndarray:
-    """(T - 1, 2d) momentum given to each face in each interval per time and per area that centres can touch,
-    its mean over the interval where faces move. NaN-free also where there is no wall: 0."""
-    areas = np.repeat(mean_areas(run), 2, axis=1)
-    impulses = run.increments("wall_impulse")[:, : 2 * run.dimension]
-    return np.asarray(impulses / (areas * np.diff(run.time)[:, None]))
+    """(T - 1, 2d) the same per time and area, as `analysis.wall_pressure` defines it; NaN where that is not
+    known."""
+    return per_area(run, face_impulses(run), "momentum_per_area") / np.diff(run.time)[:, None]
 
 
 @dataclass(frozen=True)

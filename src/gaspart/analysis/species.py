@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gaspart.analysis.flow import FLOW
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import Observable, scalar
 from gaspart.analysis.observables import having, selecting
@@ -17,7 +18,7 @@ from gaspart.errors import SceneError
 from gaspart.trajectory.reading import open_trajectory
 
 
-def by_species(source: Source, start: float | None = None) -> xr.Dataset:
+def by_species(source: Source, start: float | None = None, about: str = FLOW) -> xr.Dataset:
     """What can be measured of each species that moves, (species,), with standard uncertainties (`_error`).
 
     source: a trajectory, by its path or open, or a simulation; start: the time from which frames count (by
@@ -31,7 +32,8 @@ def by_species(source: Source, start: float | None = None) -> xr.Dataset:
       species. NaN where a species cannot have one, such as a D between walls, for the reason in the attribute
       `not_measured`, and where it has fewer lags than others.
 
-    Velocities are those about the local flow where the gas flows, otherwise about the centre of mass along
+    With about="rest" velocities and paths are those in the frame of the container, and no correction is made.
+    By default they are about the local flow where the gas flows, otherwise about the centre of mass along
     axes on which the total momentum is conserved (see `gaspart.analysis.flow`). There the mean square of a
     particle of mass m is 1 - m / M of that without this condition, M the mass of all whose mean is taken off
     (exact in equilibrium), for which temperatures and speeds are corrected. `to_dataframe` of the variables
@@ -41,7 +43,7 @@ def by_species(source: Source, start: float | None = None) -> xr.Dataset:
     """
     opened = open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source)
     with opened as run_of_all:
-        with open_run(run_of_all, start) as run:
+        with open_run(run_of_all, start, about=about) as run:
             kinds = [int(kind) for kind in np.unique(run.species[run.moving])]
             if not kinds:
                 raise SceneError("species", [], "none of the particles moves")
@@ -51,13 +53,15 @@ def by_species(source: Source, start: float | None = None) -> xr.Dataset:
         for kind, row in zip(kinds, rows, strict=True):
             for name in _of_motion():
                 try:
-                    row[name] = measure(run_of_all, name, start, species=kind)
+                    row[name] = measure(run_of_all, name, start, species=kind, about=about)
                 except SceneError as error:
                     missing[f"{name} of species {kind}"] = error.rule
     table = xr.Dataset(coords={"species": ("species", kinds, {"long_name": "number of the species"})})
     table["count"] = ("species", counts, {"units": "1", "long_name": "moving particles"})
     for name in ("temperature", "mean_speed", *_of_motion()):
-        table = table.merge(_column(name, [row.get(name) for row in rows]))
+        table = table.merge(
+            _column(name, [row.get(name) for row in rows]), join="outer", compat="no_conflicts"
+        )
     reasons = "; ".join(f"{what}: {reason}" for what, reason in missing.items())
     return table.assign_attrs(not_measured=reasons)
 
@@ -103,7 +107,7 @@ def _column(name: str, found: list[Observable | None]) -> xr.Dataset:
     columns = {}
     for key, values in parts.items():
         plain = [value.drop_vars("time", errors="ignore") for value in values]
-        column = xr.concat(plain, "species", join="outer")  # few particles have fewer lags
+        column = xr.concat(plain, "species", join="outer", compat="equals")  # few particles have fewer lags
         columns[key] = column.rename(key).assign_attrs(values[0].attrs)
     columns[name].attrs.update(known[0].estimate.attrs)
     columns[f"{name}_error"].attrs.update(known[0].error.attrs)

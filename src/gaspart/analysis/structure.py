@@ -5,10 +5,13 @@ Uncertainties are the scatter of consecutive stretches of the run, or of groups 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from gaspart.analysis.bins import Grid
 from gaspart.analysis.expected.described import described
+from gaspart.analysis.flow import FLOW
 from gaspart.analysis.impulses import default_bins, described_density, mixed_density
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.observables import having, require_defined
@@ -18,33 +21,43 @@ from gaspart.analysis.room import left_by_obstacles
 from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
-from gaspart.keys.values import count_of, one_of
+from gaspart.keys.values import count_of, number, one_of
 
 _CONSTANT = 1e-5  # relative change of an energy that is attributed to rounding
 FASTEST = 4.0
 """The histogram of speeds ends at this many thermal speeds sqrt(k_B T / m)."""
 
 
-def speed_distribution(source: Source, bins: int = 40, start: float | None = None) -> Observable:
+def speed_distribution(
+    source: Source,
+    bins: int = 40,
+    start: float | None = None,
+    fastest: float | None = None,
+    about: str = FLOW,
+) -> Observable:
     """Density of the speeds of moving particles, (speed,), in time / length, of all frames together.
 
-    source: a trajectory, by its path or open, or a simulation; bins: up to four thermal speeds; start: the
-    time from which frames count (by default a quarter of the run). Velocities are those about the local flow
-    where the gas flows, otherwise about the centre of mass where that is conserved (see
-    `gaspart.analysis.flow`), times sqrt(M / (M - m)), M the mass of those whose mean is taken off. The error
-    is the scatter of groups of particles. Theory: Maxwell's, of the run's own temperature; of one species at
-    a constant kinetic energy the exact one for their number; none where the gas flows, whose temperature is
-    not one. Raises SceneError for fewer than 16 moving particles, and for particles at rest.
+    source: a trajectory, by its path or open, or a simulation; bins: up to the speed `fastest`, by default
+    four thermal speeds; start: the time from which frames count (by default a quarter of the run).
+    Velocities are those about the local flow where the gas flows, otherwise about the centre of mass where
+    that is conserved (see `gaspart.analysis.flow`), times sqrt(M / (M - m)), M the mass of those whose mean
+    is taken off; with about="rest" those of the container's frame. The error is the scatter of groups of
+    particles. Theory: Maxwell's, of the run's own temperature; of one species at a constant kinetic energy
+    the exact one for their number; none where the gas flows, whose temperature is not one. Raises SceneError
+    for fewer than 16 moving particles, and for particles at rest.
     """
     bins = count_of("bins", bins, least=2)
-    with open_run(source, start) as run:
-        require_defined("speeds", run.scene)
+    with open_run(source, start, about=about) as run:
+        require_defined("speeds", run.scene, about=about)
         masses, temperature = run.masses[run.moving], run.temperature
         if not temperature > 0.0:
             raise SceneError("temperature", temperature, "particles at rest have no distribution")
         squares, free = run.motion.velocities**2, run.motion.freedom
         known = np.broadcast_to((free > 0.0).all(axis=2), squares.shape[:2])  # not alone in its cell
-        grid = Grid.line(0.0, FASTEST * np.sqrt(temperature / masses.min()), bins)
+        end = FASTEST * np.sqrt(temperature / masses.min())
+        if fastest is not None:
+            end = number("fastest", fastest, "must be positive and finite", above=0.0)
+        grid = Grid.line(0.0, end, bins)
         edges = grid.edges[0]
         speeds = np.sqrt((squares / np.where(free > 0.0, free, 1.0)).sum(axis=2))
         cells = np.where(known, grid.cells(speeds[..., None]), -1)
@@ -56,12 +69,12 @@ def speed_distribution(source: Source, bins: int = 40, start: float | None = Non
         energy = squares.sum(axis=(1, 2))
         fixed = np.ptp(energy) <= _CONSTANT * energy.mean()
         alike = np.ptp(masses) == 0.0 and not run.flow_axes
-        about = described("speeds", run, edges, masses[0] if alike else None, fixed)
+        attributes = described("speeds", run, edges, masses[0] if alike else None, fixed)
         if run.flow_axes:
-            about["long_name"] += " about the local flow"
+            attributes["long_name"] += " about the local flow"
         middle = 0.5 * (edges[1:] + edges[:-1])
         along = {"speed": (middle, {"units": "length / time", "long_name": "speed"})}
-        return observable("speed_distribution", along, values, errors, **about)
+        return observable("speed_distribution", along, values, errors, **attributes)
 
 
 def profile(
@@ -71,27 +84,28 @@ def profile(
     bins: int | None = None,
     start: float | None = None,
     species: int | None = None,
+    about: str = FLOW,
 ) -> Observable:
     """Profile of a property along an axis, (position,), mean over all frames.
 
     of: "density", moving particles per volume within the container of the moment (faces may move), without
     that from which fixed particles keep their centres (NaN where nothing is left); or "temperature" of the
     moving particles (NaN where there are none): about the local flow between faces that slide, under a force
-    along a periodic axis, in a wind and before faces that move, otherwise about the velocity of the centre of
-    mass where that is conserved (see `gaspart.analysis.flow`). axis: "x", "y" or "z", by default the last
-    one; bins: by default 40, of a density those of the impulses that the run has kept along the axis;
-    species: of one alone, by its number in the scene. Errors are those of correlated series, of each bin for
-    itself; the variable with the suffix _freedom has their degrees of freedom. They are NaN where these are
-    fewer than two, of a run that is too short for the correlation there, and where the value of a bin does
-    not change (0 if nothing moves, or all bins have one value). Impulses that the run has kept along the
-    axis, in bins of which each of these has as many, make the density more accurate than counts
-    (`gaspart.analysis.impulses`); the attribute `estimator` says so.
+    along a periodic axis, in a wind and before faces that move, otherwise about the velocity of the centre
+    of mass where that is conserved (see `gaspart.analysis.flow`), or with about="rest" about the container.
+    axis: "x", "y" or "z", by default the last one; bins: by default 40, of a density those of the impulses
+    that the run has kept along the axis; species: of one alone, by its number in the scene. Errors are those
+    of correlated series, of each bin for itself; the variable with the suffix _freedom has their degrees of
+    freedom. They are NaN where these are fewer than two, of a run that is too short for the correlation
+    there, and where the value of a bin does not change (0 if nothing moves, or all bins have one value).
+    Impulses that the run has kept along the axis, in bins of which each of these has as many, make the
+    density more accurate than counts (`gaspart.analysis.impulses`); the attribute `estimator` says so.
     Theory: the density of equal particles under gravity along this axis, by hydrostatics with the fluid's
-    equation of state; a uniform temperature in equilibrium.
-    Raises SceneError for an unknown property or axis, a species that does not move, and for too few frames.
+    equation of state; a uniform temperature in equilibrium. Raises SceneError for an unknown property or
+    axis, a species that does not move, and for too few frames.
     """
     one_of("of", of, having(function="profile"))
-    with open_run(source, start, varying=True) as run:
+    with open_run(source, start, varying=True, about=about) as run:
         require_defined(of, run.scene, axis=axis, species=species)
         names = "xyz"[: run.dimension]
         k = names.index(names[-1] if axis is None else axis)
@@ -105,12 +119,48 @@ def profile(
             members = np.flatnonzero(run.moving)[selected(run, species, None)]
             found = Cells(run, members, (k,), (bins,)).temperature(local=False)
         middle = 0.5 * (edges[1:] + edges[:-1])
-        about = described(of, run, *((k, edges, species) if of == "density" else ()))
+        attributes = described(of, run, *((k, edges, species) if of == "density" else ()))
         along = {"position": (middle, {"units": "length", "long_name": names[k]})}
-        result = observable(of, along, found.values, found.errors, **about)
+        result = observable(of, along, found.values, found.errors, **attributes)
         if of == "density":
             result.attrs |= described_density(run, k, bins, by_impulses is not None)
         return with_freedom(result, found)
+
+
+def density(source: Source, start: float | None = None, **selection: Any) -> Observable:
+    """Measure the density along an axis: `profile` of "density", with the same arguments.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(
+    ...     container=gp.Container(lengths=(10.0, 10.0)),
+    ...     species=[gp.Species(count=20, radius=0.5, temperature=1.0)],
+    ... )
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(20.0)
+    >>> gp.analysis.density(simulation, axis="x", bins=4).estimate.shape
+    (4,)
+    """
+    return profile(source, "density", start=start, **selection)
+
+
+def temperature(source: Source, start: float | None = None, **selection: Any) -> Observable:
+    """Measure the temperature along an axis: `profile` of "temperature", with the same arguments.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(
+    ...     container=gp.Container(lengths=(10.0, 10.0)),
+    ...     species=[gp.Species(count=20, radius=0.5, temperature=1.0)],
+    ... )
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(20.0)
+    >>> gp.analysis.temperature(simulation, axis="x", bins=4).estimate.shape
+    (4,)
+    """
+    return profile(source, "temperature", start=start, **selection)
 
 
 def order_parameter(source: Source, start: float | None = None) -> Observable:
@@ -119,7 +169,7 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
     1 in a triangular lattice of discs, 0.5745 in a face-centred cubic one, small in a fluid (about
     1 / sqrt(12 N) for spheres). Raises SceneError for walls and for too few frames.
     """
-    from gaspart.analysis.order import global_steinhardt, hexatic
+    from gaspart.analysis.bond_order import global_steinhardt, hexatic
 
     with open_run(source, start) as run:
         require_defined("order", run.scene)

@@ -9,19 +9,19 @@ from gaspart.analysis.expected.described import described
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.profiles import Means, with_freedom
-from gaspart.analysis.room import mean_areas
+from gaspart.analysis.room import per_area
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
-from gaspart.scene.faces import sliding_faces, thermal_numbers
 from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 256
 
 
 def heat_flux(source: Source, start: float | None = None) -> Observable:
-    """Heat that each face at a temperature takes per time and per area that centres can touch, (face,), in
-    units energy / (length^(d-1) time): positive where the gas warms the wall.
+    """Heat that each face at a temperature takes per time and per area that centres can reach, (face,), in
+    units energy / (length^(d-1) time): positive where the gas warms the wall. Areas are those of
+    `wall_pressure`.
 
     It is the energy that particles lose there in the frame of the wall: of one that slides, what it is given
     without the work that it does. The mean is that of the steady state: without what the change of the energy
@@ -37,12 +37,13 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     """
     with open_run(source, start) as run:
         require_defined("heat_flux", run.scene)
-        faces = np.array(thermal_numbers(run.scene))
-        energy = _sums(run, "wall_energy")[:, faces].astype(float)
-        for number, face in sliding_faces(run.scene):
-            work = _sums(run, "wall_shear")[:, number] @ np.array(face.velocity)
-            energy[:, list(faces).index(number)] -= work
-        found = _steady(run, faces, energy, _energies(run))
+        faces = np.array(run.scene.thermal_numbers)
+        heat = _given(run, "wall_energy", "heat_per_area")
+        for number, face in run.scene.sliding_faces:
+            heat[:, number] -= _given(run, "wall_shear", "momentum_per_area")[:, number] @ np.array(
+                face.velocity
+            )
+        found = _steady(run, faces, heat[:, faces], _energies(run))
         along = {"face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"})}
         about = described("heat_flux", run, faces)
         return with_freedom(observable("heat_flux", along, found.values, found.errors, **about), found)
@@ -64,9 +65,9 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
     """
     with open_run(source, start) as run:
         require_defined("wall_shear", run.scene)
-        faces = np.array(thermal_numbers(run.scene, drawn=True))
+        faces = np.array(run.scene.drawing_numbers)
         axes = np.array([axis for axis in range(run.dimension) if (faces // 2 != axis).any()])
-        given = _sums(run, "wall_shear")[:, faces][..., axes]
+        given = _given(run, "wall_shear", "momentum_per_area")[:, faces][..., axes]
         parts = [_steady(run, faces, given[..., n], _momenta(run, axis)) for n, axis in enumerate(axes)]
         across = faces[:, None] // 2 == axes
         columns = {key: np.stack([getattr(part, key) for part in parts], axis=1) for key in vars(parts[0])}
@@ -79,18 +80,19 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
         return with_freedom(observable("wall_shear", along, found.values, found.errors, **about), found)
 
 
-def _sums(run: Run, name: str) -> np.ndarray:
-    """(T, ...) a sum over walls. Raises SceneError for frames without it."""
+def _given(run: Run, name: str, tallied: str) -> np.ndarray:
+    """(T - 1, 2d, ...) what each face is given in each interval per accessible area, see `per_area`. Raises
+    SceneError for frames without the sum of this name."""
     if name not in run.data:
         raise SceneError(name, "missing", "the engine does not tally it, or an older version wrote the file")
-    return np.asarray(run.data[name].values)
+    return per_area(run, run.increments(name)[:, : 2 * run.dimension], tallied)
 
 
 def _steady(run: Run, faces: np.ndarray, given: np.ndarray, stored: list[np.ndarray]) -> Means:
-    """(F,) the mean over time of what each face is given per area, and its error.
+    """(F,) the mean over time of what each face is given, and its error.
 
-    given (T, F): sums; stored (T,) each: bounded sums over the gas, by the change of which blocks are
-    corrected. Raises SceneError for too few frames and faces that nothing has hit.
+    given (T - 1, F): in each interval; stored (T,) each: bounded sums over the gas, by the change of which
+    blocks are corrected. Raises SceneError for too few frames and faces that nothing has hit.
     """
     intervals = len(run.time) - 1
     if intervals < LEAST_INTERVALS:
@@ -100,8 +102,7 @@ def _steady(run: Run, faces: np.ndarray, given: np.ndarray, stored: list[np.ndar
     blocks = min(_BLOCKS, intervals)
     length = run.block_length(blocks)
     ends = slice(None, blocks * length + 1, length)
-    per_area = np.diff(given, axis=0) / mean_areas(run)[:, faces // 2]
-    grown = per_area[: blocks * length].reshape(blocks, length, -1).sum(axis=1)
+    grown = given[: blocks * length].reshape(blocks, length, -1).sum(axis=1)
     rates = grown / np.diff(run.time[ends])[:, None]
     changes = [np.diff(one[ends]) for one in stored]
     found = [_corrected(rate, changes) for rate in rates.T]
@@ -142,8 +143,8 @@ def _momenta(run: Run, axis: int) -> list[np.ndarray]:
 def _about_faces(run: Run) -> np.ndarray:
     """(T, M, d) velocities about the mean one of the thermal faces: the same in any frame of reference."""
     frame = np.zeros(run.dimension)
-    for _, face in sliding_faces(run.scene):
-        frame += np.array(face.velocity) / len(thermal_numbers(run.scene))
+    for _, face in run.scene.sliding_faces:
+        frame += np.array(face.velocity) / len(run.scene.thermal_numbers)
     return np.asarray(run.velocities[:, run.moving] - frame)
 
 
@@ -151,5 +152,5 @@ def _with_moments(run: Run, carried: np.ndarray) -> list[np.ndarray]:
     """(T,) each: the sum of what particles carry (T, M), and its first moments across the thermal faces,
     about the middle."""
     places = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
-    across = sorted({number // 2 for number in thermal_numbers(run.scene)})
+    across = sorted({number // 2 for number in run.scene.thermal_numbers})
     return [carried.sum(axis=1), *((carried * places[..., axis]).sum(axis=1) for axis in across)]

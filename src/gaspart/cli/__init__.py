@@ -10,6 +10,7 @@ import argparse
 import errno
 import os
 import sys
+import warnings
 from collections.abc import Iterable, Sequence
 from importlib import import_module
 from typing import TextIO
@@ -28,6 +29,7 @@ _COMMANDS = {
     "info": ("info", "contents and quality of a trajectory, and how to reproduce it"),
     "measure": ("measure", "observables of a trajectory, with uncertainties and theory"),
     "render": ("render", "a picture (.png) or a film (.mp4, .gif) of a trajectory"),
+    "film": ("render", "a film (.mp4, .gif) of a trajectory"),
     "films": ("films", "films of the scenes of the gallery, such as for slides"),
     "view": ("view", "an interactive page (.html) of a trajectory"),
     "collisions": ("collisions", "run a scene and write a data set of its collisions"),
@@ -126,6 +128,20 @@ def _complain(text: str, code: int) -> int:
         except OSError:  # full or closed: only the exit code is left
             _discard(stream)
     return code
+
+
+def show_warnings_in_a_line() -> None:
+    """Print the warnings of gaspart without the line of Python that gives them, until the process ends."""
+    print_with_place = warnings.showwarning
+
+    def show(message: Warning | str, *place: object, **more: object) -> None:
+        text = str(message)
+        if text.startswith("gaspart: "):
+            _complain(f"warning: {text.removeprefix('gaspart: ')}", 0)
+        else:
+            print_with_place(message, *place, **more)  # type: ignore[arg-type]
+
+    warnings.showwarning = show
 
 
 def _discard(stream: TextIO) -> None:

@@ -8,7 +8,6 @@ import os
 import shlex
 import sys
 import warnings
-from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,12 +26,12 @@ from gaspart.cli.engine_options import one_of
 from gaspart.cli.progress import waiting
 from gaspart.cli.stated_run import run_options
 from gaspart.errors import visible
-from gaspart.kernels.compile.loading import load_numba
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
     from gaspart.accuracy.option import Option
     from gaspart.accuracy.plan import Plan
+    from gaspart.accuracy.scatter import Scatter
 
 _EXAMPLES = """examples:
   gaspart advise scene.yaml --observable Z --accuracy 1e-3
@@ -44,11 +43,11 @@ _EXAMPLES = """examples:
 def add_advise(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
     text = (
-        "The cheapest engine, settings and run for a relative accuracy (half the width of a 95 % interval) "
-        "of an observable, and the command that runs it; or, with --config, the cost of the simulations of "
-        "a config. For Z, D and the collision rate of one species in a periodic container errors and times "
-        "are known, and the speed of this machine is measured by a run of a tenth of a second. For all else "
-        "short pilot runs are made, which are kept and reused."
+        "The cheapest engine, settings and run for a relative accuracy of an observable (the standard error, "
+        "as of `run --until`, and systematic errors), and the command that runs it; or, with --config, the "
+        "cost of the simulations of a config. For Z, D and the collision rate of one species in a periodic "
+        "container errors and times are known, times of another machine. For all else short pilot runs are "
+        "made, which are kept and reused."
     )
     set_command(parser, _advise, text, _EXAMPLES)
     add = parser.add_argument
@@ -75,19 +74,14 @@ def _advise(given: argparse.Namespace) -> None:
         print_lines(lines)
         return
     from gaspart.accuracy.plan import plan
-    from gaspart.accuracy.tabulated import is_tabulated
 
     def announce(text: str) -> None:
         if sys.stderr.isatty():
             print(f"gaspart: {visible(text)}", file=sys.stderr)
 
     scene, request = Scene.from_file(given.scene), (given.observable, given.accuracy, given.budget)
-    timed = is_tabulated(scene, given.observable)
-    text = "measuring the speed of this machine; the first time, compiling kernels"
-    with waiting(text) if timed else nullcontext(), warnings.catch_warnings():
+    with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of coarse settings, whose error is stated in the table
-        if timed:
-            load_numba(ours=True)
         made = plan(scene, *request, given.pilot, announce)
     print_lines(_lines(made, given.scene))
 
@@ -101,7 +95,7 @@ def _lines(plan: Plan, file: str) -> list[str]:
         lines += _run(plan, file)
     lines += _rarely_visited(plan)
     scatter = plan.scatter
-    lines += _drawn(target.name, scatter.value, scatter.drawn, scatter.placed)
+    lines += _drawn(plan, scatter)
     lines.append(_extra_cost(plan))
     if not plan.affordable:
         lines.append(_shortfall(plan))
@@ -111,7 +105,8 @@ def _lines(plan: Plan, file: str) -> list[str]:
         lines.append(_line("pilot", f"{pilot.engine.title}, {cost}: {shown}"))
     lines += _differences(plan)
     for other in plan.options[1:]:
-        cost = f"{other.seconds:.3g} s" if math.isfinite(other.seconds) else "not as accurate"
+        able = other.bias < plan.accuracy and math.isfinite(other.seconds)
+        cost = f"{other.seconds:.3g} s" if able else "not as accurate"
         without = f"gives up {other.engine.limitations}"
         lines.append(_line("why not", f"{other.engine.describe()}: {cost}; {_components(other)}; {without}"))
     lines += [_line("why not", f"{name}: {rule}") for name, rule in plan.refused.items()]
@@ -141,13 +136,14 @@ def _run(plan: Plan, file: str) -> list[str]:
     cores = min(plan.replicas, os.cpu_count() or 1)
     rounds = math.ceil(plan.replicas / cores)
     time = f"{rounds * plan.seconds / plan.replicas:.3g} s on {cores} core{'s' if cores > 1 else ''}"
-    cost = f"{plan.seconds:.3g} s of processor time, {time}{total}"
+    machine = " of the machine of the table" if plan.gas else ""
+    cost = f"{plan.seconds:.3g} s of processor time{machine}, {time}{total}"
     value = f"{plan.target.name} (about {plan.value:.4g}): {_components(best)}"
     lines += [
         _line("replicas", f"{plan.replicas}"),
         _line("command", command),
         _line("predicted cost", cost),
-        _line("95 % half-width", f"{best.half_width:.2g} of {value}"),
+        _line("standard error", f"{best.error:.2g} of {value}"),
     ]
     if asked := recipe.correlations:
         lags = f"{asked.interval:g} apart, up to {asked.lags * asked.interval:.4g}"
@@ -173,14 +169,16 @@ def _rarely_visited(plan: Plan) -> list[str]:
     return [f"places            {text}"]
 
 
-def _drawn(observable: str, scatter: float, velocities: bool, places: bool) -> list[str]:
-    """What differences of the energy at the start add to the error, of drawn velocities and places."""
-    if not scatter:
+def _drawn(plan: Plan, scatter: Scatter) -> list[str]:
+    """Return lines on what the energies of starts add to the error."""
+    if not scatter.value:
         return []
-    lines = [f"energy at start   {scatter:.2g} of {observable} from run to run, beyond this"]
-    if velocities:
+    of_mean = f", {scatter.value / math.sqrt(plan.replicas):.2g} of their mean" if plan.replicas > 1 else ""
+    text = f"{scatter.value:.2g} of {plan.target.name} from run to run{of_mean}, beyond this"
+    lines = [_line("energy at start", text)]
+    if scatter.drawn:
         lines.append("                  velocities are drawn: exact_temperature: true removes their part")
-    if places:
+    if scatter.placed:
         lines.append(
             "                  heights are random: the mean of runs with several seeds, or of runs from "
             "one state (--from), which have one energy"
@@ -213,7 +211,7 @@ def _extra_cost(plan: Plan) -> str:
 
 def _components(option: Option) -> str:
     """What makes the error of an option."""
-    noise = option.half_width - option.bias
+    noise = option.error - option.bias
     of = option.candidate
     parts = {"noise": noise, "model": of.model, "steps and cells": of.discretisation}
     parts["difference of the pilots"] = option.bias if option.bias > of.bias else 0.0
@@ -226,10 +224,13 @@ def _components(option: Option) -> str:
 
 
 def _shortfall(plan: Plan) -> str:
-    """What would reach an accuracy that the budget does not, or that no engine does."""
+    """Return what would reach an accuracy that the budget, a single run or no engine reaches."""
     able = [one for one in plan.options if one.bias < plan.accuracy]
     if not able:
         return f"no engine is known to be as accurate as {plan.accuracy:g}"
+    if plan.budget is None:
+        advice = f"the mean of {plan.runs} runs with other seeds has it" if plan.runs else "no run reaches it"
+        return f"one run does not reach {plan.accuracy:g}, however long it is: {advice}"
     least = min(able, key=lambda one: one.cost(plan.accuracy))
     cost, engine = f"{least.cost(plan.accuracy):.3g} s", least.engine.title
     return f"the budget does not suffice for {plan.accuracy:g}, which takes {cost}, {engine} engine"

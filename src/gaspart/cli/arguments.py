@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from textwrap import fill
 from typing import Any, NoReturn, TypeVar
 
@@ -119,6 +120,18 @@ def add_output(parser: argparse.ArgumentParser, what: str, overwrite: str) -> No
 def add_trajectory(parser: argparse.ArgumentParser) -> None:
     """Add the argument of a command that reads a trajectory."""
     parser.add_argument("trajectory", metavar="FILE", help="trajectory of gaspart (.nc)")
+
+
+def run_files(name: str) -> list[str]:
+    """Return the files of the run that a command names: the file itself, or those of all replicas."""
+    from gaspart.trajectory.partial import partial_path, replica_path
+    from gaspart.trajectory.replicas import files_of
+
+    path = Path(name)
+    alone = path.exists() or partial_path(path).exists() or not path.name
+    first = path if alone else replica_path(path, 1)
+    is_replicated = first != path and (first.exists() or partial_path(first).exists())
+    return [str(file) for file in files_of(path)] if is_replicated else [name]
 
 
 def config_command(command: str) -> Callable:

@@ -12,6 +12,7 @@ from gaspart.cli.arguments import (
     print_line,
     print_lines,
     real,
+    run_files,
     set_command,
     several,
 )
@@ -47,6 +48,8 @@ def add_check(parser: Parser) -> None:
     )
     text = "periodic or wall, of all axes or one for each, as periodic,periodic,wall; default: as in the file"
     add("--boundary", type=_words, metavar="NAME[,...]", help=text)
+    text = "lower corner of the container, or the word centre if its middle is at 0, as --origin=-5,-5,-5"
+    add("--origin", type=_corner, metavar="X,Y[,Z]", help=text)
     text = "time of a step (GSD) or between frames (netCDF, XYZ)"
     add("--time-step", type=real(above=0.0), metavar="T", help=text)
     add("--tolerance", type=real(least=0.0), metavar="X", help="allowed overlap, as a fraction of a diameter")
@@ -58,25 +61,50 @@ def _words(text: str) -> str | tuple[str, ...]:
     return words[0] if len(words) == 1 else words
 
 
+def _corner(text: str) -> str | tuple[float, ...]:
+    """A word, or numbers with commas between."""
+    return text if text.isalpha() else tuple(several(real())(text))
+
+
 def _check(given: argparse.Namespace) -> None:
-    if Path(given.file).suffix in (".yaml", ".yml"):
-        for key in ("radius", "lengths", "boundary", "time_step"):
+    healthy = [_is_healthy(given, file) for file in run_files(given.file)]
+    if not all(healthy):
+        raise CheckFailed
+
+
+def _is_healthy(given: argparse.Namespace, file: str) -> bool:
+    """Print the checks of a file; return False if one fails."""
+    if Path(file).suffix in (".yaml", ".yml"):
+        for key in ("radius", "lengths", "boundary", "origin", "time_step"):
             if getattr(given, key) is not None:
                 raise SceneError(key, getattr(given, key), "has a meaning for trajectories only")
-        checks, scales = _written(given.file, given.tolerance)
+        checks, scales = _written(file, given.tolerance)
     else:
-        from gaspart.inspection.checks import judge
-        from gaspart.inspection.readers import read_frames
-
-        frames = read_frames(given.file, given.radius, given.lengths, given.boundary, given.time_step)
-        kind = "discs" if frames.dimension == 2 else "spheres"
-        print_line(f"{given.file}: {frames.count} {kind} in {len(frames.positions)} frames")
-        checks, scales = judge(frames, given.tolerance), []
+        title, checks = _judged(file, given)
+        print_line(title)
+        scales = []
     for check in checks:
         print_line(check)
     print_lines(scales)
-    if any(check.passed is False for check in checks):
-        raise CheckFailed
+    return all(check.passed is not False for check in checks)
+
+
+def _judged(file: str, given: argparse.Namespace) -> tuple[str, list]:
+    """Check a trajectory. Returns a line that names its particles, and the checks."""
+    from gaspart.inspection.checks import judge
+    from gaspart.inspection.open_runs import judge_open
+    from gaspart.inspection.readers import is_open_run, read_frames
+
+    stated = {key: getattr(given, key) for key in ("radius", "lengths", "boundary", "time_step", "origin")}
+    if is_open_run(file):
+        for key, value in stated.items():
+            if value is not None:
+                raise SceneError(key, value, "has no meaning for a run of gaspart with open faces")
+        return judge_open(Path(file), given.tolerance)
+    frames = read_frames(file, **stated)
+    kind = "discs" if frames.dimension == 2 else "spheres"
+    title = f"{file}: {frames.count} {kind} in {len(frames.positions)} frames"
+    return title, judge(frames, given.tolerance)
 
 
 def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:

@@ -1,4 +1,4 @@
-"""`gaspart export`: a state for other programs."""
+"""`gaspart export`: states and trajectories for other programs."""
 
 from __future__ import annotations
 
@@ -8,17 +8,26 @@ from gaspart.cli.arguments import Parser, add_output, add_trajectory, integer, p
 
 _EXAMPLES = """examples:
   gaspart export run.nc -o state.gsd              # last frame, for HOOMD
-  gaspart export run.nc -o start.data --frame 0   # first frame, for LAMMPS"""
+  gaspart export run.nc -o start.data --frame 0   # first frame, for LAMMPS
+  gaspart export run.nc -o run.xyz --frame all    # a number of particles for each frame"""
 
 
 def add_export(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
-    text = "One frame of a trajectory as a state for other programs: GSD, or LAMMPS data (atom_style sphere)."
+    text = (
+        "A frame of a trajectory, or all, for other programs: GSD, extended XYZ, or LAMMPS data (atom_style "
+        "sphere; one frame)."
+    )
     set_command(parser, _export, text, _EXAMPLES)
     add_trajectory(parser)
-    add_output(parser, "ends in .gsd or .data", "an exported state")
-    text = "counted from 0, or from the end if negative; default: -1"
-    parser.add_argument("--frame", type=integer(), default=-1, metavar="N", help=text)
+    add_output(parser, "ends in .gsd, .xyz or .data", "an exported state")
+    text = "counted from 0, or from the end if negative, or all; default: -1"
+    parser.add_argument("--frame", type=_frame, default=-1, metavar="N", help=text)
+
+
+def _frame(text: str) -> int | str:
+    """A number, or the word all."""
+    return text if text == "all" else integer()(text)
 
 
 def _export(given: argparse.Namespace) -> None:

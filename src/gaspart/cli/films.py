@@ -56,13 +56,17 @@ def run_template(template: Template, folder: Path) -> Path:
 
 
 def _films(given: argparse.Namespace) -> None:
-    from gaspart.rendering.films import film
+    from gaspart.rendering.films import FILM_FORMATS, film
 
     known = templates()
     for name in given.names:
         if name not in known:
             raise SceneError("name", name, unknown_word(name, known, "name"))
     folder = Path(given.folder)
+    if folder.suffix in (".nc", *FILM_FORMATS):
+        of_one = f"gaspart film {folder.stem}.nc -o {folder.stem}.mp4"
+        rule = f"must be a folder, for films of the gallery; of one trajectory: {of_one}"
+        raise SceneError("folder", given.folder, rule)
     folder.mkdir(parents=True, exist_ok=True)
     for name in given.names or known:
         output = folder / f"{name}.{'gif' if given.gif else 'mp4'}"
@@ -71,6 +75,6 @@ def _films(given: argparse.Namespace) -> None:
                 with waiting(f"running {name}"):
                     trajectory = run_template(known[name], Path(scratch))
                 colour = colour_of(known[name])
-                film(trajectory, output, size=given.size, colour=colour, clock=True, progress=counted())
+                film(trajectory, output, size=given.size, colour=colour, progress=counted())
                 print(clear_line(), end="", file=sys.stderr)
         print_line(output)

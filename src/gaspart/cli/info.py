@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Parser, add_trajectory, print_line, print_lines, set_command
+from gaspart.cli.arguments import Parser, add_trajectory, print_line, print_lines, run_files, set_command
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
@@ -30,12 +30,11 @@ def _info(given: argparse.Namespace) -> None:
     from gaspart.accuracy.scales import scales
     from gaspart.cli.stated_run import run_options
     from gaspart.inspection.certificate import certificate
-    from gaspart.scene.open_faces import is_open
     from gaspart.trajectory.opening import check_frames, opened
     from gaspart.trajectory.partial import PARTIAL, partial_path
     from gaspart.trajectory.recipe import read_recipe
 
-    path = Path(given.trajectory)
+    path = Path(run_files(given.trajectory)[0])
     stored_at = path if path.exists() or not partial_path(path).exists() else partial_path(path)
     recipe = read_recipe(stored_at)
     with opened(stored_at) as file:
@@ -57,7 +56,7 @@ def _info(given: argparse.Namespace) -> None:
     print_line(f"{stored_at}: {stored['title']}{replica}, {of_all}, {state}")
     for line in _request(recipe, stored_at, frames):
         print_line(line)
-    begun = "at the start: " if is_open(scene) else ""
+    begun = "at the start: " if scene.is_open else ""
     density = f"packing fraction {scene.packing_fraction:.6g}, number density {scene.number_density:.6g}"
     print_line(f"{begun}{density}")
     print_lines(f"{begun}{line}" for line in scales(scene).lines)

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gaspart.analysis.flow import ABOUT
 from gaspart.analysis.measuring import measure, until_time
-from gaspart.analysis.observables import OBSERVABLES, selecting, selections
+from gaspart.analysis.observables import ALIASES, OBSERVABLES, known, selecting, selections
 from gaspart.cli.arguments import (
     Parser,
     UsageError,
@@ -20,6 +21,7 @@ from gaspart.cli.arguments import (
     listed,
     print_line,
     real,
+    run_files,
     set_command,
     several,
 )
@@ -32,6 +34,10 @@ if TYPE_CHECKING:
 
 _FIELD = "field"
 """The name by which a property in cells is asked for, which is not one observable."""
+_SEEDS = "seeds"
+"""Attribute of an observable of a single run with the remark on its energy."""
+_DRIFT = "drift"
+"""Attribute of an observable of a single run with the remark that the run is not steady."""
 _ROWS = 12  # of a curve that are printed
 _TITLE = "# gaspart measure"
 _TABLE = FileKind("a table written by gaspart measure", begins_with(_TITLE.encode()))
@@ -40,6 +46,7 @@ _EXAMPLES = """examples:
   gaspart measure run.nc vacf -o vacf.png
   gaspart measure run.nc msd -o msd.csv --start 10
   gaspart measure run-1.nc run-2.nc run-3.nc D   # replicas: mean and scatter
+  gaspart measure run.nc D          # the same, of a run with --replicas
   gaspart measure run.nc D --per-axis
   gaspart measure run.nc D --particles 0 --lag 2    # of one tracer, at a lag
   gaspart measure run.nc density --axis x
@@ -79,6 +86,8 @@ def add_measure(parser: Parser) -> None:
     add("--cells", type=several(int), metavar="N[,N...]", help=text)
     text = "through the plane at this place, by default in the middle: "
     add("--at", type=real(), metavar="X", help=text + ", ".join(selecting("at")))
+    text = "about the local flow of the gas, by default, or about rest: "
+    add("--about", choices=ABOUT, help=text + ", ".join(selecting("about")))
     text = "at or until this lag, a time: "
     add("--lag", type=real(), metavar="T", help=text + ", ".join(selecting("lag")))
     add("-o", "--output", metavar="FILE", help="all rows of one observable as .csv, or a plot as .png")
@@ -91,7 +100,7 @@ class _Words(tuple):
     """The names of observables, of which a shell completes one. Files may stand among the words too."""
 
     def __contains__(self, word: object) -> bool:
-        return super().__contains__(word) or _is_file(str(word))
+        return super().__contains__(word) or word in ALIASES or _is_file(str(word))
 
 
 def _is_file(word: str) -> bool:
@@ -111,11 +120,12 @@ def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:
         )
     if late := [word for word in names if _is_file(word)]:
         raise UsageError(f"{late[0]!r}: files stand before the names of observables")
-    return files, names
+    return files, [name if name == _FIELD else known(name) for name in names]
 
 
 def _measure(given: argparse.Namespace) -> None:
-    files, names = _sorted(given)
+    stated, names = _sorted(given)
+    files = [file for name in stated for file in run_files(name)]
     write = _writer(given, names)
     asked = {key: getattr(given, key) for key in selections()}
     selection = {key: value for key, value in asked.items() if value is not None}
@@ -126,8 +136,8 @@ def _measure(given: argparse.Namespace) -> None:
             _print_curve(name, observable)
         else:
             _print_scalar(name, observable)
-        if "note" in observable.attrs:
-            print_line(f"({observable.attrs['note']})")
+        for note in (observable.attrs[key] for key in ("note", _SEEDS, _DRIFT) if key in observable.attrs):
+            print_line(f"({note})")
         write(observable)
 
 
@@ -168,7 +178,28 @@ def _measured(
                     found = _measure_field(trajectory, times, selection | field)
                 else:
                     found = measure(trajectory, name, *times, **selection)
+                    found.attrs |= _of_seeds(trajectory, name) | _of_drift(trajectory, name, times)
             yield name, found
+
+
+def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | None]) -> dict[str, str]:
+    """Return the remark that the measured part of a run is not steady, if so it is."""
+    from gaspart.analysis.drift import drift_of
+
+    with until_time(trajectory, times[1]) as part:
+        found = drift_of(part, times[0], "position" in OBSERVABLES[name].along)
+    return {_DRIFT: f"not steady: {found}"} if found else {}
+
+
+def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:
+    """Return the remark that other seeds have other energies, if they have."""
+    from gaspart.accuracy.scatter import scatter_of_run
+    from gaspart.cli.stated_run import other_seeds
+
+    if not OBSERVABLES[name].power:
+        return {}
+    scatter = scatter_of_run(trajectory, name).value
+    return {_SEEDS: other_seeds(scatter)} if scatter else {}
 
 
 def _measure_field(

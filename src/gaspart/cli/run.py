@@ -44,6 +44,10 @@ _EXAMPLES = """examples:
   gaspart run scene.yaml -o run.nc --until Z=1e-3 --replicas 2    on two cores
   gaspart info run.nc"""
 
+_KEEP = (
+    "write of each particle only its `positions`, or `velocities`; without positions no other program reads "
+    "the file (chemfiles: all are 0)"
+)
 _USAGE = """gaspart run SCENE -o FILE --duration T --sample-interval T [options]
        gaspart run SCENE -o FILE --until NAME=X [--at-most T] [options]"""
 
@@ -113,7 +117,7 @@ def _add_contents(group: argparse._ArgumentGroup) -> None:
         help="also write unwrapped displacements since time 0, in float64",
     )
     add("--follow", type=int, metavar="N", help="write only the first N particles")
-    add("--keep", metavar="WHAT", help="write of each particle only its `positions`, or `velocities`")
+    add("--keep", metavar="WHAT", help=_KEEP)
     add(
         "--correlations",
         type=several(float),

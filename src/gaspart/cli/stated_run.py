@@ -10,6 +10,7 @@ from gaspart.engines import engine_to_dict
 from gaspart.state.optional_tallies import option_of
 
 if TYPE_CHECKING:
+    from gaspart.accuracy.reached import AccuracyStatus
     from gaspart.trajectory.recipe import Recipe
 
 
@@ -29,16 +30,33 @@ def accuracy_lines(path: Path) -> list[str]:
         value = f"{one.value:.6g} +- {one.error:.2g}, 95 % interval {low:.6g} to {high:.6g}"
         error = f"relative error {one.accuracy:.2g}, by its uncertainty at most {one.bound:.2g}"
         verdict = "reached" if one.met else "not reached"
-        lines.append(f"{one.asked.name}{where} = {value}; {error}; {required}: {verdict}")
+        lines.append(f"{one.asked.name}{where} = {value}{_starts(one)}; {error}; {required}: {verdict}")
     if path.suffix != PARTIAL and not all(one.met for one in reached):
-        lines.append(_why_ended(path))
+        lines.append(_why_ended(path, reached))
     return lines
 
 
-def _why_ended(path: Path) -> str:
-    """Why a run with --until ended before it was accurate."""
+def other_seeds(scatter: float) -> str:
+    """Return the remark beside the interval of a single run that keeps the energy of its start."""
+    return f"for the energy of this run; other seeds scatter by {100.0 * scatter:.2g} %"
+
+
+def _starts(reached: AccuracyStatus) -> str:
+    """Return a remark on the energies of the starts; "" if they do not scatter."""
+    if not reached.scatter:
+        return ""
+    if reached.replicas == 1:
+        return f" {other_seeds(reached.scatter)}"
+    return f", {100.0 * reached.of_starts:.2g} % of it by the energies of the starts"
+
+
+def _why_ended(path: Path, reached: list[AccuracyStatus]) -> str:
+    """Return the reason why a run with --until ended before it was accurate."""
     from gaspart.trajectory.replicas import found
 
+    if limited := [one for one in reached if one.excess <= 1.0 and not one.met]:
+        remedy = f"no longer run makes the mean of {limited[0].replicas} replicas as accurate"
+        return f"{remedy}: the energies of their starts scatter; exact_temperature: true, or more replicas"
     until = found(path)[1].until
     if until is not None and until.at_most is None:
         return "the run was given up: nothing that could be measured has happened; --at-most makes it longer"

@@ -87,7 +87,7 @@ class Local(Protocol):
 
 @dataclass(frozen=True)
 class Asked:
-    """An observable of a steady scene, and its relative accuracy, half of a 95 % interval.
+    """An observable of a steady scene, and its relative accuracy: a standard error with the bias.
 
     conditions: of the scene; face: of the pressure, the wall; transported: whether transport coefficients
     govern the observable; initial: the state at time 0, None where only the errors of models are asked for.

@@ -16,8 +16,7 @@ from gaspart.engines.asked import Asked, Candidate
 from gaspart.errors import SceneError
 from gaspart.keys import from_mapping, validate
 from gaspart.keys.values import one_of
-from gaspart.scene.features import FEATURES, features
-from gaspart.scene.thermal_faces import face_temperatures
+from gaspart.scene.features import FEATURES
 
 if TYPE_CHECKING:
     from gaspart.engines.dynamics import Dynamics
@@ -137,7 +136,7 @@ class Engine:
 
     def check_features(self, scene: Scene) -> None:
         """Raise SceneError for features of a scene that this engine does not model, with those that do."""
-        present = features(scene)
+        present = scene.features
         missing = [(name, "none") for name in FEATURES if name in present - self.models]
         together = [pair for pair in self.excludes if set(pair) <= present]
         missing += [(name, f"none together with {FEATURES[other].meaning}") for name, other in together]
@@ -154,7 +153,7 @@ class Engine:
     def draws(self, scene: Scene) -> bool:
         """Whether random numbers are drawn after the start: by its equation, faces or the thermostat. Where
         none are, runs from one state are one run, whatever their seeds."""
-        return self.equation != "exact" or bool(face_temperatures(scene)) or scene.thermostat is not None
+        return self.equation != "exact" or bool(scene.face_temperatures) or scene.thermostat is not None
 
     def variant(self, scene: Scene) -> str:
         """The name of its compiled kernels for a scene, beside the scene's features."""

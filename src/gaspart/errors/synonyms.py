@@ -115,6 +115,14 @@ ELSEWHERE: dict[str, dict[str, str]] = {
         "MD": "gaspart.EventDriven is the engine without a time step",
         "Obstacle": "gaspart.Wall and gaspart.Plate, or a Particle that is fixed",
     },
+    "theory": {
+        "Z": "it is compressibility_factor(packing_fraction, dimension)",
+        "D": "it is enskog_diffusion(packing_fraction, dimension, ...)",
+        "pressure": "P = Z rho k_B T, with compressibility_factor(packing_fraction, dimension)",
+        "g": "it is contact_value(packing_fraction, dimension)",
+        "viscosity": "it is enskog_viscosity",
+        "speeds": "it is maxwell_pdf",
+    },
     "Simulation": {
         "run": "simulation.advance(duration) runs it; gaspart.run(scene, ...) writes a trajectory",
         "step": "simulation.advance(max_events=1) goes to the next event",

@@ -10,7 +10,6 @@ import xarray as xr
 from gaspart.analysis.occupancy import particle_numbers
 from gaspart.analysis.statistics import autocorrelation_time
 from gaspart.inspection.energy import energy_line
-from gaspart.scene.open_faces import is_open
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.opening import opened
 from gaspart.trajectory.reading import open_trajectory
@@ -28,7 +27,7 @@ def certificate(path: Path) -> list[str]:
         series = {name: np.asarray(file[name][:], dtype=float) for name in names}
     with open_trajectory(path) as data:
         drift = energy_line(scene, data)
-        samples = _inside(scene, data) if is_open(scene) else _samples(scene, series)
+        samples = _inside(scene, data) if scene.is_open else _samples(scene, series)
     return [drift, _contacts(series), samples]
 
 

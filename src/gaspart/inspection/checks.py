@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from gaspart import theory
+from gaspart.analysis.counters import compressibility_factor
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import correlated_mean
+from gaspart.errors import SceneError
 from gaspart.inspection.conserved import judge_conserved
 from gaspart.inspection.contact_value import FIT_ERROR, WIDTH, contact_values
 from gaspart.inspection.diffusion import diffusion, expected_diffusion, groups_of, why_not
@@ -21,7 +24,7 @@ from gaspart.inspection.samples import (
     first_relaxed_frame,
     path,
 )
-from gaspart.inspection.speeds import judge_speeds, why_not_speeds
+from gaspart.inspection.speeds import SPEEDS, judge_speeds, why_not_speeds
 from gaspart.inspection.verdict import Check, compared
 from gaspart.state.overlaps import deepest_overlap
 
@@ -34,12 +37,21 @@ COARSEST = 0.1
 MOST_FRAMES = 200
 """Number of frames, evenly spaced, that are searched for overlaps and contact values."""
 _LEAST_FRAMES = 16
+_PRESSURE, _DIFFUSION = "pressure Z", "diffusion coefficient D"
 
 
 def judge(frames: Frames, tolerance: float | None = None) -> list[Check]:
     """All checks of a trajectory. tolerance: allowed overlap, as a fraction of a diameter."""
-    checks = [*judge_places(frames, tolerance), *judge_conserved(frames), *judge_speeds(frames)]
-    return [*checks, _pressure(frames), _diffusion(frames)]
+    checks = [*judge_places(frames, tolerance), *judge_conserved(frames)]
+    if reason := frames.no_identity or _acting(checks):
+        return [*checks, *(Check(name, None, reason) for name in (*SPEEDS, _PRESSURE, _DIFFUSION))]
+    return [*checks, *judge_speeds(frames), _pressure(frames), _diffusion(frames)]
+
+
+def _acting(checks: list[Check]) -> str | None:
+    """The reason why nothing is known of equilibrium: a check found more than elastic contacts."""
+    names = [check.name for check in checks if check.acts]
+    return f"something acts on the particles (see {' and '.join(names)})" if names else None
 
 
 def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:
@@ -58,6 +70,8 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
     """The deepest overlap of two particles, as a part of their contact distance."""
     if frames.sampled:
         return Check("overlaps", None, "contacts are sampled, so that particles may overlap")
+    if frames.no_identity and frames.diameter is None and frames.radii_by_frame is None:
+        return Check("overlaps", None, frames.no_identity)
     deepest, where = 0.0, 0
     for n in seen:
         one = frames.at(n)
@@ -78,25 +92,30 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
         return Check("container", None, "periodic, so that nothing can leave it")
     lengths = frames.lengths if frames.lengths_by_frame is None else frames.lengths_by_frame[:, None]
     places, lengths = frames.positions[:, :, walls], lengths[..., walls]
-    out = float(np.maximum(-places, places - lengths).max()) / (2.0 * float(frames.radii.min()))
+    there = np.isfinite(places)
+    out = float(np.maximum(-places, places - lengths).max(where=there, initial=0.0))
+    out /= 2.0 * float(frames.radii.min())
     text = "all centres are inside" if out <= 0.0 else f"a centre is {out:.2g} diameters outside"
+    if out > 0.0 and (np.abs(places) <= 0.5 * lengths).all():
+        text += "; all are inside if 0 is the centre of the container: give --origin centre"
     return Check("container", out <= _tolerated(frames, tolerance), text)
 
 
 def _pressure(frames: Frames) -> Check:
-    """Z by the pair distribution at contact against the equation of state, corrected for the finite number.
+    """Z by the collisions of a file that counts them, otherwise by the pair distribution at contact, against
+    the equation of state, corrected for the finite number.
 
     Frames count from the one on until which particles have moved by the distance of neighbours, so that
     nothing is left of a lattice (its order decays by exp(-k^2 <r^2> / 2d)); and those between which they
     have moved across the shells that are counted.
     """
-    name = "pressure Z"
+    name = _PRESSURE
     if reason := _no_pressure(frames):
         return Check(name, None, reason)
     gas = frames.gas
     assert gas is not None, "see `_no_pressure`"
     eta, d = gas.packing_fraction, gas.dimension
-    way, spacing = path(frames), _spacing(frames)
+    way, spacing = path(frames), frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
         return Check(name, None, _unmoved(way, spacing))
@@ -106,16 +125,32 @@ def _pressure(frames: Frames) -> Check:
         return Check(name, None, text)
     if any(density_modulation(frames, n) > UNEVEN for n in (chosen[0], chosen[-1])):
         return Check(name, None, "the density is not uniform: not relaxed")
+    if frames.counted is not None and frames.time is not None:
+        return _by_collisions(frames.counted, float(frames.time[first]))
     chosen = chosen[np.unique(np.linspace(0, len(chosen) - 1, MOST_FRAMES).astype(int))]
     found = correlated_mean(contact_values(replace(frames, positions=frames.positions[chosen]))).estimate
     first_order = 2.0 ** (d - 1) * eta
-    expected = float(theory.compressibility_factor(eta, d))
-    expected += float(theory.finite_size_correction(eta, d, gas.count, "canonical"))
-    unsure = math.hypot(
-        float(theory.compressibility_uncertainty(eta, d)), first_order * FIT_ERROR * found.value
-    )
+    try:
+        side = float(np.min(frames.lengths)) / gas.diameter
+        contact, error = theory.finite_contact_value(eta, d, gas.count, side)
+    except ValueError as refusal:
+        return Check(name, None, str(refusal))
+    scale = first_order * (1.0 - 1.0 / gas.count)
+    expected = 1.0 + scale * contact
+    unsure = math.hypot(scale * error, first_order * FIT_ERROR * found.value)
     basis = f"fluid, eta = {eta:.4g}; {len(chosen)} independent samples"
     return compared(name, found * first_order + 1.0, Estimate(expected, unsure), basis)
+
+
+def _by_collisions(path: Path, start: float) -> Check:
+    """Compare Z by the collisions of a run of gaspart from a time on with theory."""
+    found = compressibility_factor(path, start=start)
+    if found.theory is None:
+        return Check(_PRESSURE, None, "there is no theory of it for this scene")
+    unsure = float(found[f"{found.estimate.name}_theory_error"])
+    measured = Estimate(float(found.estimate), float(found.error), float(found.attrs["freedom"]))
+    basis = f"{found.attrs['source']}; by collisions"
+    return compared(_PRESSURE, measured, Estimate(float(found.theory), unsure), basis)
 
 
 def _no_pressure(frames: Frames) -> str | None:
@@ -136,11 +171,6 @@ def _no_pressure(frames: Frames) -> str | None:
     return None
 
 
-def _spacing(frames: Frames) -> float:
-    """Distance of neighbours."""
-    return float((np.prod(frames.lengths) / frames.count) ** (1.0 / frames.dimension))
-
-
 def _unmoved(way: np.ndarray, distance: float) -> str:
     """The reason why a run is not relaxed."""
     there = math.sqrt(float((way[-1] ** 2).sum(axis=1).mean()))
@@ -151,10 +181,10 @@ def _unmoved(way: np.ndarray, distance: float) -> str:
 
 def _diffusion(frames: Frames) -> Check:
     """D of spheres by their mean-squared displacement against theory."""
-    name = "diffusion coefficient D"
+    name = _DIFFUSION
     if reason := why_not_speeds(frames) or why_not(frames):
         return Check(name, None, reason)
-    way, spacing = path(frames), _spacing(frames)
+    way, spacing = path(frames), frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
         return Check(name, None, _unmoved(way, spacing))
@@ -170,6 +200,10 @@ def _diffusion(frames: Frames) -> Check:
         return Check(name, None, "density or temperature is not uniform: not relaxed")
     if reason := why_not(used):
         return Check(name, None, reason)
-    value, error, source = expected_diffusion(used)
-    basis = f"{source}; {groups_of(used)} groups of particles"
-    return compared(name, diffusion(used), Estimate(value, error), basis)
+    try:
+        found, window = diffusion(used)
+    except SceneError as unsettled:
+        return Check(name, None, unsettled.rule)
+    value, error, source = expected_diffusion(used, window)
+    basis = f"{source}; {groups_of(used)} groups of particles, {window[0]:.3g} to {window[1]:.3g} collisions"
+    return compared(name, found, Estimate(value, error), basis)

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from gaspart.inspection.flights import WRONG, flights, resolution
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.speeds import why_not_speeds
 from gaspart.inspection.verdict import Check
 
 DRIFT = 1e-6
 """Relative change from frame to frame that is attributed to rounding in the program that made the file."""
-_FLIGHT = 1e-3  # the same of a flight
-_SINGLE = float(np.finfo(np.float32).eps)
-_DIGITS = 12  # after the point, at which decimals differ from binary numbers
 
 
 def judge_conserved(frames: Frames) -> list[Check]:
@@ -24,7 +22,7 @@ def judge_conserved(frames: Frames) -> list[Check]:
     if len(frames.positions) < 2:
         return [Check(name, None, "needs two frames") for name in names]
     root = float(np.sqrt((frames.velocities**2).sum(axis=2).mean()))
-    allowed = DRIFT + 2.0 * _resolution(frames.velocities) / root
+    allowed = DRIFT + 2.0 * resolution(frames.velocities) / root
     energy = (frames.velocities**2).sum(axis=(1, 2)) / (frames.count * root**2)
     checks = [_steady("energy", np.abs(np.diff(energy)), allowed, frames.isolated)]
     if any(frames.periodic):
@@ -33,7 +31,7 @@ def judge_conserved(frames: Frames) -> list[Check]:
         checks.append(_steady("momentum", change, allowed, frames.isolated))
     else:
         checks.append(Check("momentum", None, "walls change it"))
-    return [*checks, _flights(frames, root)]
+    return [*checks, judge_flights(frames)]
 
 
 def _steady(name: str, changes: np.ndarray, allowed: float, isolated: bool) -> Check:
@@ -45,45 +43,20 @@ def _steady(name: str, changes: np.ndarray, allowed: float, isolated: bool) -> C
     worst = int(np.argmax(changes))
     text = f"changes by {changes[worst]:.2g} of it at most, before frame {worst + 1} (up to {allowed:.1g})"
     if not isolated and np.median(changes) > allowed:
-        return Check(name, None, f"{text}, and in most intervals: something acts on the particles")
+        reason = f"{text}, and in most intervals: something acts on the particles"
+        return Check(name, None, reason, acts=True)
     return Check(name, bool(changes[worst] <= allowed), text)
 
 
-def _flights(frames: Frames, root: float) -> Check:
-    """A particle whose velocity is the same in two frames has moved by that velocity times the time between
-    them. root: root-mean-square speed."""
-    assert frames.velocities is not None, "see `why_not_speeds`"
+def judge_flights(frames: Frames) -> Check:
+    """Compare the way of a particle whose velocity stays with velocity times time."""
+    if reason := frames.no_identity:
+        return Check("flights", None, reason)
     if frames.time is None or not (np.diff(frames.time) > 0.0).all():
         return Check("flights", None, "needs increasing times (--time-step)")
-    late = root * max(2.0 * _resolution(frames.time), _SINGLE * float(np.abs(frames.time).max()))
-    wrong, flights, where = 0.0, 0, 0
-    sides = np.where(frames.periodic, np.inf, frames.lengths - 2.0 * frames.radii.min())
-    for n, interval in enumerate(np.diff(frames.time)):
-        velocity = frames.velocities[n]
-        # back and forth between two walls, a velocity is the same too
-        free = (velocity == frames.velocities[n + 1]).all(axis=1) & velocity.any(axis=1)
-        free &= (np.abs(velocity) * interval < sides).all(axis=1)
-        way = velocity[free] * interval
-        off = frames.positions[n + 1][free] - frames.positions[n][free] - way
-        off -= np.where(frames.periodic, frames.lengths * np.round(off / frames.lengths), 0.0)
-        slack = 4.0 * frames.resolution + late + 2.0 * _resolution(velocity) * interval
-        excess = np.sqrt((off**2).sum(axis=1)) - slack
-        excess /= np.maximum(np.sqrt((way**2).sum(axis=1)), slack)
-        flights += len(way)
-        if len(way) and excess.max() > wrong:
-            wrong, where = float(excess.max()), n + 1
-    if not flights:
+    found = flights(frames)
+    if not found.number:
         return Check("flights", None, "no particle kept its velocity from one frame to the next")
-    text = f"off by {wrong:.2g} of their length at most in {flights} flights without a collision"
-    return Check("flights", wrong <= _FLIGHT, text + (f", before frame {where}" if wrong > _FLIGHT else ""))
-
-
-def _resolution(values: np.ndarray) -> float:
-    """By how much numbers may be off that a file has in single precision, or with a few decimals."""
-    if np.array_equal(values, values.astype(np.float32)):
-        return _SINGLE * float(np.abs(values).max(initial=0.0))
-    sample = values.reshape(-1)[:1000]
-    for digits in range(1, _DIGITS):
-        if np.array_equal(sample, np.round(sample, digits)):
-            return 0.5 * 10.0**-digits
-    return 0.0
+    text = f"off by {found.worst:.2g} of their length at most in {found.number} flights without a collision"
+    wrong = found.worst > WRONG
+    return Check("flights", not wrong, text + (f", before frame {found.frame}" if wrong else ""))

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
+from gaspart.inspection.continuity import continuous
 from gaspart.inspection.frames import Frames
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 
+CENTRE = "centre"
+"""The word for an origin in the middle of the container."""
 _SAME = 1e-6
 """Relative change of a container's side that is attributed to rounding."""
 
@@ -21,13 +25,15 @@ class Contents:
     """The fields of T frames of N particles, as a reader found them; None: the file does not state it.
 
     positions (T, N, 2 or 3), as stored; velocities likewise; time (T,); steps (T,), which --time-step
-    multiplies; radii and masses (N,) or (T, N); ids (T, N), one for each particle, and species (T, N), which
-    identify them; lengths and origin (T, 3), a length of 0 for walls at an unknown distance; boundary (3,),
-    a word for each axis; centred: the origin is the middle of the container; flat: two dimensions; plain:
-    nothing but elastic contacts moves the particles, as far as the file states; isolated: the file states
-    that so it is; part: there are more particles; sampled: particles may overlap; engine and scene: of a file
-    of gaspart; resolution and time_resolution: by how much a coordinate and a time may be off because of
-    their type.
+    multiplies; radii and masses (N,) or (T, N); ids (T, N), one for each particle, and species (T, N),
+    which identify them; lengths and origin (T, 3), a length of 0 for walls at an unknown distance;
+    boundary (3,), a word for each axis; centred: the origin is the middle of the container; flat: two
+    dimensions; plain: nothing but elastic contacts moves the particles, as far as the file states;
+    isolated: the file states that so it is; part: there are more particles; sampled: particles may
+    overlap; engine and scene: of a file of gaspart; counted: the file, if it counts exact collisions;
+    resolution and time_resolution: by how much a coordinate and a time may be off because of their type;
+    velocities_from_first: the reason to doubt velocities, which are those of frame 0 in all frames;
+    no_velocities: the reason why there are none.
     """
 
     positions: np.ndarray
@@ -49,8 +55,11 @@ class Contents:
     sampled: bool = False
     engine: Engine | None = None
     scene: Scene | None = None
+    counted: Path | None = None
     resolution: float = 0.0
     time_resolution: float = 0.0
+    velocities_from_first: str | None = None
+    no_velocities: str | None = None
 
 
 @dataclass(frozen=True)
@@ -62,6 +71,7 @@ class Given:
     lengths: tuple[float, ...] | None = None
     boundary: str | tuple[str, ...] | None = None
     time_step: float | None = None
+    origin: str | tuple[float, ...] | None = None
     last: bool = False
 
 
@@ -82,10 +92,7 @@ def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
     radii = _per_frame(_radii(contents, given, path))
     d = _dimension(contents, given, 2.0 * float(radii.max()))
     sides, container = _container(contents, given, d, path)
-    if contents.centred:
-        origin = -0.5 * sides
-    else:
-        origin = np.zeros((1, d)) if contents.origin is None else _per_frame(contents.origin)[:, :d]
+    origin = _origin(contents, given, sides, path)
     places = contents.positions[:, :, :d].astype(float) - origin[:, None, :]
     size = sides[:, None, :]
     wrapped = np.where(container.periodic, places - size * np.floor(places / size), places)
@@ -93,7 +100,7 @@ def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
     masses = None if contents.masses is None else _per_frame(contents.masses)
     alike = masses is None or np.ptp(masses) == 0.0
     steady = len(sides) == 1 and len(radii) == 1
-    return Frames(
+    frames = Frames(
         positions=wrapped,
         lengths=sides[0],
         radii=radii[0],
@@ -105,12 +112,30 @@ def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
         part=contents.part,
         sampled=contents.sampled,
         engine=contents.engine,
+        counted=contents.counted,
         scene=contents.scene,
         resolution=contents.resolution,
         masses=None if masses is None else masses[0],
         lengths_by_frame=sides if len(sides) > 1 else None,
         radii_by_frame=radii if len(radii) > 1 else None,
+        no_velocities=contents.no_velocities or Frames.no_velocities,
     )
+    if contents.scene is not None:
+        return frames
+    return continuous(frames, contents.velocities_from_first, contents.ids is not None)
+
+
+def _origin(contents: Contents, given: Given, sides: np.ndarray, path: str) -> np.ndarray:
+    """(1, d) or (T, d), the lower corner of the container."""
+    d = sides.shape[1]
+    if given.origin == CENTRE or (given.origin is None and contents.centred):
+        return -0.5 * sides
+    if given.origin is not None:
+        if isinstance(given.origin, str) or len(given.origin) < d:
+            rule = f"must be {d} numbers, or the word {CENTRE}: the positions have {d} dimensions"
+            raise SceneError("origin", given.origin, rule, path)
+        return np.array([given.origin[:d]], dtype=float)
+    return np.zeros((1, d)) if contents.origin is None else _per_frame(contents.origin)[:, :d]
 
 
 def _require_finite(name: str, values: np.ndarray, path: str) -> None:
@@ -178,7 +203,10 @@ def _container(contents: Contents, given: Given, d: int, path: str) -> tuple[np.
     else:
         assert stated is not None, "see `complete_frames`"
         sides = _per_frame(stated, _SAME)
-    walls = np.zeros(d, dtype=bool) if stated is None else (stated == 0.0).all(axis=0)
+    # a length of 0 means walls where it may mean the absence of periodic images, which GSD has always
+    walls = np.zeros(d, dtype=bool)
+    if stated is not None and not contents.centred:
+        walls = (stated == 0.0).all(axis=0)
     if not np.isfinite(sides).all() or not (sides > 0.0).all():
         wrong = sides[np.argmin((sides > 0.0).all(axis=1) & np.isfinite(sides).all(axis=1))]
         rule = "must be positive: give --lengths X,Y[,Z]"
@@ -214,7 +242,8 @@ def _times(contents: Contents, given: Given, path: str) -> np.ndarray | None:
     frames = len(contents.positions)
     time, resolution = contents.time, contents.time_resolution
     if given.time_step is not None:
-        steps = np.arange(frames) if contents.steps is None else contents.steps
+        never_set = contents.steps is None or (frames > 1 and np.ptp(contents.steps) == 0.0)
+        steps = np.arange(frames) if never_set else contents.steps
         time, resolution = given.time_step * np.asarray(steps, dtype=float), 0.0
     if time is None or (frames > 1 and np.ptp(time) == 0.0):
         return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
@@ -19,14 +20,16 @@ from gaspart.scene.scene import Scene
 class Frames:
     """Data of a trajectory of T frames of N particles that can be judged.
 
-    positions (T, N, d), on periodic axes inside the container [0, L]; velocities (T, N, d) and time (T,), or
-    None if the file does not state it; lengths (d,), radii and masses (N,), of the first frame where they
-    change; lengths_by_frame (T, d) and radii_by_frame (T, N) where they do; periodic (d,) whether each axis
-    is; plain: whether nothing but elastic contacts moves particles of one mass in a constant container, as
-    far as the file knows; resolution: by how much a position may be off, as a length; isolated: whether the
-    file states that it is plain; part: whether there are more particles than the file has; sampled: whether
-    contacts were sampled, so that particles may overlap; engine and scene: by which a file of gaspart was
-    made.
+    positions (T, N, d), on periodic axes inside the container [0, L], NaN of particles that are absent from a
+    frame; velocities (T, N, d) and time (T,), or None if the file does not state it; lengths (d,), radii and
+    masses (N,), of the first frame where they change; lengths_by_frame (T, d) and radii_by_frame (T, N) where
+    they do; periodic (d,) whether each axis is; plain: whether nothing but elastic contacts moves particles
+    of one mass in a constant container, as far as the file knows; resolution: by how much a position may be
+    off, as a length; isolated: whether the file states that it is plain; part: whether there are more
+    particles than the file has; sampled: whether contacts were sampled, so that particles may overlap; engine
+    and scene: by which a file of gaspart was made; counted: the file of gaspart that counts the exact
+    collisions of these frames; no_velocities: the reason why there are none; reordered: the first frame that
+    lists its particles in another order than the one before, without ids to restore it, or None.
     """
 
     positions: np.ndarray
@@ -45,6 +48,9 @@ class Frames:
     radii_by_frame: np.ndarray | None = None
     engine: Engine | None = None
     scene: Scene | None = None
+    counted: Path | None = None
+    no_velocities: str = "the file has no velocities"
+    reordered: int | None = None
 
     @property
     def count(self) -> int:
@@ -55,6 +61,18 @@ class Frames:
     def dimension(self) -> int:
         """2 or 3."""
         return self.positions.shape[2]
+
+    @property
+    def spacing(self) -> float:
+        """Distance of neighbours."""
+        return float((np.prod(self.lengths) / self.count) ** (1.0 / self.dimension))
+
+    @property
+    def no_identity(self) -> str | None:
+        """The reason why particles cannot be followed from frame to frame; None if they can."""
+        if self.reordered is None:
+            return None
+        return f"rows are in another order in frame {self.reordered}, and there are no ids to follow them by"
 
     @property
     def diameter(self) -> float | None:
@@ -92,15 +110,16 @@ class Frames:
         return np.asarray(energies / max(freedom, 1))
 
     def at(self, frame: int) -> Frames:
-        """One frame, with the container and the radii that it has."""
+        """Return one frame, with the container and the radii that it has, and without absent particles."""
         lengths, radii, moving = self.lengths_by_frame, self.radii_by_frame, self.velocities
+        there = np.isfinite(self.positions[frame]).all(axis=1)
         return replace(
             self,
-            positions=self.positions[frame][None],
-            velocities=None if moving is None else moving[frame][None],
+            positions=self.positions[frame][None, there],
+            velocities=None if moving is None else moving[frame][None, there],
             time=None if self.time is None else self.time[frame][None],
             lengths=self.lengths if lengths is None else lengths[frame],
-            radii=self.radii if radii is None else radii[frame],
+            radii=(self.radii if radii is None else radii[frame])[there],
             lengths_by_frame=None,
             radii_by_frame=None,
         )

@@ -13,6 +13,9 @@ from gaspart.inspection.contents import Contents, Given
 from gaspart.system import descriptor_path
 
 _TOPOLOGY = ("bonds", "angles", "dihedrals", "impropers", "constraints", "pairs")
+_FIRST_ONLY = (
+    "velocities are stored in frame 0 only; HOOMD stores all with GSD(..., dynamic=['property', 'momentum'])"
+)
 _SPHERE_RADIUS = "state/hpmc/sphere/radius"
 """Radii of the types, as HOOMD 2 wrote them; other shapes have other names."""
 
@@ -28,7 +31,7 @@ def read_gsd(path: Path, given: Given) -> Contents:
         first = max(len(file) - 1, 0) if given.last else 0
         frames = list(file[first:])
         chunks = set(file.file.find_matching_chunk_names(""))
-        moving = first == 0 or file.file.chunk_exists(frame=first, name="particles/velocity")
+        moving = [n for n in range(len(file)) if file.file.chunk_exists(frame=n, name="particles/velocity")]
         old = _old_radii(file.file, chunks, path)
     if not frames:
         raise SceneError("file", str(path), "has no frames")
@@ -45,7 +48,8 @@ def read_gsd(path: Path, given: Given) -> Contents:
     positions = np.array([frame.particles.position for frame in frames])
     extent = max(float(np.abs(positions).max(initial=0.0)), float(boxes.max()))
     stated = {name: f"particles/{name}" in chunks for name in ("velocity", "mass", "diameter")}
-    stated["velocity"] &= moving  # else they are those of the first frame
+    if given.last:  # what frame n does not have is taken from frame 0, of another time
+        stated["velocity"] &= first in moving
     return Contents(
         positions=positions,
         velocities=np.array([frame.particles.velocity for frame in frames]) if stated["velocity"] else None,
@@ -54,10 +58,11 @@ def read_gsd(path: Path, given: Given) -> Contents:
         masses=np.array([frame.particles.mass for frame in frames]) if stated["mass"] else None,
         lengths=boxes[:, :3] if "configuration/box" in chunks else None,
         centred=True,
-        flat=dimensions == {2},
+        flat=True if dimensions == {2} or not boxes[:, 2].any() else None,
         plain=not any(frame.particles.charge.any() for frame in frames)
         and not any(getattr(frame, name).N for frame in frames for name in _TOPOLOGY),
         resolution=float(np.finfo(positions.dtype).eps) * extent,
+        velocities_from_first=_FIRST_ONLY if moving == [0] and len(frames) > 1 else None,
     )
 
 

@@ -1,5 +1,5 @@
 """The contents of a netCDF file of AMBER's convention, https://ambermd.org/netcdf/nctraj.xhtml, version 1.0,
-with the variables that LAMMPS (`dump netcdf`) adds to it, or those of gaspart."""
+with the variables that LAMMPS (`dump netcdf`) and OVITO add to it, or those of gaspart."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Given
 from gaspart.inspection.netcdf_size import needed_bytes
 from gaspart.scene.open_faces import refuse_open
-from gaspart.scene.shear import fixed_images
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.amber import BOOKKEEPING
 from gaspart.trajectory.opening import check_frames, open_descriptor, opened
@@ -29,16 +28,18 @@ _POSITIONS = ("coordinates", "unwrapped_coordinates", "scaled_coordinates")
 _LABELS = {"spatial": "xyz", "cell_spatial": "abc"}
 _REPLICAS = ("remd_indices", "remd_repidx", "remd_crdidx", "remd_values")
 _INTERACTIONS = ("forces", "q", "charge")
+_IDS = ("id", "identifier")
+_TYPES = ("type", "atom_types")
 _SECONDS = ("second", "microsecond", "nanosecond", "picosecond", "femtosecond", "atomic time unit")
 
 
 def read_netcdf(path: Path, given: Given) -> Contents:
     """All frames. Raises SceneError for contents that cannot be checked, and what the library raises for a
     file that cannot be read."""
-    by_gaspart = _is_own(path)
+    by_gaspart = is_own(path)
     if by_gaspart:
         check_frames(path)
-        refuse_open(read_recipe(path).scene, "changes the particles; the checks are of those that stay")
+        refuse_open(read_recipe(path).scene, "changes the particles: frames are those of particles that stay")
     with opened(path) if by_gaspart else _foreign(path) as file:
         _check_convention(file, path)
         contents = _contents(file, given, path)
@@ -47,8 +48,9 @@ def read_netcdf(path: Path, given: Given) -> Contents:
     return contents
 
 
-def _is_own(path: Path) -> bool:
-    """Whether gaspart wrote a file. Several attributes are tried, so that damage to one does not hide it."""
+def is_own(path: Path) -> bool:
+    """Return True if gaspart wrote a file. Several attributes are tried, so that damage to one does not
+    hide it."""
     with open_regular(path) as file:
         head = file.read(4096)
     return any(name.encode() in head for name in BOOKKEEPING)
@@ -124,28 +126,48 @@ def _contents(file: Any, given: Given, path: Path) -> Contents:
             rule = "a tilted cell cannot be checked"
             raise SceneError("cell_angles", angles[tilted.argmax()].tolist(), rule, str(path))
     positions, resolution = _positions(file, given, lengths, origin, path)
-    time, time_resolution = _times(file)
+    time, time_resolution = (None, 0.0) if given.time_step is not None else _times(file)
     if given.time_step is None:
         _check_units(file, path)
-    radii = _read(file, "radius")
-    diameters = _read(file, "diameter") if radii is None else None
+    radii, diameters = (_read(file, _named(file, name)) for name in ("radius", "diameter"))
+    velocities, reason = _velocities(file, path)
+    acting = (_read(file, _named(file, name)) for name in _INTERACTIONS)
     contents = Contents(
         positions=positions,
-        velocities=_read_frames(file, "velocities", path),
+        velocities=velocities,
         time=time,
-        radii=radii if diameters is None else 0.5 * diameters,
-        masses=_read(file, "mass"),
-        ids=_read_frames(file, "id", path),
+        radii=0.5 * diameters if radii is None and diameters is not None else radii,
+        masses=_read(file, _named(file, "mass")),
+        ids=_read_frames(file, _named(file, *_IDS), path),
         lengths=lengths,
         origin=origin,
-        plain=not any(np.any(values) for name in _INTERACTIONS if (values := _read(file, name)) is not None),
+        plain=not any(np.any(values) for values in acting if values is not None),
         resolution=resolution,
         time_resolution=time_resolution,
+        no_velocities=reason,
     )
-    if "type" in file.variables and file["type"].ndim == 2:
-        contents.species = _read_frames(file, "type", path)
+    kinds = _named(file, *_TYPES)
+    if kinds in file.variables and file[kinds].ndim == 2:
+        contents.species = _read_frames(file, kinds, path)
     _check_shapes(contents, path)
     return contents
+
+
+def _named(file: Any, *names: str) -> str:
+    """The first of some names that a file has, in small or capital letters (Radius); else the first."""
+    there = {name.lower(): name for name in file.variables} | {name: name for name in file.variables}
+    return next((there[name] for name in names if name in there), names[0])
+
+
+def _velocities(file: Any, path: Path) -> tuple[np.ndarray | None, str | None]:
+    """(T, N, 3) velocities; None with the reason where some frames have none."""
+    values = _read_frames(file, "velocities", path)
+    if values is None or values.ndim != 3:
+        return values, None
+    stored = np.isfinite(values).any(axis=(1, 2))
+    if stored.all():
+        return values, None
+    return None, f"velocities are stored in {stored.sum()} of {len(stored)} frames only"
 
 
 def _positions(
@@ -184,12 +206,16 @@ def _positions(
 
 
 def _times(file: Any) -> tuple[np.ndarray | None, float]:
-    """Times in double precision, also where LAMMPS has steps and a scale factor; their resolution."""
-    if "time" not in file.variables:
+    """Times in double precision, also where LAMMPS has steps and a scale factor; their resolution.
+
+    OVITO numbers the frames in `time`, and has the time, if it knows it, in `Time`.
+    """
+    name = "Time" if str(getattr(file, "program", "")) == "OVITO" else "time"
+    if name not in file.variables:
         return None, 0.0
-    variable = file["time"]
+    variable = file[name]
     variable.set_auto_scale(False)
-    time = _read_frames(file, "time", Path())
+    time = _read_frames(file, name, Path())
     if time is None:
         return None, 0.0
     factor = float(getattr(variable, "scale_factor", 1.0))
@@ -237,7 +263,7 @@ def _add_scene(contents: Contents, path: Path) -> None:
     free = not any(kind.fixed for kind in scene.kinds)
     alike = len({kind.mass for kind in scene.kinds}) == 1  # of all, also where the file has only a part
     d, frames, count = scene.dimension, len(contents.positions), contents.positions.shape[1]
-    contents.boundary = tuple("periodic" if periodic else "wall" for periodic in fixed_images(scene))
+    contents.boundary = tuple("periodic" if periodic else "wall" for periodic in scene.image_axes)
     contents.flat = d == 2
     contents.lengths = np.broadcast_to(scene.container.lengths, (frames, d))
     contents.masses = per_particle(scene, "mass")[:count].astype(float)
@@ -245,3 +271,4 @@ def _add_scene(contents: Contents, path: Path) -> None:
     contents.part = recipe.stored_count < scene.count
     contents.sampled = not recipe.engine.forbids_overlap
     contents.engine, contents.scene = recipe.engine, recipe.scene
+    contents.counted = path if recipe.engine.reference else None

@@ -35,7 +35,7 @@ def collided(frames: Frames) -> np.ndarray:
     correlation /= np.maximum(np.sqrt(square[1:] * square[:-1]), np.finfo(float).tiny)
     unhit = -np.log(np.clip(1.0 - changed.mean(axis=1), least, 1.0))
     kept = -0.5 * frames.dimension * np.log(np.clip(correlation, least, 1.0))
-    return np.concatenate([[0.0], np.cumsum(np.minimum(unhit, kept))])
+    return np.concatenate([[0.0], np.cumsum(np.minimum(unhit, kept))]) + 0.0  # no -0
 
 
 def independent(times: np.ndarray, rate: float) -> float:

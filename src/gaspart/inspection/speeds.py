@@ -13,6 +13,8 @@ from gaspart.inspection.frames import Frames
 from gaspart.inspection.samples import UNEVEN, collided, density_modulation, independent
 from gaspart.inspection.verdict import Check, compared
 
+SPEEDS = "speed law", "kurtosis of speeds"
+"""Names of the checks of speeds."""
 RESIDUE = 0.25
 """Deviation of the kurtosis that may remain from the initial state, over its scatter in one frame."""
 RARE = 1e-4
@@ -22,8 +24,10 @@ _MOST_SKEWED = 1.0  # skewness of a mean whose probability is known well enough
 
 def why_not_speeds(frames: Frames) -> str | None:
     """The reason why speeds cannot be checked; None if they can."""
-    if frames.velocities is None or not np.any(frames.velocities):
-        return "the file has no velocities"
+    if frames.velocities is None:
+        return frames.no_velocities
+    if not np.any(frames.velocities):
+        return "all velocities are 0"
     if not np.isfinite(frames.velocities).all():
         return "not all velocities are finite"
     if frames.gas is None:
@@ -41,7 +45,7 @@ def judge_speeds(frames: Frames) -> list[Check]:
     The clock is that of `samples.collided`. A deviation of the kurtosis decays by its slowest rate of the
     homogeneous Boltzmann equation; what the first frame has of it is known from that frame.
     """
-    names = "speed law", "kurtosis of speeds"
+    names = SPEEDS
     if reason := why_not_speeds(frames):
         return [Check(name, None, reason) for name in names]
     series, expected = _kurtosis(frames), _expected_kurtosis(frames)

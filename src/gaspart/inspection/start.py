@@ -72,16 +72,23 @@ def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> n
 
 
 def _origin(contents: Contents, scene: Scene) -> np.ndarray:
-    """(d,) the lower corner of the container."""
+    """(d,) the lower corner of the container. A file has the part of it up to a piston, which is at its side
+    when a run begins."""
+    low, sides = np.zeros(scene.dimension), np.array(scene.container.lengths)
+    for number, _ in scene.pistons if contents.lengths is not None else ():
+        axis, high = divmod(number, 2)
+        sides[axis] = np.asarray(contents.lengths)[-1, axis]
+        low[axis] = 0.0 if high else scene.container.lengths[axis] - sides[axis]
     if contents.centred:
-        return -0.5 * np.array(scene.container.lengths)
+        return -0.5 * sides - low
     if contents.origin is None:
-        return np.zeros(scene.dimension)
-    return np.atleast_2d(contents.origin)[-1, : scene.dimension]
+        return -low
+    return np.atleast_2d(contents.origin)[-1, : scene.dimension] - low
 
 
 def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
-    """Refuse a container of other sides; those between walls may be unknown, 0."""
+    """Refuse a container of other sides; those between walls may be unknown, 0, and those up to a piston
+    smaller."""
     if contents.flat is not None and contents.flat != (scene.dimension == 2):
         has = "two" if contents.flat else "three"
         raise SceneError("file", str(path), f"has {has} dimensions, and the scene {scene.dimension}")
@@ -89,7 +96,9 @@ def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
         return
     wanted = np.array(scene.container.lengths)
     stated = np.asarray(contents.lengths, dtype=float)[-1, : scene.dimension]
-    if not np.all((stated == 0.0) | (np.abs(stated - wanted) <= _SAME * wanted)):
+    movable = np.isin(np.arange(scene.dimension), [number // 2 for number, _ in scene.pistons])
+    within = (stated == 0.0) | (movable & (stated < wanted)) | (np.abs(stated - wanted) <= _SAME * wanted)
+    if not within.all():
         rule = f"the container of the scene is {scene.container.lengths}"
         raise SceneError("lengths", tuple(stated.tolist()), rule, str(path))
 

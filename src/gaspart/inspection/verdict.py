@@ -14,11 +14,15 @@ LIMIT = 4.0
 
 @dataclass(frozen=True)
 class Check:
-    """The outcome of one check: whether it is passed (None: it could not be made), and why."""
+    """The outcome of one check: whether it is passed (None: it could not be made), and why.
+
+    acts: whether it has found that more than elastic contacts moves the particles.
+    """
 
     name: str
     passed: bool | None
     text: str
+    acts: bool = False
 
     def __str__(self) -> str:
         word = {True: "ok", False: "WRONG", None: "-"}[self.passed]

@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 import re
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from io import TextIOWrapper
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Given
 
 _PAIR = re.compile(r"""([^\s="'{}\[\],]+)\s*=\s*("[^"]*"|'[^']*'|\{[^}]*\}|\[.*?\](?=\s|$)|\S+)""")
@@ -37,22 +40,20 @@ _TRUE, _FALSE = ("t", "true", "1"), ("f", "false", "0")
 def read_xyz(path: Path, given: Given) -> Contents:
     """All frames, or the last. Raises SceneError for contents that cannot be checked, ValueError for other
     text."""
-    frames = deque(enumerate(_frames(path)), maxlen=1 if given.last else None)
-    parts = [_read_frame(n, *frame, path) for n, frame in frames]
+    kinds: dict[str, int] = {}  # a number for each name of a species
+    with open_regular(path) as file, TextIOWrapper(file, encoding="utf-8") as lines:
+        frames = (_read_frame(n, *frame, kinds, given, path) for n, frame in enumerate(_frames(lines, path)))
+        parts = list(deque(enumerate(frames), maxlen=1 if given.last else None))
     if not parts:
         raise SceneError("file", str(path), "cannot be read: it has no frame")
-    counts = [len(part["pos"]) for part in parts]
-    for n, part in enumerate(parts):
-        if counts[n] != counts[0]:
-            rule = f"has {counts[n]} particles in frame {n} and {counts[0]} in frame 0"
-            raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
-        if part.keys() != parts[0].keys():
-            name = min(part.keys() ^ parts[0].keys())
-            raise SceneError("file", str(path), f"states {name} in some frames only, not in 0 or not in {n}")
-        if part.get("boundary") != parts[0].get("boundary"):
-            rule = f"of frame {n} differs from that of frame 0"
-            raise SceneError("pbc", part.get("boundary"), rule, str(path))
-    columns = {name: np.array([part[name] for part in parts]) for name in parts[0] if name != "boundary"}
+    reason = None if given.last else _drop_velocities([part for _, part in parts])
+    first = parts[0][1]
+    for n, part in parts:
+        _require_same_fields(n, part, first, path)
+    # one field after the other is brought together, and its parts are freed
+    names = [name for name in first if name != "boundary"]
+    boundary = first.get("boundary")
+    columns = {name: np.array([part.pop(name) for _, part in parts]) for name in names}
     diameters = columns.get("diameter")
     return Contents(
         positions=columns["pos"],
@@ -64,11 +65,36 @@ def read_xyz(path: Path, given: Given) -> Contents:
         species=columns.get("species"),
         lengths=columns.get("lattice"),
         origin=columns.get("origin"),
-        boundary=parts[0].get("boundary"),
+        boundary=boundary,
         plain=not any(name in columns and columns[name].any() for name in ("charge", "forces", "fixed")),
         resolution=_resolution(columns["pos"], int(columns["digits"].max())),
         time_resolution=float(columns["time_digit"].max()) if "time" in columns else 0.0,
+        no_velocities=reason,
     )
+
+
+def _drop_velocities(parts: list[dict]) -> str | None:
+    """Remove velocities that some frames only have; returns the reason if so."""
+    for name in ("velo", "momenta"):
+        stored = sum(name in part for part in parts)
+        if 0 < stored < len(parts):
+            for part in parts:
+                part.pop(name, None)
+            return f"velocities are stored in {stored} of {len(parts)} frames only"
+    return None
+
+
+def _require_same_fields(n: int, part: dict, first: dict, path: Path) -> None:
+    """Refuse a frame of another number of particles, other fields or another boundary than the first."""
+    if len(part["pos"]) != len(first["pos"]):
+        rule = f"has {len(part['pos'])} particles in frame {n} and {len(first['pos'])} in frame 0"
+        raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
+    if part.keys() != first.keys():
+        name = min(part.keys() ^ first.keys())
+        raise SceneError("file", str(path), f"states {name} in some frames only, not in 0 or not in {n}")
+    if part.get("boundary") != first.get("boundary"):
+        rule = f"of frame {n} differs from that of frame 0"
+        raise SceneError("pbc", part.get("boundary"), f"{rule}: give --boundary", str(path))
 
 
 def _velocities(columns: dict[str, np.ndarray], path: Path) -> np.ndarray | None:
@@ -80,26 +106,30 @@ def _velocities(columns: dict[str, np.ndarray], path: Path) -> np.ndarray | None
     return columns["momenta"] / columns["mass"][:, :, None]
 
 
-def _frames(path: Path) -> Iterator[tuple[str, list[list[str]]]]:
+def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[str]]]]:
     """Comment and words of the lines of each frame; blank lines before a frame are passed over."""
-    lines = path.read_text(encoding="utf-8").split("\n")
-    at = frame = 0
-    while at < len(lines):
-        if not lines[at].strip():
-            at += 1
+    frame = 0
+    for line in lines:
+        if not line.strip():
             continue
-        count = int(lines[at])
-        rows = [line.split() for line in lines[at + 2 : at + 2 + max(count, 0)]]
+        count = int(line)
+        comment = next(lines, "")
+        rows = [row.split() for row in islice(lines, max(count, 0))]
         while rows and not rows[-1]:
             rows.pop()
         if len(rows) < count or count < 1:
             raise SceneError("file", str(path), f"is truncated: frame {frame} has {len(rows)} particles")
-        yield lines[at + 1], rows
-        at, frame = at + 2 + count, frame + 1
+        yield comment, rows
+        frame += 1
 
 
-def _read_frame(n: int, comment: str, rows: list[list[str]], path: Path) -> dict:
-    """The fields of frame n, by the names of `_NAMES`, and of its comment."""
+def _read_frame(
+    n: int, comment: str, rows: list[list[str]], kinds: dict[str, int], given: Given, path: Path
+) -> dict:
+    """The fields of frame n, by the names of `_NAMES`, and of its comment; without those that are given.
+
+    kinds: the numbers of species, to which new ones are added.
+    """
     pairs = {key.lower(): value.strip("\"'") for key, value in _PAIR.findall(comment)}
     named = _columns(pairs["properties"], path) if "properties" in pairs else _PLAIN
     width = max(first + count for first, count in named.values())
@@ -110,23 +140,23 @@ def _read_frame(n: int, comment: str, rows: list[list[str]], path: Path) -> dict
             raise SceneError("file", str(path), rule)
     fields: dict = {}
     for name, (first, count) in named.items():
-        if not name:
+        if not name or (name in ("radius", "diameter") and given.radius is not None):
             continue
         words = [row[first : first + count] for row in rows]
         if name == "species":
-            fields[name] = [word[0] for word in words]
+            fields[name] = np.array([kinds.setdefault(word[0], len(kinds)) for word in words], dtype=np.int32)
         elif name == "move_mask":
-            fields["fixed"] = [any(part.lower() in _FALSE for part in word) for word in words]
+            fields["fixed"] = np.array([any(part.lower() in _FALSE for part in word) for word in words])
         else:
             values = _numbers(words)
             fields[name] = values if name in ("pos", "velo", "momenta", "forces") else values[:, 0]
     first, count = named["pos"]
-    fields["digits"] = max(_significant(word) for row in rows for word in row[first : first + count])
+    fields["digits"] = _most_digits(word for row in rows for word in row[first : first + count])
     for name in ("velo", "momenta"):
         if name in fields and fields[name].shape[1] != count:
             rule = f"{name} must have {count} columns"
             raise SceneError("Properties", pairs["properties"], rule, str(path))
-    return fields | _of_comment(pairs, path)
+    return fields | _of_comment(pairs, count, given, path)
 
 
 def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
@@ -152,38 +182,59 @@ def _numbers(words: list[list[str]]) -> np.ndarray:
         return np.array([[re.sub("[dD]", "e", word) for word in row] for row in words], dtype=float)
 
 
-def _of_comment(pairs: dict[str, str], path: Path) -> dict:
-    """Container, boundary and time of a frame, as its comment states them."""
+def _of_comment(pairs: dict[str, str], dimension: int, given: Given, path: Path) -> dict:
+    """Container, boundary and time of a frame, as its comment states them; without those that are given.
+
+    dimension: number of columns of the positions.
+    """
     fields: dict = {}
-    if "lattice" in pairs:
-        cell = _vector(pairs, "lattice", (3, 9), path)
+    if "lattice" in pairs and (given.lengths is None or len(_words(pairs["lattice"])) in (3, 4, 9)):
+        cell = _vector(pairs, "lattice", (3, 4, 9), "--lengths X,Y[,Z]", path)
+        if len(cell) == 4:  # two vectors of the plane
+            cell = np.array([*cell[:2], 0.0, *cell[2:], 0.0, 0.0, 0.0, 0.0])
         matrix = np.diag(cell) if len(cell) == 3 else cell.reshape(3, 3)
         if np.any(matrix != np.diag(np.diag(matrix))):
             raise SceneError("Lattice", pairs["lattice"], "a tilted box cannot be checked", str(path))
         fields["lattice"] = np.diag(matrix)
-    if "origin" in pairs:
-        fields["origin"] = _vector(pairs, "origin", (3,), path)
-    if "pbc" in pairs:
-        words = re.findall(r"[^\s,\[\]{}]+", pairs["pbc"].lower())
+    if "origin" in pairs and given.origin is None:
+        fields["origin"] = _vector(pairs, "origin", (dimension, 3), "--origin X,Y[,Z]", path)
+    if "pbc" in pairs and given.boundary is None:
+        words = _words(pairs["pbc"].lower())
         words = words * 3 if len(words) == 1 else words
-        if len(words) != 3 or not set(words) <= {*_TRUE, *_FALSE}:
-            raise SceneError("pbc", pairs["pbc"], "must be T or F for each of three axes", str(path))
+        if len(words) not in (dimension, 3) or not set(words) <= {*_TRUE, *_FALSE}:
+            rule = f"must be T or F for each of {dimension} axes; give --boundary"
+            raise SceneError("pbc", pairs["pbc"], rule, str(path))
         fields["boundary"] = tuple("periodic" if word in _TRUE else "wall" for word in words)
-    if "time" in pairs:
-        fields["time"] = _vector(pairs, "time", (1,), path)[0]
+    if "time" in pairs and given.time_step is None:
+        fields["time"] = _vector(pairs, "time", (1,), "--time-step", path)[0]
         decimals = len(pairs["time"].lower().partition("e")[0].partition(".")[2])
         exponent = pairs["time"].lower().partition("e")[2]
         fields["time_digit"] = 10.0 ** (int(exponent or 0) - decimals)
     return fields
 
 
-def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], path: Path) -> np.ndarray:
-    """The numbers of a value, of one of these counts."""
-    words = re.findall(r"[^\s,\[\]{}]+", pairs[key])
+def _words(text: str) -> list[str]:
+    """The words of a value, in whatever brackets."""
+    return re.findall(r"[^\s,\[\]{}]+", text)
+
+
+def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], option: str, path: Path) -> np.ndarray:
+    """The numbers of a value, of one of these counts. option: that can be given instead."""
+    words = _words(pairs[key])
     if len(words) not in sizes or not all(_NUMBER.fullmatch(word) for word in words):
-        rule = f"must be {' or '.join(map(str, sizes))} numbers"
+        *some, last = map(str, dict.fromkeys(sizes))
+        rule = f"must be {', '.join(some)}{' or ' if some else ''}{last} numbers; give {option}"
         raise SceneError(key, pairs[key], rule, str(path))
     return _numbers([words])[0]
+
+
+def _most_digits(words: Iterable[str]) -> int:
+    """The largest number of significant digits of some printed numbers."""
+    most = 0
+    for word in words:
+        if len(word) > most:  # else it cannot have more
+            most = max(most, _significant(word))
+    return most
 
 
 def _significant(word: str) -> int:

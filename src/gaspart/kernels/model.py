@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-COUNTS = ("collisions", "crossings", "outdated", "pair_tests", "box_visits")
+COUNTS = ("collisions", "crossings", "outdated", "pair_tests", "box_visits", "fixed_collisions")
 SUMS = ("virial_sum", "dissipated_energy")
 """What Tally.counts and Tally.sums hold, by the fields of `state.tally.Tally`, which has no outdated
 predictions. Sums are in the kernels' unit of mass, and proportional to it."""
-COLLISIONS, CROSSINGS, OUTDATED, PAIR_TESTS, BOX_VISITS = range(len(COUNTS))
+COLLISIONS, CROSSINGS, OUTDATED, PAIR_TESTS, BOX_VISITS, FIXED_COLLISIONS = range(len(COUNTS))
 VIRIAL, LOSS = range(len(SUMS))
 NONE = -1  # no particle, no face
 BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES more for those between boxes,
@@ -183,11 +183,32 @@ class Ramp(NamedTuple):
 
 class Open(NamedTuple):
     """Faces through which particles leave and enter. present (N,), 1 of particles that are inside, and 0 of
-    the others, which are at no place (NaN), at rest and in no box; entries (2d,), how many have entered
-    through each of the container's faces."""
+    the others, which are at no place (NaN), at rest and in no box; vacant (blocks,), the number of the others
+    in each block of numbers, see `obstacles.open_face`; entries (2d,), how many have entered through each of
+    the container's faces."""
 
     present: np.ndarray
+    vacant: np.ndarray
     entries: np.ndarray
+
+
+class Reservoirs(NamedTuple):
+    """Gases outside of open faces, whose particles try to enter.
+
+    key (2,), of the random numbers; rate: attempts per time at all faces; up_to (2d,): the fraction of the
+    attempts at a face and at those before it; width (2d,): (k_B T / m)^(1/2) of each gas. The next attempt:
+    number (1,); time (1,), on the clocks of the epoch; place (3,), room for where it happens. opened: the
+    `Open` of the faces.
+    """
+
+    key: np.ndarray
+    rate: float
+    up_to: np.ndarray
+    width: np.ndarray
+    number: np.ndarray
+    time: np.ndarray
+    place: np.ndarray
+    opened: Open
 
 
 class Faces(NamedTuple):
@@ -282,13 +303,15 @@ class Model(NamedTuple):
     walls: InteriorWalls | None
     oversized: Oversized | None
     shear: Shear | None
+    reservoirs: Reservoirs | None
 
 
 class Tally(NamedTuple):
     """counts (of `COUNTS`,); sums (of `SUMS`, 2) and by face and interior wall wall_impulse, wall_energy
     (faces + walls, 2), see `running_sum.add`; wall_hits (faces + walls,); worst (1,): the largest
     |r^2/sigma^2 - 1| at a contact; stress: an `event.stress.Stress`, impulses: an `event.impulses.Impulses`,
-    pair_impulses: an `event.pair_impulses.PairImpulses`, None if they are not wanted."""
+    pair_impulses: an `event.pair_impulses.PairImpulses`, None if they are not wanted; per_area: a
+    `physics.per_area.PerArea`, None unless particles of several sizes reach other areas of faces."""
 
     counts: np.ndarray
     sums: np.ndarray
@@ -299,6 +322,7 @@ class Tally(NamedTuple):
     stress: Any = None
     impulses: Any = None
     pair_impulses: Any = None
+    per_area: Any = None
 
 
 def empty_tally(walls: int) -> Tally:

@@ -37,10 +37,17 @@ def _checks(cls: Any) -> tuple[tuple[str, Check, bool], ...]:
     return tuple((item.name, item.metadata["kind"].check, item.default is None) for item in fields(cls))
 
 
-def set_fields(instance: object, **checked: object) -> None:
+def set_fields(instance: Any, **checked: object) -> None:
     """Write checked values into a frozen dataclass that is being made."""
     for name, value in checked.items():
         object.__setattr__(instance, name, value)
+    for name in set(vars(instance)) - {item.name for item in fields(instance)}:
+        del vars(instance)[name]  # facts of the values before
+
+
+def stated(instance: Any) -> dict[str, Any]:
+    """Return the fields of a dataclass by name, without cached properties."""
+    return {item.name: getattr(instance, item.name) for item in fields(instance)}
 
 
 def schema_of(cls: Any, **more: Kind) -> Kind:

@@ -34,6 +34,12 @@ class Camera:
         """Pixels per length across the view at a point (3,), in a picture `width` pixels wide."""
         return 0.5 * width / (self.half_width * float((point - self.eye) @ self.forward))
 
+    def pixels(self, points: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+        """Return the columns and rows (M, 2) of points (M, 3) in a picture of a size (W, H)."""
+        away = points - self.eye
+        slopes = np.column_stack([away @ self.right, -(away @ self.up)]) / (away @ self.forward)[:, None]
+        return 0.5 * np.array(size) * (1.0 + slopes / np.array([self.half_width, self.half_height]))
+
 
 def camera_for(
     lengths: np.ndarray,

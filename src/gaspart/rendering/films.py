@@ -50,7 +50,7 @@ def film(
     stop: float | None = None,
     every: int = 1,
     trail: int | None = None,
-    clock: bool = False,
+    clock: bool = True,
     camera: tuple[float, float] | None = None,
     overwrite: bool = False,
     progress: Callable[[int, int], None] | None = None,
@@ -166,7 +166,9 @@ def _pictures(
         frames = range(trajectory.sizes["frame"])
         fastest = FASTEST * max(particles_of(trajectory, n).root_mean_square_speed for n in frames)
     first, times, path = particles_of(trajectory, 0), trajectory["time"].values, []
-    labels = Labels(size, first.parameters, legend_of(first, colour, fastest)) if clock else None
+    labels = None
+    if clock:
+        labels = Labels(size, first.parameters, legend_of(first, colour, fastest), first.surfaces)
     inner = labels.inner if labels else size
     scale, decimals = pixels_per_length(first, inner, direction), time_format(times)
     for n, time in enumerate(times):

@@ -18,11 +18,9 @@ from gaspart.rendering.labels import Labels
 from gaspart.rendering.particles import DrawnParticles, colours_of, legend_of
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.rendering.shown import Picture
-from gaspart.scene.faces import Piston, Vibrating, pistons
-from gaspart.scene.moving_walls import moving_wall
-from gaspart.scene.open_faces import is_open
+from gaspart.rendering.surfaces import surfaces_of
+from gaspart.scene.faces import Piston, Vibrating
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import fixed_images
 from gaspart.scene.walls import Wall
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
@@ -71,7 +69,7 @@ def render(
     colours = colours_of(particles, colour, fastest)
     if not clock:
         return picture(particles, size, colours, direction=direction).view(Picture)
-    labels = Labels(size, particles.parameters, legend_of(particles, colour, fastest))
+    labels = Labels(size, particles.parameters, legend_of(particles, colour, fastest), particles.surfaces)
     image = picture(particles, labels.inner, colours, direction=direction)
     scale = pixels_per_length(particles, labels.inner, direction)
     return labels.around(image, f"{time:.4g}", scale).view(Picture)
@@ -102,7 +100,7 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
     frames = source.sizes["frame"]
     if not -frames <= count_of("frame", frame, least=-frames) < frames:
         raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
-    names = ("coordinates", "velocities", "cell_lengths", "time", "piston_position")
+    names = ("coordinates", "velocities", "time", "piston_position")
     # Of these alone: xarray takes milliseconds for a frame of the whole.
     shown = {name: source.variables[name][frame].values for name in names if name in source.variables}
     if "keep" in source.attrs:
@@ -115,12 +113,13 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
         radii=source["radius"].values[inside],
         species=source["type"].values[inside],
         speeds=np.sqrt((velocities**2).sum(axis=1)),
-        lengths=shown["cell_lengths"][: positions.shape[1]],
+        lengths=np.array(scene.container.lengths),
         walls=_walls(scene, float(shown["time"]), shown.get("piston_position")),
         masses=np.resize(per_particle(scene, "mass"), scene.capacity)[:stored][inside].astype(float),
         fixed=np.resize(per_particle(scene, "fixed"), scene.capacity)[:stored][inside].astype(bool),
-        periodic=fixed_images(scene),
+        periodic=scene.image_axes,
         parameters=parameters_of(scene),
+        surfaces=surfaces_of(scene, float(shown["time"]), _place(shown.get("piston_position"))),
     )
 
 
@@ -138,21 +137,15 @@ def parameters_of(scene: Scene) -> tuple[str, ...]:
     """The parameters of a scene that a picture of it does not show, as short texts."""
     kind = {2: "disc", 3: "sphere"}[scene.dimension]
     texts = [f"{scene.count} {kind}{'s' if scene.count != 1 else ''}"]
-    if is_open(scene):
+    if scene.is_open:
         texts[0] += " at the start"
-    elif not pistons(scene):  # the container would not be what they fill
+    elif not scene.pistons:  # the container would not be what they fill
         texts.append(f"packing fraction {scene.packing_fraction:.3g}")
     if scene.gravity is not None:
         texts.append(f"gravity {math.hypot(*scene.gravity):.3g}")
     if scene.restitution is not None:
         texts.append(f"restitution {scene.restitution.normal:.3g}")
-    for name, face in scene.faces.items():
-        if isinstance(face, Vibrating):
-            texts.append(f"{name} vibrates: amplitude {face.amplitude:.3g}, period {face.period:.3g}")
-        if isinstance(face, Piston):
-            stated = {key: value for key, value in vars(face).items() if value is not None}
-            texts.append(f"{name} a piston: {', '.join(f'{key} {stated[key]:.3g}' for key in stated)}")
-    if wall := moving_wall(scene):
+    if wall := scene.moving_wall:
         texts.append(f"a wall of mass {wall.mass:.3g} moves")
     return tuple(texts)
 
@@ -167,18 +160,24 @@ def _of_state(state: State, scene: Scene | None) -> DrawnParticles:
     walls = np.zeros((0, 2, state.dimension))
     if scene:
         walls = _walls(scene, state.time, None if state.piston is None else state.piston[0])
-    periodic = fixed_images(scene) if scene else (False,) * state.dimension
+    periodic = scene.image_axes if scene else (False,) * state.dimension
     parameters = parameters_of(scene) if scene else ()
     looks = state.positions, state.radii, state.species, state.speeds
     fixed = np.isinf(state.masses)
-    return DrawnParticles(*looks, state.lengths, walls, periodic, state.masses, fixed, parameters)
+    piston = None if state.piston is None else float(state.piston[0])
+    surfaces = surfaces_of(scene, state.time, piston) if scene else ()
+    return DrawnParticles(*looks, state.lengths, walls, periodic, state.masses, fixed, parameters, surfaces)
+
+
+def _place(piston: np.ndarray | None) -> float | None:
+    return None if piston is None else float(piston)
 
 
 def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.ndarray:
     """(M, 2, d) the segments, the four sides of each plate, and those of what moves. piston: the place of
     one along its axis, if there is one."""
     segments: list[tuple] = []
-    moving = moving_wall(scene)
+    moving = scene.moving_wall
     for wall in scene.walls if moving is None else ():
         if isinstance(wall, Wall):
             segments.append((wall.start, wall.end))

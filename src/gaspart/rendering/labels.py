@@ -11,6 +11,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.rendering.particles import Legend
+from gaspart.rendering.surfaces import DrawnSurface
 
 if TYPE_CHECKING:
     from PIL.ImageDraw import ImageDraw
@@ -51,17 +52,22 @@ def time_format(times: np.ndarray) -> str:
 class Labels:
     """What is written above and below a picture so that both have a size (W, H).
 
-    parameters: short texts, above; legend: below them; the time and a bar of a round length are below the
-    picture, whose size is `inner`. Raises SceneError if nothing is left for it.
+    parameters: short texts, above; legend and surfaces: below them; the time and a bar of a round length are
+    below the picture, whose size is `inner`. Raises SceneError if nothing is left for it.
     """
 
     size: tuple[int, int]
     parameters: tuple[str, ...] = ()
     legend: Legend | None = None
+    surfaces: tuple[DrawnSurface, ...] = ()
 
     def __post_init__(self) -> None:
         if self.inner[1] < _LEAST:
-            raise SceneError("size", self.size, "is too small for a clock")
+            raise SceneError(
+                "size",
+                self.size,
+                "is too small for a clock and a scale: leave them out (clock=False, --plain)",
+            )
 
     @property
     def letters(self) -> int:
@@ -96,7 +102,28 @@ class Labels:
     @property
     def top(self) -> int:
         """Height of the strip above the picture."""
-        return self.line * (len(self.lines) + (self.legend is not None)) + self.letters // 3
+        rows = len(self.lines) + (self.legend is not None) + len(self.rows)
+        return self.line * rows + self.letters // 3
+
+    @cached_property
+    def rows(self) -> list[list[DrawnSurface]]:
+        """Surfaces in rows that are not wider than the picture, as far as these leave half of it."""
+        rows: list[list[DrawnSurface]] = []
+        free = 0.0
+        for surface in self.surfaces:
+            width = self._sample + self.letters + self.font.getlength(surface.text)
+            if not rows or width > free:
+                rows.append([])
+                free = self.size[0] - self.letters // 2
+            rows[-1].append(surface)
+            free -= width
+        used = len(self.lines) + (self.legend is not None) + len(rows) + 1
+        return rows if 2 * self.line * used <= self.size[1] else []
+
+    @property
+    def _sample(self) -> int:
+        """Length of the line that shows the look of a surface, in pixels."""
+        return 2 * self.letters
 
     @property
     def inner(self) -> tuple[int, int]:
@@ -116,6 +143,9 @@ class Labels:
             self._write(draw, (gap, (n + 0.75) * self.line), text)
         if self.legend is not None:
             self._draw_legend(draw, self.legend, (len(self.lines) + 0.75) * self.line)
+        first = len(self.lines) + (self.legend is not None) + 0.75
+        for n, row in enumerate(self.rows):
+            self._draw_surfaces(draw, row, (first + n) * self.line)
         base = height - gap - 1
         self._write(draw, (gap, base), f"t = {time}")
         length = round_length(0.25 * width / pixels_per_length)
@@ -127,6 +157,24 @@ class Labels:
             draw.line([(end, y - gap // 2), (end, y + gap // 2)], _INK, 1)
         self._write(draw, (left - gap, base), f"length {length:g}", "rs")
         return np.asarray(paper)
+
+    def _draw_surfaces(self, draw: ImageDraw, row: list[DrawnSurface], base: float) -> None:
+        """Draw the line of each surface of a row, with its meaning."""
+        x, y, thick = self.letters / 2, base - 0.3 * self.letters, max(3, self.letters // 5)
+        for surface in row:
+            count = 5 if surface.dashed else len(surface.colours)
+            for n in range(0, count, 2 if surface.dashed else 1):
+                colour = surface.colours[n * len(surface.colours) // count]
+                left, right = (x + self._sample * part / count for part in (n, n + 1))
+                fill = tuple(np.rint(255.0 * colour).astype(int).tolist())
+                draw.line([(left, y), (right, y)], fill, thick)
+            for tick in range(5) if surface.hatched else ():
+                at = x + self._sample * (tick + 0.5) / 5
+                draw.line([(at, y), (at - thick, y + 1.5 * thick)], _INK, 1)
+            x = (
+                self._write(draw, (x + self._sample + self.letters // 3, base), surface.text)
+                + self.letters // 2
+            )
 
     def _write(self, draw: ImageDraw, place: tuple[float, float], text: str, anchor: str = "ls") -> float:
         """Write a text; returns where it ends, to the right."""

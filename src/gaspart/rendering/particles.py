@@ -8,6 +8,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.rendering.style import COLOURS
+from gaspart.rendering.surfaces import DrawnSurface
 
 COLOURINGS = ("speed", "species")
 FASTEST = 2.0
@@ -21,7 +22,7 @@ class DrawnParticles:
     """positions (N, d), radii (N,), species (N,), speeds (N,); lengths (d,) of the container; walls
     (M, 2, d), the ends of the interior ones, of plates those of their sides; periodic, whether each axis is;
     masses (N,), if they are known; fixed (N,), whether each never moves, None if it is not known; parameters:
-    short texts on the scene.
+    short texts on the scene; surfaces: faces and walls with a look of their own.
     """
 
     positions: np.ndarray
@@ -34,6 +35,7 @@ class DrawnParticles:
     masses: np.ndarray | None = None
     fixed: np.ndarray | None = None
     parameters: tuple[str, ...] = ()
+    surfaces: tuple[DrawnSurface, ...] = ()
 
     @property
     def dimension(self) -> int:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import FileKind, begins_with
 from gaspart.keys.values import count_of, number
-from gaspart.rendering.camera import CAMERA, camera_for
+from gaspart.rendering.camera import CAMERA, Camera, camera_for
 from gaspart.rendering.particles import DrawnParticles
 
 PICTURE = FileKind("a PNG picture", begins_with(b"\x89PNG\r\n\x1a\n"))
@@ -67,9 +67,30 @@ def picture(
         camera = camera_for(particles.lengths, *size, direction, particles.reach)
         lengths, walls = particles.lengths, particles.walls
         image, _ = trace(particles.positions, particles.radii, colours, lengths, camera, size, walls)
-    else:
-        image = _plane(particles, size, colours, paths)
-    return np.rint(255.0 * image).astype(np.uint8)
+        return _with_surfaces(np.rint(255.0 * image).astype(np.uint8), particles, camera)
+    return np.rint(255.0 * _plane(particles, size, colours, paths)).astype(np.uint8)
+
+
+def _with_surfaces(image: np.ndarray, particles: DrawnParticles, camera: Camera) -> np.ndarray:
+    """Return a picture of spheres with the outlines of the surfaces over it, in their colours."""
+    if not particles.surfaces:
+        return image
+    from PIL import Image, ImageDraw
+
+    height, width = image.shape[:2]
+    paper = Image.fromarray(image)
+    draw = ImageDraw.Draw(paper)
+    for surface in particles.surfaces:
+        middle = surface.ends.mean(axis=0)
+        around = middle + 0.985 * (surface.ends - middle)  # beside the edges that other faces share
+        parts = 15 if surface.dashed else len(surface.colours)
+        for start, end in pairwise([*around, around[0]]):
+            marks = camera.pixels(np.linspace(start, end, parts + 1), (width, height))
+            for n in range(0, parts, 2 if surface.dashed else 1):
+                shade = surface.colours[n * len(surface.colours) // parts]
+                fill = tuple(np.rint(255.0 * shade).astype(int).tolist())
+                draw.line([tuple(marks[n]), tuple(marks[n + 1])], fill, max(2, min(width, height) // 250))
+    return np.asarray(paper)
 
 
 def _plane(
@@ -78,13 +99,16 @@ def _plane(
     from gaspart.rendering.discs import Canvas
 
     canvas = Canvas(particles.lengths, size)
+    for surface in particles.surfaces:
+        canvas.shade_behind(surface)
     shown, shifts = _images(particles)
     canvas.discs(particles.positions[shown] + shifts, particles.radii[shown], colours[shown])
     canvas.cut(particles.periodic[:2])
-    x, y = particles.lengths
-    canvas.line(np.array([[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]]))
+    canvas.outline(particles.surfaces)
     for wall in particles.walls:
         canvas.line(wall)
+    for surface in particles.surfaces:
+        canvas.surface(surface)
     for path in paths:
         canvas.path(path)
     return canvas.image

@@ -212,6 +212,10 @@ def save(figure: Figure, path: str | Path) -> None:
         figure.savefig(partial, format=kind, metadata={_DATED[kind]: None})
 
 
+_DEEPEST = 0.01
+"""Part of the smallest value down to which a logarithmic axis shows the lower ends of errors."""
+
+
 def finish(figure: Figure) -> None:
     """Choose the ticks of logarithmic axes, and place the legends."""
     from gaspart.rendering.legibility import place_legends
@@ -219,9 +223,39 @@ def finish(figure: Figure) -> None:
     if not figure.get_constrained_layout():
         return  # done before
     for panel in figure.axes:
-        for axis in (panel.xaxis, panel.yaxis):
+        for number, axis in enumerate((panel.xaxis, panel.yaxis)):
+            _show_positive_ends(panel, axis, number)
             _number_ticks(axis)
     place_legends(figure)
+
+
+def _show_positive_ends(panel: Axes, axis: Axis, number: int) -> None:
+    """Extend an automatic logarithmic axis to the lower ends of error bars.
+
+    Where one of several bars reaches below 0, matplotlib chooses the limit by the values alone, and cuts
+    the lower ends of all others too (matplotlib 3.11). number: 0 of x, 1 of y.
+    """
+    from matplotlib.container import ErrorbarContainer
+
+    automatic = panel.get_autoscaley_on() if number else panel.get_autoscalex_on()
+    if axis.get_scale() != "log" or not automatic:
+        return
+    bars = [one for one in panel.containers if isinstance(one, ErrorbarContainer) and one.lines[0]]
+    ends = [
+        np.asarray(path.vertices)[:, number]
+        for one in bars
+        for part in one.lines[2]
+        for path in part.get_paths()
+    ]
+    values = [np.asarray(one.lines[0].get_data()[number], dtype=float) for one in bars]
+    end, value = (
+        float(np.min(part, where=part > 0.0, initial=np.inf))
+        for part in (np.concatenate([[np.inf], *parts]) for parts in (ends, values))
+    )
+    low, high = sorted(map(float, axis.get_view_interval()))
+    end = max(end, _DEEPEST * value)
+    if end < low:
+        (panel.set_ylim if number else panel.set_xlim)(end / 1.2, high)
 
 
 def _number_ticks(axis: Axis) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.analysis.order import NEIGHBOURS, hexatic, local_steinhardt
+from gaspart.analysis.bond_order import NEIGHBOURS, hexatic, local_steinhardt
 from gaspart.analysis.run import repeated
 from gaspart.errors import SceneError
 from gaspart.files import FileKind, output_path, writing
@@ -88,7 +88,8 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
                 "must be a trajectory or a simulation: a view needs frames",
             )
         scene = found.scene if isinstance(found, Simulation) else scene_of(found)
-        refuse_open(scene, "changes the particles: a page shows those that stay; make a film")
+        if order:
+            refuse_open(scene, "changes the particles: bond order is of those that stay")
         data = _with_names(found) if isinstance(found, Simulation) else found
         last = data.sizes["frame"] - 1
         if last < 0:
@@ -101,10 +102,12 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
 
 def _with_names(simulation: Simulation) -> xr.Dataset:
     """The frames of a simulation, with the variables of a trajectory that pictures need."""
-    data, state = repeated(simulation), simulation.state
-    lengths = np.tile(state.lengths, (data.sizes["frame"], 1))
+    data, initial = repeated(simulation), simulation.initial_state
+    lengths = np.tile(initial.lengths, (data.sizes["frame"], 1))
+    looks = (np.resize(values, data.sizes["atom"]) for values in (initial.radii, initial.species))
+    radii, species = looks  # of open faces, all alike
     return data.assign(
-        radius=("atom", state.radii), type=("atom", state.species), cell_lengths=(("frame", "cell"), lengths)
+        radius=("atom", radii), type=("atom", species), cell_lengths=(("frame", "cell"), lengths)
     )
 
 
@@ -113,14 +116,16 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
     import matplotlib
 
     shown = [particles_of(data, int(n)) for n in chosen]
-    first, d = shown[0], shown[0].dimension
+    first, d = max(shown, key=lambda one: len(one.radii)), shown[0].dimension
     fastest = FASTEST * max(one.root_mean_square_speed for one in shown) or 1.0
     places = np.zeros((len(shown), len(first.radii), 3), dtype="<u2")
-    inside = np.clip([one.positions / one.lengths for one in shown], 0.0, 1.0)
-    places[:, :, :d] = np.rint(65535.0 * inside)
-    speeds = np.rint(_HIGHEST * np.clip([one.speeds / fastest for one in shown], 0.0, 1.0)).astype(np.uint8)
-    if first.fixed is not None:
-        speeds[:, first.fixed] = _HIGHEST + 1
+    speeds = np.zeros(places.shape[:2], dtype=np.uint8)
+    for n, one in enumerate(shown):  # of open faces as many as are inside, in no order, since all are alike
+        count = len(one.radii)
+        places[n, :count, :d] = np.rint(65535.0 * np.clip(one.positions / one.lengths, 0.0, 1.0))
+        speeds[n, :count] = np.rint(_HIGHEST * np.clip(one.speeds / fastest, 0.0, 1.0))
+        if one.fixed is not None:
+            speeds[n, :count][one.fixed] = _HIGHEST + 1
     lengths = np.zeros(3)
     lengths[:d] = first.lengths
     lines = _lines(lengths, [one.walls for one in shown])
@@ -128,6 +133,7 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
     return {
         "dimension": d,
         "count": len(first.radii),
+        "inside": [len(one.radii) for one in shown],
         "time": data["time"].values[chosen].tolist(),
         "lengths": lengths.tolist(),
         "periodic": [int(n < d and first.periodic[n]) for n in range(3)],

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
 from gaspart.files import whole_file
+from gaspart.reproduction import job_time
 from gaspart.reproduction.claims.claim import Claim
 from gaspart.reproduction.claims.judging import judge, sufficient
 from gaspart.reproduction.config import checked
@@ -71,20 +72,20 @@ def budgets(path: str | Path) -> list[Budget]:
 
     with checked(path) as (config, planned):
         results = Path("results") / (config.get("run") or "")
-        every = {figure: _shown(block, planned) for figure, block in config["figures"].items()}
+        every = shown_points(config, planned)
         made = []
         for figure, points in every.items():
             dataset = results / "measurements" / f"{figure}.nc"
             if not dataset.is_file():
                 raise SceneError("results", str(dataset), "is not there: run the workflow first")
             others = {point for other in every if other != figure for point in every[other]}
-            times = {point: _seconds(results, point) for point in points}
+            times = {point: point_seconds(results, point) for point in points}
             made.append(
                 Budget(
                     figure,
                     sum(times.values()) + _made(results, figure),
                     sum(seconds for point, seconds in times.items() if point in others),
-                    _needs(_claims(figure, config["figures"][figure], xr.load_dataset(dataset))),
+                    _needs(claims_of(figure, config["figures"][figure], xr.load_dataset(dataset))),
                 )
             )
     return sorted(made, key=lambda one: -one.seconds)
@@ -117,45 +118,47 @@ def _write(found: Sequence[Budget], target: str | Path) -> None:
                 table.writerow((*own, need.claim, need.verdict, *numbers))
 
 
-def _shown(block: Mapping, planned: Mapping[str, Mapping[str, Point]]) -> list[tuple[str, str]]:
-    """The experiment and the name of each point of a figure."""
-    return [(experiment, name) for experiment in block["experiments"] for name in planned[experiment]]
+def shown_points(
+    config: Mapping, planned: Mapping[str, Mapping[str, Point]]
+) -> dict[str, list[tuple[str, str]]]:
+    """Return the experiment and the name of each point of each figure."""
+    return {
+        figure: [(experiment, name) for experiment in block["experiments"] for name in planned[experiment]]
+        for figure, block in config["figures"].items()
+    }
 
 
-def _seconds(results: Path, point: tuple[str, str]) -> float:
-    """The processor time of a point's job. Raises SceneError if it was not made."""
+def point_seconds(results: Path, point: tuple[str, str]) -> float:
+    """Return the processor time of a point's job. Raises SceneError if it was not made."""
     for rule in ("simulate", "compute"):
-        file = results / "benchmarks" / rule / point[0] / f"{point[1]}.tsv"
-        if file.is_file():
-            return _time(file)
-    raise SceneError("results", str(results / "benchmarks"), f"has no time of the point {'/'.join(point)}")
+        if used := job_time.used(results, rule, *point):
+            return used.seconds
+    raise SceneError("results", str(results / "logs"), f"has no time of the point {'/'.join(point)}")
 
 
 def _made(results: Path, figure: str) -> float:
-    """The processor time of what is made of a figure's points: numbers, picture."""
-    files = (results / "benchmarks" / rule / f"{figure}.tsv" for rule in ("measure", "draw"))
-    return sum(_time(file) for file in files if file.is_file())
+    """Return the processor time of the jobs that make a figure of its points: numbers, verdicts, picture."""
+    jobs = (job_time.used(results, rule, figure) for rule in ("measure", "judge", "draw"))
+    return sum(used.seconds for used in jobs if used)
 
 
-def _time(file: Path) -> float:
-    with file.open(encoding="utf-8") as lines:
-        return sum(float(row["cpu_time"]) for row in csv.DictReader(lines, delimiter="\t"))
-
-
-def _claims(figure: str, block: Mapping, dataset: xr.Dataset) -> Sequence[Claim]:
-    """The claims of a figure, as the workflow judges them."""
+def claims_of(figure: str, block: Mapping, dataset: xr.Dataset) -> list[Claim]:
+    """Return the claims of a figure, as the workflow judges them."""
     family, name = registry.functions(figure, block)
     state = getattr(import_module(registry.module(family, "claims")), name)
     return list(state(dataset, *registry.stated_claims(block)))
 
 
+def is_decided_by_runs(claim: Claim) -> bool:
+    """Return True if longer runs may decide a claim."""
+    return not (claim.kind in _WITHOUT_CHANCE or claim.form == "distribution" or claim.no_verdict)
+
+
 def _needs(stated: Sequence[Claim]) -> tuple[Need, ...]:
-    """Those claims of a figure that runs decide, the most demanding first."""
+    """Return those claims of a figure that runs decide, the most demanding first."""
     found = []
     for claim, verdict in zip(stated, judge(stated), strict=True):
         multiple = sufficient(claim)
-        if claim.kind in _WITHOUT_CHANCE or claim.form == "distribution" or claim.no_verdict:
-            continue
-        if math.isfinite(multiple):
+        if is_decided_by_runs(claim) and math.isfinite(multiple):
             found.append(Need(claim.claim, verdict, claim.required, claim.measured.error, multiple))
     return tuple(sorted(found, key=lambda need: -need.multiple))

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from gaspart.analysis.declaration import DIMENSIONS
-from gaspart.analysis.observables import OBSERVABLES
+from gaspart.analysis.observables import ALIASES, OBSERVABLES
 from gaspart.engines import ENGINES
 from gaspart.keys import Kind
 from gaspart.reproduction.families import registry
@@ -109,7 +109,17 @@ def _models() -> str:
 
 def _observables() -> list[str]:
     """Each named observable, as it is declared."""
-    heads = ("name", "meaning", "units", "result", "selections", "needs of a run", "conditions", "not by")
+    heads = (
+        "name",
+        "also",
+        "meaning",
+        "units",
+        "result",
+        "selections",
+        "needs of a run",
+        "conditions",
+        "not by",
+    )
     heads += ("theory", "`--until`")
     rows = [f"| {' | '.join(heads)} |", f"|{' --- |' * len(heads)}"]
     for name, one in OBSERVABLES.items():
@@ -117,6 +127,7 @@ def _observables() -> list[str]:
         where = " ".join((condition.__doc__ or "").split("\n")[0] for condition in one.conditions)
         cells = (
             f"`{name}`{f' ({one.symbol})' if one.symbol else ''}",
+            ", ".join(f"`{alias}`" for alias, other in ALIASES.items() if other == name),
             one.definition,
             f"`{one.units}`",
             f"by {along}" if along else "number",

@@ -36,7 +36,7 @@ def make_all(
     for one in {variant(point): point for point in ordered}.values():  # or each process would compile them
         with suppress(SceneError, SimulationError):  # of its own point alone
             compile_kernels(compile_task(one))
-    calls = [(point.to_dict(), overwrite) for point in ordered]
+    calls = [(point.to_dict(), point.path, overwrite) for point in ordered]
     in_processes(_make_in_process, calls, workers, lambda n, reason: finished(ordered[n], str(reason)))
 
 
@@ -66,7 +66,7 @@ def make(point: Point, overwrite: bool) -> str:
     return ""
 
 
-def _make_in_process(tell: Callable[[Any], None], values: dict, overwrite: bool) -> str:
-    """`make` for a point as a dictionary, in a process of its own."""
+def _make_in_process(tell: Callable[[Any], None], values: dict, path: str, overwrite: bool) -> str:
+    """Make a point, given as a dictionary, in a process of its own; see `make`."""
     load_numba(ours=True)
-    return make(Point.from_dict(values), overwrite)
+    return make(Point.from_dict(values, path), overwrite)

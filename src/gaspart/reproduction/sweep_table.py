@@ -74,7 +74,7 @@ def table(
             reasons = [failures[number], f"{name}: has other components than elsewhere"]
             failures[number] = "; ".join(filter(None, reasons))
         of_one = xr.Dataset(_variables(name, found, axes))
-        data = xr.merge([data, of_one], join="outer", combine_attrs="override")
+        data = xr.merge([data, of_one], join="outer", compat="no_conflicts", combine_attrs="override")
     durations = [float(np.mean(row.durations)) if row.durations else np.nan for row in rows]
     shape = [len(values) for values in axes.values()]
     data["duration"] = (tuple(axes), np.reshape(durations, shape), {"units": "time"})

@@ -6,7 +6,7 @@ pictures, and `each` states one claim about every row.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, ValuesView
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,9 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.claims import Claim
 
 Inner = tuple[str, ...] | Mapping[str, tuple[str, ...]]
+MADE_OF = "_made_of"
+"""End of the name of the variable that states of which points each row is made."""
+_NESTED = (list, tuple, ValuesView)
 
 
 class _Columns:
@@ -113,13 +116,27 @@ def table(
     *rest: Any,
     inner: Inner = (),
     units: Mapping[str, str] | None = None,
+    of: Sequence[Any] | None = None,
 ) -> xr.Dataset:
-    """A data set with a row for each point: row(point, *rest) gives its columns by name.
+    """Return a data set with a row for each point: row(point, *rest) gives its columns by name.
 
     An Estimate under `name` gives the variables `name`, `name`_error and `name`_freedom, a pair of a value
-    and its error the first two. inner, units: see `from_rows`.
+    and its error the first two. inner, units: see `from_rows`. If rows are made of points of a grid, as by
+    `made_of`, `over`_made_of has their experiments and names, a line for each. of: what each row is made of,
+    where `points` do not tell.
     """
-    return from_rows(over, [_spread(row(point, *rest)) for point in points], inner, units)
+    rows = [_spread(row(point, *rest)) for point in points]
+    named = ["\n".join(made_of(one)) for one in (points if of is None else of)]
+    data = from_rows(over, rows, inner, units)
+    return data.assign({f"{over}{MADE_OF}": (over, named)}) if all(named) else data
+
+
+def made_of(value: Any) -> list[str]:
+    """Return experiment/name of each point of a grid in a value: a point, or lists and mappings of points."""
+    if hasattr(value, "experiment") and hasattr(value, "name"):
+        return [f"{value.experiment}/{value.name}"]
+    inner = value.values() if isinstance(value, Mapping) else value
+    return [name for one in inner for name in made_of(one)] if isinstance(inner, _NESTED) else []
 
 
 def each(rows: Table, claim: str, form: Callable[..., Claim] = Claim, **stated: Any) -> list[Claim]:
@@ -162,7 +179,8 @@ def _spread(row: Mapping[str, Any]) -> dict[str, Any]:
 def prefixed(**tables: xr.Dataset) -> xr.Dataset:
     """Tables with different rows in one data set, by the names of their dimensions: the column `volume` along
     `path` is the variable `path_volume`."""
-    return xr.merge(part.rename({name: f"{over}_{name}" for name in part}) for over, part in tables.items())
+    renamed = (part.rename({name: f"{over}_{name}" for name in part}) for over, part in tables.items())
+    return xr.merge(renamed, join="outer", compat="no_conflicts")
 
 
 def from_rows(

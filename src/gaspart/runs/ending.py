@@ -12,13 +12,14 @@ from gaspart.accuracy.steady import require_steady
 from gaspart.analysis.observables import (
     OBSERVABLES,
     having,
+    known,
     require_modelled,
     require_run,
     require_steady_value,
     walls_of,
 )
 from gaspart.engines import Engine
-from gaspart.errors import SceneError, unknown_word
+from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.until import Requirement
@@ -36,10 +37,15 @@ class Accuracy(Requirement):
     """
 
     def __post_init__(self) -> None:
+        try:
+            name = known(self.observable)
+        except SceneError as error:
+            raise error.inside("until") from None
         able = having(ends_runs=True)
-        if self.observable not in able:
-            rule = unknown_word(self.observable, able, "observable")
+        if name not in able:
+            rule = f"ends no run: those that do are {', '.join(able)}; give a duration, and measure {name}"
             raise SceneError("until.observable", self.observable, rule)
+        object.__setattr__(self, "observable", name)
         super().__post_init__()
         if self.face is not None and "face" not in OBSERVABLES[self.observable].along:
             raise SceneError("until.face", self.face, f"has no meaning for {self.observable}")
@@ -90,6 +96,26 @@ def require_end(asked: Requirement, scene: Scene, at_most: float | None, given: 
         except SceneError as error:
             rule = f"{error.key}: {error.rule}, or a longest one (at_most)"
             raise SceneError("until", asked.name, rule) from None
+
+
+def require_reachable(asked: Requirement, scene: Scene, replicas: int) -> None:
+    """Raise SceneError for an accuracy that the mean of replicas, each of its seed, never reaches, since the
+    energies of their starts scatter."""
+    if replicas == 1:
+        return
+    from gaspart.accuracy.scatter import start_scatter  # loads the analysis, which few runs need
+    from gaspart.accuracy.target import Target
+
+    starts = start_scatter(Target(scene, asked.observable, asked.face))
+    if starts.value / math.sqrt(replicas) < asked.accuracy:
+        return
+    enough = math.ceil(2.0 * (starts.value / asked.accuracy) ** 2)
+    rule = (
+        f"the energies of the starts alone scatter the mean of {replicas} replicas by "
+        f"{100.0 * starts.value / math.sqrt(replicas):.2g} %: {starts.remedy}; {enough} replicas would "
+        "suffice, or give a longest duration (at_most)"
+    )
+    raise SceneError("until", f"{asked.name}={asked.accuracy:g}", rule)
 
 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:

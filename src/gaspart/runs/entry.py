@@ -12,7 +12,13 @@ from gaspart.engines import Engine, chosen
 from gaspart.errors import SceneError
 from gaspart.files import is_same_file, output_path
 from gaspart.keys.values import count_of
-from gaspart.runs.ending import Accuracy, default_sample_interval, require_end, require_measurable
+from gaspart.runs.ending import (
+    Accuracy,
+    default_sample_interval,
+    require_end,
+    require_measurable,
+    require_reachable,
+)
 from gaspart.runs.replicas import record_together, resume_together
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.state.optional_tallies import OptionalTally, impulse_tallies, pair_impulse_tallies
@@ -88,7 +94,7 @@ def run(
     tallies = *_tallies(impulses, wanted, scene, engine), *pair_impulse_tallies(pair_impulses)
     recipe = Recipe(*settings, pairs, _start(initial, scene, path, replicas), tallies, keep=keep)
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    return _record(in_replicas(recipe, replicas), _required(path), options, examined)
+    return _record(_in_replicas(recipe, replicas), _required(path), options, examined)
 
 
 def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
@@ -107,6 +113,16 @@ def _tallies(
 
     each = (Target(scene, asked.observable, asked.face).tallies(engine) for asked in wanted.accuracies)
     return next(filter(None, each), ())
+
+
+def _in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
+    """Return the recipes of the replicas of a run. Raises SceneError as `in_replicas`, and for an accuracy
+    that their mean never reaches."""
+    recipes, until = in_replicas(recipe, replicas), recipe.until
+    if until is not None and until.at_most is None and recipe.initial is None:
+        for asked in until.accuracies:
+            require_reachable(asked, recipe.scene, replicas)
+    return recipes
 
 
 def _record(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from gaspart.errors import SceneError
@@ -43,22 +44,22 @@ class Container:
             one_of("boundary", kind, BOUNDARIES)
         set_fields(self, boundary=tuple(boundary))
 
-    @property
+    @cached_property
     def dimension(self) -> int:
         """2 or 3."""
         return len(self.lengths)
 
-    @property
+    @cached_property
     def volume(self) -> float:
         """The container's volume, in two dimensions its area."""
         return math.prod(self.lengths)
 
-    @property
+    @cached_property
     def periodic(self) -> tuple[bool, ...]:
         """(d,) whether each axis is periodic."""
         return tuple(kind == "periodic" for kind in self.boundary)
 
-    @property
+    @cached_property
     def walls(self) -> tuple[str, ...]:
         """The names of its walls, `x low`, `x high` and so on."""
         axes = [axis for axis, around in zip("xyz", self.periodic, strict=False) if not around]

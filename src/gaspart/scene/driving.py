@@ -5,8 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import sliding_faces
-from gaspart.scene.thermal_faces import face_temperatures
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -18,23 +16,10 @@ _MOMENTUM = (
 _ENERGY = "inelastic contacts, or faces or walls at a temperature"
 
 
-def driven_axes(scene: Scene) -> tuple[int, ...]:
-    """The periodic axes along which a force acts on all particles, and so drives a flow."""
-    pulls = zip(scene.gravity or (), scene.container.periodic, strict=False)
-    return tuple(axis for axis, (pull, periodic) in enumerate(pulls) if pull != 0.0 and periodic)
-
-
-def has_dragged_faces(scene: Scene) -> bool:
-    """Whether the momentum along faces is counted, of those that draw velocities along themselves: where one
-    of them slides, or a force drives the gas along them."""
-    rubs = any(not face.smooth for face in scene.faces.values())
-    return bool(sliding_faces(scene)) or (rubs and bool(driven_axes(scene)))
-
-
 def check_driven(scene: Scene) -> None:
     """Raise SceneError for a force along a periodic axis if nothing takes the momentum or the energy that it
     gives."""
-    for axis in driven_axes(scene):
+    for axis in scene.driven_axes:
         for taken, what, by in (
             (_takes_momentum(scene, axis), "momentum", _MOMENTUM),
             (_takes_energy(scene), "energy", _ENERGY),
@@ -49,20 +34,18 @@ def check_driven(scene: Scene) -> None:
 
 def _takes_momentum(scene: Scene, axis: int) -> bool:
     """Whether anything acts on particles along a periodic axis but they themselves."""
-    if any(kind.fixed and kind.count for kind in scene.kinds):
+    if scene.has_fixed:
         return True
     length = scene.container.lengths[axis]
     if any(wall.temperature or not _spans(wall, axis, length) for wall in scene.walls):
         return True
-    surfaces = bool(scene.walls) or not all(scene.container.periodic)
+    surfaces = bool(scene.walls) or not scene.is_periodic
     return (scene.rough and surfaces) or not all(face.smooth for face in scene.faces.values())
 
 
 def _takes_energy(scene: Scene) -> bool:
     """Whether contacts lose energy, or faces at a temperature exchange it."""
-    if scene.restitution is not None and scene.restitution.dissipative:
-        return True
-    return bool(face_temperatures(scene))
+    return scene.dissipates or bool(scene.face_temperatures)
 
 
 def _spans(wall: Wall | Plate, axis: int, length: float) -> bool:

@@ -17,7 +17,6 @@ from gaspart.scene.faces import (
     Thermal,
     Vibrating,
     Well,
-    pistons,
 )
 from gaspart.scene.limits import closest_packing
 
@@ -67,7 +66,7 @@ def _check_sheared(scene: Scene, name: str, surface: LeesEdwards) -> None:
     if name != FACES[2 * GRADIENT + 1]:
         rule = "state it of y_high: the flow is along x, with a gradient along y, and y_low is its other side"
         raise SceneError(f"faces.{name}", surface.kind, rule)
-    if not all(scene.container.periodic):
+    if not scene.is_periodic:
         raise SceneError(f"faces.{name}", surface.kind, "needs a container that is periodic along all axes")
     size(f"faces.{name}.shear_rate", surface.shear_rate * scene.container.lengths[GRADIENT])
 
@@ -91,8 +90,8 @@ def _check_ramp(scene: Scene, name: str, surface: Thermal, axis: int) -> None:
 
 def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
     """Raise SceneError for a second piston, and one so light that its load moves it too fast, or so fast."""
-    if len(pistons(scene)) > 1:
-        raise SceneError("faces", [FACES[n] for n, _ in pistons(scene)], "only one may be a piston")
+    if len(scene.pistons) > 1:
+        raise SceneError("faces", [FACES[n] for n, _ in scene.pistons], "only one may be a piston")
     size(f"faces.{name}.mass", surface.acceleration(scene, FACES.index(name) // 2))
     size(f"faces.{name}.speed", surface.speed or 0.0)
 
@@ -101,7 +100,7 @@ def piston_end(scene: Scene, place: float | None = None) -> float:
     """The time at which a piston at a stated speed leaves the particles no room in closest packing; without
     one it is infinite. place: where it is along its axis at time 0, by default at its side.
     """
-    for number, face in pistons(scene):
+    for number, face in scene.pistons:
         if face.speed is not None:
             axis, length = number // 2, scene.container.lengths[number // 2]
             low, high = scene.reach(scene.largest_radius)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from gaspart.errors import SceneError
 from gaspart.keys import (
@@ -364,7 +364,6 @@ class LeesEdwards(Surface):
     moves: ClassVar[bool] = True
 
 
-S = TypeVar("S", bound=Surface)
 SCHEMA = {
     "type": "object",
     "propertyNames": {"enum": list(FACES)},
@@ -392,17 +391,6 @@ def surface_to_dict(surface: Surface) -> dict:
     return {"kind": surface.kind, **asdict(surface)}
 
 
-def faces_of(scene: Scene, kind: type[S]) -> list[tuple[int, S]]:
-    """The faces of a kind, with their number."""
-    faces = ((n, scene.faces.get(name)) for n, name in enumerate(FACES[: 2 * scene.dimension]))
-    return [(n, face) for n, face in faces if isinstance(face, kind)]
-
-
-def pistons(scene: Scene) -> list[tuple[int, Piston]]:
-    """The faces that are pistons, one at most, with their number."""
-    return faces_of(scene, Piston)
-
-
 def key_of(face: Any) -> Any:
     """The key of a face that is given by either of its names; other things as they are."""
     return face.strip().replace(" ", "_") if isinstance(face, str) else face
@@ -413,29 +401,6 @@ def wall_of(face: Any) -> Any:
     if isinstance(face, list | tuple):
         return [wall_of(one) for one in face]
     return face.strip().replace("_", " ") if isinstance(face, str) else face
-
-
-def sliding_faces(scene: Scene) -> list[tuple[int, Thermal]]:
-    """The faces that move along themselves, with their number."""
-    return [(n, face) for n, face in faces_of(scene, Thermal) if face.slides]
-
-
-def mean_velocity(scene: Scene) -> tuple[float, ...]:
-    """(d,) the mean velocity of the faces that drag particles along: 0 unless one slides. Motion along such
-    faces is about it, the same in every frame."""
-    dragging = [face.velocity for _, face in faces_of(scene, Thermal) if not face.smooth]
-    if not any(any(velocity or ()) for velocity in dragging):
-        return (0.0,) * scene.dimension
-    parts = [velocity or (0.0,) * scene.dimension for velocity in dragging]
-    return tuple(math.fsum(component) / len(parts) for component in zip(*parts, strict=True))
-
-
-def thermal_numbers(scene: Scene, drawn: bool = False) -> list[int]:
-    """The numbers of the faces at a temperature, wells in front of one included; drawn: that draw all
-    components of the velocity of a particle, and so act on it along themselves."""
-    kinds = ("thermal",) if drawn else ("thermal", "thermal_normal")
-    faces = ((n, scene.faces.get(name)) for n, name in enumerate(FACES[: 2 * scene.dimension]))
-    return [n for n, face in faces if face is not None and face.rule[0] in kinds]
 
 
 def thermal_face(scene: Scene, name: str) -> Thermal:

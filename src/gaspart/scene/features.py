@@ -10,8 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACE_KINDS, FACES, sliding_faces
-from gaspart.scene.thermal_faces import partial_faces, ramps
+from gaspart.scene.faces import FACE_KINDS, FACES
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -80,7 +79,7 @@ FEATURES: dict[str, Feature] = {
     "fixed": Feature(
         "fixed particles",
         "fixed",
-        lambda scene: True if any(kind.fixed and kind.count for kind in scene.kinds) else None,
+        lambda scene: scene.has_fixed or None,
     ),
     "polydispersity": Feature(
         "radii that differ within a species",
@@ -96,17 +95,17 @@ FEATURES: dict[str, Feature] = {
     "sliding": Feature(
         "thermal faces that move along themselves",
         "faces",
-        lambda scene: [FACES[n] for n, _ in sliding_faces(scene)] or None,
+        lambda scene: [FACES[n] for n, _ in scene.sliding_faces] or None,
     ),
     "accommodation": Feature(
         "thermal faces with partial accommodation",
         "faces",
-        lambda scene: [FACES[n] for n, _ in partial_faces(scene)] or None,
+        lambda scene: [FACES[n] for n, _ in scene.partial_faces] or None,
     ),
     "ramp": Feature(
         "thermal faces whose temperature varies along them",
         "faces",
-        lambda scene: [FACES[n] for n, _ in ramps(scene)] or None,
+        lambda scene: [FACES[n] for n, _ in scene.ramps] or None,
     ),
     "vibrations": Feature(
         "particles that store energy in a vibration",
@@ -115,6 +114,20 @@ FEATURES: dict[str, Feature] = {
     ),
 }
 """Name -> feature, in the order in which they are refused."""
+
+_CLOSED = {
+    "the particles of a reservoir are smooth and elastic": (
+        "restitution", "roughness", "viscoelasticity", "contact_duration", "vibrations",
+    ),
+    "nothing acts on the gas of a reservoir": ("gravity", "thermostat"),
+    "a reservoir has particles of one size, which move": ("polydispersity", "fixed"),
+    "an interior wall could stand in the way of what enters": ("walls", "thermal_walls", "moving_wall"),
+    "beside open faces, the others are hard or thermal": (
+        "well", "sticky", "vibrating", "piston", "lees_edwards",
+    ),
+    "beside open faces, a thermal one is at rest": ("sliding",),
+}  # fmt: skip
+"""Features that exclude open faces, and why."""
 
 EXCLUDED: dict[tuple[str, str], str] = {
     ("gravity", "piston"): "the energy of a piston is known only without gravity",
@@ -140,22 +153,14 @@ EXCLUDED: dict[tuple[str, str], str] = {
     ("fixed", "lees_edwards"): "the images of fixed particles would slide",
     ("restitution", "vibrations"): "energy would be lost twice",
     ("centres_to_walls", "roughness"): "rough particles touch walls with their surfaces",
-    **dict.fromkeys(
-        ((name, "open") for name in FEATURES if name not in ("open", "thermal", "centres_to_walls")),
-        "reservoirs are of smooth, elastic particles of one size, between faces that are hard or thermal",
-    ),
+    **{(name, "open"): why for why, names in _CLOSED.items() for name in names},
 }
 """Pairs of features that no scene may have, and why."""
 
 
-def features(scene: Scene) -> frozenset[str]:
-    """The names of a scene's features."""
-    return frozenset(name for name, feature in FEATURES.items() if feature.value(scene) is not None)
-
-
 def check_features(scene: Scene) -> None:
     """Raise SceneError for two features that exclude each other."""
-    present = features(scene)
+    present = scene.features
     for (name, other), why in EXCLUDED.items():
         if name in present and other in present:
             raise FEATURES[name].refuse(scene, f"excludes {FEATURES[other].meaning}: {why}")

@@ -109,11 +109,11 @@ def plain_mixture(scene: Scene) -> Mixture:
 
 def _refuse_others(scene: Scene, rule: str, allowed: set[str]) -> None:
     """Raise SceneError for an empty scene, and one with other features than these."""
-    from gaspart.scene.features import FEATURES, features
+    from gaspart.scene.features import FEATURES
 
     if not scene.count:
         raise SceneError("count", 0, f"{rule}: the scene is empty")
-    present = features(scene) - allowed
+    present = scene.features - allowed
     for name in FEATURES:
         if name in present:
             raise FEATURES[name].refuse(scene, f"{rule}, without {FEATURES[name].meaning}")

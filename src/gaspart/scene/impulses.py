@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.scene.driving import driven_axes
-from gaspart.scene.features import FEATURES, features
-from gaspart.scene.thermal_faces import face_temperatures
+from gaspart.scene.features import FEATURES
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -43,9 +41,9 @@ def require_impulses(scene: Scene) -> None:
         if FEATURES[name].value(scene) is not None:
             rule = f"impulses give a density in equilibrium at rest, not with {FEATURES[name].meaning}"
             raise FEATURES[name].refuse(scene, rule)
-    if driven_axes(scene):
+    if scene.driven_axes:
         raise SceneError("gravity", scene.gravity, "impulses give a density in equilibrium: this gas flows")
-    temperatures = sorted(face_temperatures(scene))
+    temperatures = sorted(scene.face_temperatures)
     if len(temperatures) > 1:
         rule = "impulses give a density in equilibrium: heat flows between faces"
         raise SceneError("faces.temperature", temperatures, rule)
@@ -53,7 +51,7 @@ def require_impulses(scene: Scene) -> None:
 
 def require_pair_impulses(scene: Scene, furthest: float) -> None:
     """Raise SceneError, with the reason, if the impulses in a scene give no g(r) up to a distance."""
-    if not all(scene.container.periodic):
+    if not scene.is_periodic:
         raise SceneError("pair_impulses", furthest, "g(r) needs a periodic container")
     diameter, half = 2.0 * scene.largest_radius, FURTHEST * min(scene.container.lengths)
     if not diameter < furthest <= half:
@@ -67,7 +65,7 @@ def require_pair_impulses(scene: Scene, furthest: float) -> None:
 def shares_energy_evenly(scene: Scene) -> bool:
     """Whether the kinetic energy of flight is constant, and in equilibrium each direction has its part: of
     smooth, elastic particles without a potential, that nothing heats."""
-    return features(scene) <= _STEADY
+    return scene.features <= _STEADY
 
 
 def row_count(scene: Scene) -> int:

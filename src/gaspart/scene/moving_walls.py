@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import pistons
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -24,18 +24,13 @@ MOVING_WALL = "walls[0]"
 """The key of a wall that moves: there is no other beside it."""
 
 
-def moving_wall(scene: Scene) -> MovingWall | None:
-    """The interior wall of a scene that moves, None without one."""
-    for wall in scene.walls:
+def moving_wall_among(walls: Sequence[Wall | Plate], lengths: tuple[float, ...]) -> MovingWall | None:
+    """Return the interior wall that moves, or None without one."""
+    for wall in walls:
         if wall.mass is not None:
-            axis = crossed_axis(wall, scene.container.lengths)
+            axis = crossed_axis(wall, lengths)
             return MovingWall(axis, next(iter(wall.corners.values()))[axis], wall.mass)
     return None
-
-
-def has_piston(scene: Scene) -> bool:
-    """Whether a face or an interior wall moves as particles and its load push it."""
-    return bool(pistons(scene)) or moving_wall(scene) is not None
 
 
 def crossed_axis(wall: Wall | Plate, lengths: tuple[float, ...]) -> int:

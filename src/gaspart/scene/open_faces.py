@@ -7,41 +7,58 @@ import math
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, Open, faces_of
+from gaspart.scene.faces import FACES, Open
 from gaspart.scene.geometry import CLOSE_PACKING, ball_volume
-from gaspart.scene.thermal_faces import face_temperatures
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
+MOST_ATTEMPTS = 1e12
+"""Maximum number of attempts to enter while a particle of the reservoir crosses the container."""
 _SIGMAS = 10.0  # standard deviations of the number of an ideal gas for which there is room
-
-
-def is_open(scene: Scene) -> bool:
-    """Whether the number of particles varies."""
-    return bool(faces_of(scene, Open))
 
 
 def check_open_faces(scene: Scene) -> None:
     """Raise SceneError for a scene with open faces in which it is not defined what enters, or when a particle
     has left."""
-    for number, _ in faces_of(scene, Open):
+    for number, reservoir in scene.faces_of(Open):
         face = f"faces.{FACES[number]}"
         if not scene.centres_to_walls:
             raise SceneError(face, "open", "is passed by centres of particles: needs centres_to_walls: true")
         if len(scene.species) != 1 or scene.particles or not scene.count:
             raise SceneError(face, "open", "needs particles of one species, and no single ones")
+        _check_attempts(scene, number, reservoir)
+
+
+def _check_attempts(scene: Scene, number: int, face: Open) -> None:
+    """Raise SceneError for a reservoir whose attempts to enter would stop the time."""
+    speed = math.sqrt((face.temperature or 0.0) / scene.species[0].mass)
+    if speed:
+        attempts = attempt_rate(scene, number, face) * scene.container.lengths[number // 2] / speed
+        if not attempts <= MOST_ATTEMPTS:
+            rule = (
+                f"must let at most {MOST_ATTEMPTS:g} particles try to enter "
+                f"while one of them crosses the container, not {attempts:.2g}"
+            )
+            raise SceneError(f"faces.{FACES[number]}.activity", face.activity, rule)
 
 
 def refuse_open(scene: Scene, rule: str) -> None:
     """Raise SceneError, with a rule, for a scene with open faces."""
-    for number, face in faces_of(scene, Open):
+    for number, face in scene.faces_of(Open):
         raise SceneError(f"faces.{FACES[number]}", face.kind, rule)
 
 
 def number_density(scene: Scene, face: Open) -> float:
     """z: that of the ideal gas that is in equilibrium with a reservoir; 0 of a vacuum."""
     return (face.activity or 0.0) / ball_volume(scene.dimension, scene.species[0].radius)
+
+
+def attempt_rate(scene: Scene, number: int, face: Open) -> float:
+    """Number of particles per time that try to enter through an open face, z A (k_B T / 2 pi m)^(1/2)."""
+    area = scene.container.volume / scene.container.lengths[number // 2]
+    width = math.sqrt((face.temperature or 0.0) / scene.species[0].mass)
+    return number_density(scene, face) * area * width / math.sqrt(2.0 * math.pi)
 
 
 def capacity(scene: Scene) -> int:
@@ -52,12 +69,12 @@ def capacity(scene: Scene) -> int:
     has the distribution of Poisson. The pressure inside is that of the strongest reservoir at most, and the
     gas as cold as the coldest thing. There are never more than fit.
     """
-    reservoirs = [face for _, face in faces_of(scene, Open) if face.temperature is not None]
+    reservoirs = [face for _, face in scene.faces_of(Open) if face.temperature is not None]
     if not reservoirs:
         return scene.count
     species, d = scene.species[0], scene.dimension
     pressure = max(number_density(scene, face) * (face.temperature or 0.0) for face in reservoirs)
-    mean = pressure / min(face_temperatures(scene)) * scene.container.volume
+    mean = pressure / min(scene.face_temperatures) * scene.container.volume
     most = scene.count + mean + _SIGMAS * math.sqrt(mean) + _SIGMAS
     around = math.prod(length + 2.0 * species.radius for length in scene.container.lengths)
     packed = CLOSE_PACKING[d] * around / ball_volume(d, species.radius)

@@ -25,6 +25,7 @@ from gaspart.keys import (
     instances_of,
     refuse_unknown,
     set_fields,
+    stated,
     validate,
     vector,
 )
@@ -33,20 +34,17 @@ from gaspart.scene.container import Container
 from gaspart.scene.driving import check_driven
 from gaspart.scene.face_checks import check_faces
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
-from gaspart.scene.faces import LeesEdwards, Sticky, Surface, key_of, surface_from_dict, surface_to_dict
-from gaspart.scene.features import FEATURES, check_features, features
-from gaspart.scene.gas import Gas, Mixture, mixture_of
-from gaspart.scene.geometry import ball_volume
+from gaspart.scene.faces import Surface, key_of, surface_from_dict, surface_to_dict
+from gaspart.scene.facts import Facts
+from gaspart.scene.features import FEATURES, check_features
 from gaspart.scene.limits import Nearby, check_packing, check_region, check_room, rounding
-from gaspart.scene.moving_walls import moving_wall
-from gaspart.scene.open_faces import capacity, check_open_faces
+from gaspart.scene.open_faces import check_open_faces
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Particle, Species
 from gaspart.scene.thermostat import Thermostat
 from gaspart.scene.walls import WALL_RULE, Plate, Wall, check_walls, wall_kind
 from gaspart.yaml_text import read_yaml, write_yaml
 
-_CONTACT = 0.01  # of sqrt(d/g): the default duration of a contact
 THUMBNAIL = (480, 360)
 """Pixels of a picture that a notebook shows for a scene."""
 DRAWN = 20_000
@@ -55,7 +53,7 @@ _ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # not written into a
 
 
 @dataclass(frozen=True)
-class Scene:
+class Scene(Facts):
     """A container and its particles: first `particles` in their order, then each of `species` in turn.
 
     With `centres_to_walls` the walls stop the particles' centres instead of their surfaces (the rule of
@@ -176,119 +174,6 @@ class Scene:
             if self.separation(particle.position, other.position) < contact - slack:
                 raise SceneError(f"{where}.position", particle.position, f"overlaps particles[{m}]")
 
-    @property
-    def dimension(self) -> int:
-        """2 or 3."""
-        return self.container.dimension
-
-    @property
-    def kinds(self) -> tuple[Species | Particle, ...]:
-        """All that has a radius and a mass: species and single particles."""
-        return (*self.species, *self.particles)
-
-    @property
-    def contact_duration(self) -> float:
-        """The time after a contact of a particle within which its next ones are elastic (`Restitution`), 0 if
-        all dissipate. By default 0.01 sqrt(d/g), d the smallest diameter, if there is gravity g."""
-        law = self.restitution
-        if law is None or not law.dissipative:
-            return 0.0
-        if law.contact_duration is not None:
-            return law.contact_duration
-        if self.gravity is None:
-            return 0.0
-        return _CONTACT * math.sqrt(2.0 * self.smallest_radius / math.hypot(*self.gravity))
-
-    @property
-    def rough(self) -> bool:
-        """Whether contacts change spins."""
-        return self.restitution is not None and self.restitution.rough
-
-    @property
-    def count(self) -> int:
-        """The number of particles, with open faces at the start."""
-        return sum(kind.count for kind in self.kinds)
-
-    @property
-    def capacity(self) -> int:
-        """The number of particles that there may be at any time: `count`, unless faces are open."""
-        return capacity(self)
-
-    @property
-    def vibrates(self) -> bool:
-        """Whether any particle may store energy in a vibration: a fixed one, or one that sticks to a face."""
-        sticky = any(isinstance(face, Sticky) for face in self.faces.values())
-        return sticky or any(thing.vibrates for thing in self.kinds)
-
-    @property
-    def shear_rate(self) -> float | None:
-        """du_x / dy between sheared faces (`LeesEdwards`), None without any."""
-        rates = (face.shear_rate for face in self.faces.values() if isinstance(face, LeesEdwards))
-        return next(rates, None)
-
-    @property
-    def conserved_axes(self) -> tuple[bool, ...]:
-        """(d,) whether the total momentum along an axis is conserved: a periodic one, if no particle is fixed
-        and nothing but smooth faces or a wall that moves, which act along their normals, is in the
-        container; of a sheared gas that about the flow."""
-        periodic = self.container.periodic
-        fixed = any(it.fixed and it.count for it in self.kinds)
-        smooth = all(face.smooth for face in self.faces.values())
-        rubbed = not all(periodic) and (self.rough or not smooth)
-        obstructed = bool(self.walls) and moving_wall(self) is None
-        free = not (fixed or obstructed or rubbed)
-        return tuple(free and along for along in periodic)
-
-    @property
-    def number_density(self) -> float:
-        """Particles per volume (area) of the container."""
-        return self.count / self.container.volume
-
-    @property
-    def packing_fraction(self) -> float:
-        """Volume (3D) or area (2D) of all particles over that of the container."""
-        particles = sum(particle.radius**self.dimension for particle in self.particles)
-        species = sum(kind.total_power(self.dimension) for kind in self.species)
-        return ball_volume(self.dimension) * (particles + species) / self.container.volume
-
-    @property
-    def largest_radius(self) -> float:
-        """The largest radius of any particle (0 in an empty scene)."""
-        return max((kind.largest_radius for kind in self.kinds if kind.count), default=0.0)
-
-    @property
-    def smallest_radius(self) -> float:
-        """The smallest radius of any particle (0 in an empty scene)."""
-        return min((kind.smallest_radius for kind in self.kinds if kind.count), default=0.0)
-
-    @property
-    def alike(self) -> bool:
-        """Whether all particles have one radius and one mass."""
-        kinds = [kind for kind in self.kinds if kind.count]
-        return len({(kind.radius, kind.mass) for kind in kinds}) < 2 and all(kind.alike for kind in kinds)
-
-    @property
-    def gas(self) -> Gas | None:
-        """The plain gas that the scene is, at the temperature of its initial velocities; None if it is empty,
-        has particles of several sizes or masses, or has any feature but `centres_to_walls`."""
-        kinds = [kind for kind in self.kinds if kind.count]
-        if not kinds or not self.alike or features(self) - {"centres_to_walls"}:
-            return None
-        kind, dimension, count = kinds[0], self.dimension, self.count
-        temperature = kind.initial_temperature(dimension)
-        if len(kinds) > 1:
-            temperature = sum(each.count * each.initial_temperature(dimension) for each in kinds) / count
-        fraction = count * ball_volume(dimension, kind.radius) / self.container.volume
-        return Gas(dimension, fraction, count, 2.0 * kind.radius, temperature, kind.mass)
-
-    @property
-    def mixture(self) -> Mixture | None:
-        """The mixture of plain gases that the scene is; None if it is empty, or has any feature but
-        `polydispersity` and `centres_to_walls`."""
-        if features(self) - {"polydispersity", "centres_to_walls"}:
-            return None
-        return mixture_of(self)
-
     def reach(self, radius: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(d,), (d,): the lowest and highest coordinates of the centre of a particle of this radius."""
         lower, upper = [], []
@@ -324,7 +209,7 @@ class Scene:
         kind = {2: "disc", 3: "sphere"}[self.dimension] + ("s" if self.count != 1 else "")
         sides = " x ".join(f"{length:g}" for length in self.container.lengths)
         text = f"{self.count} {kind} in {sides}, packing fraction {self.packing_fraction:.3g}"
-        present = sorted(features(self))
+        present = sorted(self.features)
         return text + (f"; {', '.join(FEATURES[name].meaning for name in present)}" if present else "")
 
     def _repr_html_(self) -> str:
@@ -341,13 +226,13 @@ class Scene:
 
         def plain(value: Any) -> Any:
             if is_dataclass(value):
-                value = vars(value)
+                value = stated(value)
             if isinstance(value, dict):
                 return {k: plain(x) for k, x in value.items() if x is not None and (x or k not in _ABSENT)}
             return [plain(item) for item in value] if isinstance(value, tuple) else value
 
         faces = {name: surface_to_dict(surface) for name, surface in self.faces.items()}
-        return plain({**vars(self), "faces": faces})
+        return plain({**stated(self), "faces": faces})
 
     @classmethod
     def from_dict(cls, mapping: dict, file: str | None = None) -> Scene:

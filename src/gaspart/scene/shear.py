@@ -28,15 +28,6 @@ def flow_of_rate(rate: float | None, height: float, positions: np.ndarray) -> np
     return velocities
 
 
-def fixed_images(scene: Scene) -> tuple[bool, ...]:
-    """(d,) whether an axis has images of the particles at its length, always: a periodic one, unless these
-    slide."""
-    periodic = scene.container.periodic
-    return tuple(
-        along and (scene.shear_rate is None or axis != GRADIENT) for axis, along in enumerate(periodic)
-    )
-
-
 def refuse_sheared(scene: Scene, rule: str) -> None:
     """Raise SceneError, with a rule, for a scene with sheared faces."""
     for name, face in scene.faces.items():

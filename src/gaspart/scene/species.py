@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.errors import SceneError
@@ -77,6 +77,7 @@ class Species:
 
     count: int = field(metadata=declared(count("number of particles", 0, maximum=MOST_PARTICLES)))
     radius: float = field(metadata=declared(positive("radius; the mean, if there is a polydispersity")))
+    _: KW_ONLY
     mass: float = field(default=1.0, metadata=_MASS)
     speed: float | None = field(default=None, metadata=declared(not_negative("one initial speed for all")))
     temperature: float | None = field(

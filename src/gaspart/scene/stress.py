@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.scene.features import FEATURES, features
+from gaspart.scene.features import FEATURES
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -17,7 +17,7 @@ _ALLOWED = frozenset(
 
 def require_tallied(scene: Scene) -> None:
     """Raise SceneError if the stress tensor of a scene cannot be tallied by any engine."""
-    if not all(scene.container.periodic):
+    if not scene.is_periodic:
         raise SceneError("stress", True, "needs a periodic container")
-    for name in sorted(features(scene) - _ALLOWED):
+    for name in sorted(scene.features - _ALLOWED):
         raise SceneError("stress", True, f"cannot be tallied in a scene with {FEATURES[name].meaning}")

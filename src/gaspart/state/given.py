@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, FLOW, GRADIENT, pistons
-from gaspart.scene.features import FEATURES, features
-from gaspart.scene.moving_walls import MOVING_WALL, moving_wall
+from gaspart.scene.faces import FACES, FLOW, GRADIENT
+from gaspart.scene.features import FEATURES
+from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import fixed_images, flow_of_rate
+from gaspart.scene.shear import flow_of_rate
 from gaspart.state.initial import assembled, in_flow, masses_of
 from gaspart.state.insertion import per_particle
 from gaspart.state.overlaps import deepest_overlap
@@ -42,7 +42,7 @@ def state_from_arrays(
     a scene that remembers more than these, numbers that are not finite or too few, and particles outside the
     container, beyond the piston or in an interior wall.
     """
-    if "sticky" in features(scene):
+    if "sticky" in scene.features:
         rule = "excludes a given initial state, which does not say which particles stick"
         raise FEATURES["sticky"].refuse(scene, rule)
     if scene.vibrates and vibrations is None:
@@ -137,12 +137,12 @@ def _taken_piston(scene: Scene, other: State) -> np.ndarray | None:
     """The piston's place and velocity in a state; None if that or the scene has none. Raises SceneError."""
     if other.piston is None:
         return None
-    for n, face in pistons(scene):
+    for n, face in scene.pistons:
         if other.piston_face != FACES[n]:
             rule = f"is the face that is the piston, {FACES[n]} in the scene: they must be the same"
             raise SceneError("initial", other.piston_face, rule)
         return other.piston if face.speed is None else np.array([other.piston[0], face.initial_velocity(n)])
-    if moving_wall(scene) is None:
+    if scene.moving_wall is None:
         return None
     if other.piston_face != MOVING_WALL:
         rule = f"is the face that is the piston, {MOVING_WALL} in the scene: they must be the same"
@@ -152,8 +152,8 @@ def _taken_piston(scene: Scene, other: State) -> np.ndarray | None:
 
 def _checked_piston(scene: Scene, piston: np.ndarray | None) -> np.ndarray | None:
     """The given place and velocity of a piston. Raises SceneError."""
-    axes = [n // 2 for n, _ in pistons(scene)]
-    if wall := moving_wall(scene):
+    axes = [n // 2 for n, _ in scene.pistons]
+    if wall := scene.moving_wall:
         axes = [wall.axis]
     for axis in axes if piston is not None else ():
         values, length = np.asarray(piston), scene.container.lengths[axis]
@@ -170,7 +170,7 @@ def check_apart(scene: Scene, state: State) -> None:
     places, radii = state.positions, state.radii
     if state.displaced is not None:
         places, radii = _with_images(state)
-    depth = deepest_overlap(places, radii, state.lengths, fixed_images(scene))
+    depth = deepest_overlap(places, radii, state.lengths, scene.image_axes)
     allowed = 2.0 * np.sqrt(state.dimension) * _SINGLE * max(scene.container.lengths)  # of two particles
     if depth * 2.0 * state.radii.min() > allowed:
         rule = (
@@ -197,7 +197,7 @@ def _wrapped(values: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
 
 def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.ndarray | None) -> np.ndarray:
     """(N, d) positions in [0, L) on axes with fixed images, between the walls and the piston on others."""
-    lengths, periodic = np.array(scene.container.lengths), np.array(fixed_images(scene))
+    lengths, periodic = np.array(scene.container.lengths), np.array(scene.image_axes)
     slack = _SINGLE * lengths
     low, high = _bounds(scene, positions, radii, piston)
     placed = np.where(periodic, _wrapped(positions, lengths), positions)
@@ -207,7 +207,7 @@ def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.n
         rule += "" if piston is None else f", or beyond the piston at {piston[0]:g}"
         raise SceneError("initial", tuple(positions[n].tolist()), rule)
     placed = np.where(periodic, placed, np.clip(placed, low, high))
-    for n in range(len(radii)) if scene.walls and moving_wall(scene) is None else ():
+    for n in range(len(radii)) if scene.walls and scene.moving_wall is None else ():
         if wall := scene.wall_at(tuple(placed[n].tolist()), float(radii[n] - slack.max())):
             raise SceneError("initial", tuple(placed[n].tolist()), f"particle {n} overlaps {wall}")
     return placed
@@ -223,14 +223,14 @@ def _bounds(
     low, high = margins.copy(), np.array(scene.container.lengths) - margins
     if scene.shear_rate is not None:
         high[:, GRADIENT] = np.nextafter(high[:, GRADIENT], 0.0)
-    if wall := moving_wall(scene):
+    if wall := scene.moving_wall:
         axis, place = wall.axis, wall.place if piston is None else piston[0]
         above = positions[:, axis] > place
         low[above, axis] = place + radii[above]
         high[~above, axis] = place - radii[~above]
     if piston is None:
         return low, high
-    for n, _ in pistons(scene):
+    for n, _ in scene.pistons:
         bound, inwards = (high, -1.0) if n % 2 else (low, 1.0)
         bound[:, n // 2] = piston[0] + inwards * margins[:, n // 2]
     return low, high

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, pistons
-from gaspart.scene.moving_walls import MOVING_WALL, moving_wall
+from gaspart.scene.faces import FACES
+from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
 from gaspart.scene.species import LATTICES
@@ -96,10 +96,10 @@ def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins
 
 def _piston(scene: Scene) -> tuple[str | None, np.ndarray | None]:
     """The name of the face or interior wall that is a piston, and (2,) its place and velocity at time 0."""
-    for n, face in pistons(scene):
+    for n, face in scene.pistons:
         start = scene.container.lengths[n // 2] if n % 2 else 0.0
         return FACES[n], np.array([start, face.initial_velocity(n)])
-    wall = moving_wall(scene)
+    wall = scene.moving_wall
     return (None, None) if wall is None else (MOVING_WALL, np.array([wall.place, 0.0]))
 
 

@@ -13,9 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
-from gaspart.scene.driving import has_dragged_faces
 from gaspart.scene.impulses import require_impulses, require_pair_impulses, row_count
-from gaspart.scene.open_faces import is_open
 from gaspart.scene.stress import require_tallied
 
 if TYPE_CHECKING:
@@ -190,6 +188,24 @@ class EntryTally(OptionalTally):
     name: ClassVar[str] = "entries"
 
 
+@dataclass(frozen=True)
+class FixedCollisionTally(OptionalTally):
+    """The collisions with fixed particles."""
+
+    name: ClassVar[str] = "fixed_collisions"
+
+
+@dataclass(frozen=True)
+class PerAreaTally(OptionalTally):
+    """What faces are given per area that centres of particles of each size can reach, where sizes differ."""
+
+    name: ClassVar[str] = "per_area"
+
+    def axes(self, scene: Scene) -> dict[str, int]:
+        """The components of the momentum."""
+        return {"axis": scene.dimension}
+
+
 ASKED: dict[str, type[OptionalTally]] = {
     tally.name: tally for tally in (StressTally, ImpulseTally, PairImpulseTally)
 }
@@ -198,7 +214,12 @@ ASKED: dict[str, type[OptionalTally]] = {
 
 def tallies_of(scene: Scene) -> tuple[OptionalTally, ...]:
     """Those that every run of a scene has, if its engine makes them."""
-    made = {WallShearTally(): has_dragged_faces(scene), EntryTally(): is_open(scene)}
+    made = {
+        WallShearTally(): scene.drags_faces,
+        EntryTally(): scene.is_open,
+        FixedCollisionTally(): scene.has_fixed,
+        PerAreaTally(): scene.has_unequal_areas,
+    }
     return tuple(tally for tally, present in made.items() if present)
 
 

@@ -18,6 +18,8 @@ def deepest_overlap(
     """
     from scipy.spatial import cKDTree  # which few runs need
 
+    if not len(positions):
+        return 0.0
     sides = np.where(periodic, lengths, 0.0)
     on_itself = 1.0 - np.where(periodic, lengths, np.inf) / (2.0 * radii.max())
     deepest = max(0.0, float(on_itself.max()))

@@ -108,7 +108,7 @@ class State:
     @property
     def temperature(self) -> float:
         """k_B T of a gas without walls: that of flight about the centre of mass, per degree of freedom.
-        Raises ZeroDivisionError for a single particle."""
+        Raises ZeroDivisionError for fewer than two particles."""
         momentum = self.momentum
         whole = 0.5 * float((momentum**2).sum()) / float(_finite(self.masses).sum())
         return 2.0 * (self.translational_energy - whole) / (self.dimension * (self.count - 1))

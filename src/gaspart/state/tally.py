@@ -8,8 +8,8 @@ import numpy as np
 
 ENERGY, IMPULSE = "mass length^2/time^2", "mass length/time"
 ACTION, HEAT = "mass length^2/time", "mass length^3/time^2"
-SPEED = "length/time"
-"""Units of sums, and of the velocity that goes with them."""
+SPEED, PRESSED, HEATED = "length/time", "mass length^(2-d)/time", "mass length^(3-d)/time^2"
+"""Units of sums, and of the velocity that goes with them; of momentum and heat per area."""
 
 
 def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]:
@@ -43,6 +43,14 @@ class Tally:
     wall_hits are then those that have left there, wall_impulse the momentum along the normal that both carry
     through, and wall_energy the energy of those that have left less that of those that have entered.
 
+    If particles of several sizes reach other areas of faces, otherwise None: momentum_per_area (2d + interior
+    walls, d), the momentum along each axis given to each face, outwards along its normal, with that of each
+    particle divided by the area of the face that centres of its size can reach (`scene.accessible`), in the
+    container at the start; heat_per_area (2d + interior walls,), likewise of wall_energy. Those of interior
+    walls are 0, and those that an engine does not tally.
+
+    If particles are fixed, fixed_collisions: the collisions with these, which are among `collisions`, too.
+
     If they were asked for, otherwise None: stress_sum (d, d), the time integral of the stress tensor times
     the volume, of m v v and, at a collision, of r dp, with r the vector from the second particle to the
     first and dp the momentum that this gains; collisional_stress_sum (d, d), the latter alone; heat_sum
@@ -68,6 +76,7 @@ class Tally:
     virial_sum: float = field(metadata={"units": ACTION})
     pair_tests: int
     box_visits: int
+    fixed_collisions: int = field(default=0, metadata={"only": "fixed_collisions"})
     crossings: int = 0
     worst_contact: float = 0.0
     dissipated_energy: float = field(default=0.0, metadata={"units": ENERGY})
@@ -83,6 +92,12 @@ class Tally:
         default=None, metadata={"along": ("face", "axis"), "units": IMPULSE, "only": "wall_shear"}
     )
     entries: np.ndarray | None = field(default=None, metadata={"along": ("face",), "only": "entries"})
+    momentum_per_area: np.ndarray | None = field(
+        default=None, metadata={"along": ("face", "axis"), "units": PRESSED, "only": "per_area"}
+    )
+    heat_per_area: np.ndarray | None = field(
+        default=None, metadata={"along": ("face",), "units": HEATED, "only": "per_area"}
+    )
     stress_sum: np.ndarray | None = field(
         default=None, metadata={"along": ("axis", "direction"), "units": ACTION, "only": "stress"}
     )

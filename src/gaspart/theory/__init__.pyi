@@ -39,6 +39,11 @@ from gaspart.theory.equations import scaled_particle as scaled_particle
 from gaspart.theory.equations import van_der_waals as van_der_waals
 from gaspart.theory.film import white_bear_pressure as white_bear_pressure
 from gaspart.theory.film import white_bear_slit as white_bear_slit
+from gaspart.theory.finite_size import LARGEST_REMAINDER as LARGEST_REMAINDER
+from gaspart.theory.finite_size import finite_contact_value as finite_contact_value
+from gaspart.theory.finite_size import finite_size_remainder as finite_size_remainder
+from gaspart.theory.finite_size import insertion_potential as insertion_potential
+from gaspart.theory.finite_size import pair_contact_value as pair_contact_value
 from gaspart.theory.free_flights import collision_rate_at_speed as collision_rate_at_speed
 from gaspart.theory.free_flights import free_time_pdf as free_time_pdf
 from gaspart.theory.freezing import COEXISTENCE_DENSITY as COEXISTENCE_DENSITY
@@ -141,6 +146,7 @@ from gaspart.theory.structure import verlet_weis_rdf as verlet_weis_rdf
 from gaspart.theory.structure import verlet_weis_structure_factor as verlet_weis_structure_factor
 from gaspart.theory.tables import literature as literature
 from gaspart.theory.tables import measured as measured
+from gaspart.theory.tables import small_systems as small_systems
 from gaspart.theory.vibrated import bed_height as bed_height
 from gaspart.theory.vibrated import bed_loss as bed_loss
 from gaspart.theory.vibrated import sawtooth_temperature as sawtooth_temperature

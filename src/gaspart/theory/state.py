@@ -35,19 +35,74 @@ _NODES = 32  # of an integral over ln(eta), whose integrand is a polynomial in e
 
 
 def virial_with_tail(packing_fraction: Numbers, dimension: int = 2) -> Values:
-    """Z from the virial series to B10 and `virial.linear_tail` (literature and a computed extrapolation).
+    """Compute Z by the virial series to B10 and an extrapolation of its tail.
 
-    2D: the reference, to eta = 0.70. 3D: only a check of the sphere reference at low density.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}, default 2
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Compressibility factor Z.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    `partial_sum` and `virial.linear_tail` (literature and a computed extrapolation). Discs: the reference, to
+    eta = 0.70. Spheres: only a check of the reference at low density.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.virial_with_tail(0.3).round(4))
+    2.0633
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     return partial_sum(eta, HIGHEST_ORDER, dimension) + linear_tail(eta, dimension)
 
 
 def compressibility_factor(packing_fraction: Numbers, dimension: int) -> Values:
-    """Z = P / (rho k_B T) of the infinite fluid, best reference at hand (same shape as `packing_fraction`).
+    """Compute the compressibility factor of the infinite fluid, by the reference equation.
 
-    2D: `virial_with_tail`, 0 <= eta <= 0.70. 3D: `kolafa_labik_malijevsky`, 0 <= eta <= 0.539.
-    Raises ValueError outside. See `compressibility_uncertainty`.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Z = P / (rho k_B T).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    See Also
+    --------
+    compressibility_uncertainty : Standard uncertainty of this value.
+    finite_contact_value : Pairs in contact of a finite number of particles.
+
+    Notes
+    -----
+    Discs: `virial_with_tail`. Spheres: `kolafa_labik_malijevsky`; they are metastable from 0.4915 on.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.compressibility_factor([0.0, 0.3], dimension=2).round(4)
+    array([1.    , 2.0633])
     """
     if checked_dimension(dimension) == 2:
         return virial_with_tail(packing_fraction, 2)
@@ -55,14 +110,39 @@ def compressibility_factor(packing_fraction: Numbers, dimension: int) -> Values:
 
 
 def compressibility_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
-    """Standard uncertainty of `compressibility_factor` (computed estimate; same shape).
+    """Estimate the standard uncertainty of `compressibility_factor`.
 
-    2D, in quadrature: the coefficients' uncertainties; the tail's slope; the difference to Liu's independent
-    equation, but no more than the complete tail, because at low density the series is the better of the two;
-    and what both are found to lack near freezing, 0.4 % at eta = 0.65 and 10 % at 0.70. 3D: the sharper of
-    two bounds: the difference to another equation (4.3e-6 of Z up to eta = 0.445, 1e-5 up to 0.524), or the
-    difference to the virial series to B10 plus its tail and the coefficients' uncertainties (below 1e-6 for
-    eta < 0.1).
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Standard uncertainty of Z (computed estimate).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Discs, in quadrature: the uncertainties of the coefficients; the slope of the tail; the difference to
+    Liu's independent equation, but no more than the complete tail, because at low density the series is the
+    better of the two; and what both are found to lack near freezing, 0.4 % at eta = 0.65 and 10 % at 0.70.
+    Spheres, the sharper of two bounds: the difference to another equation (4.3e-6 of Z up to eta = 0.445,
+    1e-5 up to 0.524), or the difference to the virial series to B10 plus its tail and the uncertainties of
+    the coefficients (below 1e-6 for eta < 0.1).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> bool(theory.compressibility_uncertainty(0.3, dimension=3) < 2e-5)
+    True
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     coefficients = partial_sum_uncertainty(eta, HIGHEST_ORDER, dimension)
@@ -79,9 +159,35 @@ def compressibility_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
 
 
 def contact_value(packing_fraction: Numbers, dimension: int) -> Values:
-    """Pair distribution at contact, g(sigma) = (Z - 1) / (2^(d-1) eta), the virial theorem (exact).
+    """Compute the pair distribution at contact of the infinite fluid.
 
-    Z is `compressibility_factor`; at eta = 0 the value is its limit 1. Enskog theory calls it chi.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Contact value g(sigma); Enskog theory calls it chi.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    g(sigma) = (Z - 1) / (2^(d-1) eta) by the virial theorem (exact), with Z of `compressibility_factor`. At
+    eta = 0 the value is its limit 1.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.contact_value(0.3, dimension=3).round(4))
+    2.4867
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     excess = compressibility_factor(eta, dimension) - 1.0
@@ -100,13 +206,69 @@ def _slope_and_curvature(eta: np.ndarray, dimension: int) -> tuple[np.ndarray, n
 
 
 def reduced_compressibility(packing_fraction: Numbers, dimension: int) -> Values:
-    """k_B T d rho / dP = 1 / (d(eta Z) / d eta) of the infinite fluid, the structure factor S(0) (exact)."""
+    """Compute k_B T d rho / dP of the infinite fluid, its structure factor S(0).
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Reduced isothermal compressibility.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    1 / (d(eta Z) / d eta) (exact), with Z of `compressibility_factor`.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.reduced_compressibility(0.3, dimension=3).round(4))
+    0.0972
+    """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     return 1.0 / _slope_and_curvature(eta, dimension)[0]
 
 
 def speed_of_sound(packing_fraction: Numbers, dimension: int) -> Values:
-    """sqrt(d(eta Z)/d eta + 2 Z^2 / d), in sqrt(k_B T / m): adiabatic, d/2 the heat capacity (exact)."""
+    """Compute the adiabatic speed of sound of the infinite fluid.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Speed of sound in units of sqrt(k_B T / m).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    sqrt(d(eta Z)/d eta + 2 Z^2 / d), with the heat capacity d/2 of a particle (exact).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.speed_of_sound(0.3, dimension=3).round(4))
+    4.5679
+    """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     slope, _ = _slope_and_curvature(eta, dimension)
     return np.sqrt(slope + 2.0 / dimension * compressibility_factor(eta, dimension) ** 2)

@@ -36,6 +36,48 @@ def measured(quantity: str, dimension: int) -> np.recarray:
     return _of("measured", quantity, dimension)
 
 
+def small_systems(quantity: str, dimension: int) -> np.recarray:
+    """Return what this program has measured of few particles in a periodic square or cube.
+
+    Parameters
+    ----------
+    quantity : {"contact_value", "Z", "collision_rate", "diffusion"}
+        Quantity of equal particles at fixed energy and zero total momentum.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    numpy.recarray
+        A row for each system, with the fields of `literature`.
+
+    Raises
+    ------
+    SceneError
+        If the table does not have the quantity.
+
+    See Also
+    --------
+    finite_contact_value : Contact value between the rows of the table.
+
+    Notes
+    -----
+    Diameter = mass = k_B T = 1, with k_B T = 2 E / (d (N - 1)). "contact_value": density of pairs at contact
+    divided by N (N - 1) / V^2. "Z" and "collision_rate" follow from it exactly (`finite_contact_value`): Z is
+    the canonical one, which `gaspart.analysis.compressibility_factor` measures, the rate is 2 N_coll / (N t).
+    "diffusion": slope of the mean-squared displacement about the centre of mass divided by 2 d. Errors are
+    standard deviations by independent runs. Recipe and seeds are in `data/README.md`.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> rows = theory.small_systems("contact_value", 3)
+    >>> int(rows.count.max()) >= 64
+    True
+    """
+    return _of("small_systems", quantity, dimension)
+
+
 def _of(table: str, quantity: str, dimension: int) -> np.recarray:
     """The rows of one quantity."""
     rows = _read(table)

@@ -25,6 +25,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from gaspart.errors import SceneError
 from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 from gaspart.theory.geometry import number_density
 from gaspart.theory.state import compressibility_factor, compressibility_uncertainty
@@ -45,6 +46,18 @@ _SHAPES: dict[int, tuple[tuple[float, ...], ...]] = {
 integrals of three to five centres (`clusters.cluster_integrals`, 6 to 12 million samples of each, with that
 of the bulk, which is known, as a control variate) and the virial coefficients; good to one or two of the
 last digit, the last of each row to 0.1, 0.6 and 4 in 3D."""
+_OPPOSITE = np.array(
+    [[0.1, 0.2, 0.3, 0.4, 0.49], [-6.7, -5.05, -3.15, -2.6, -2.2], [3.0, 1.9, 1.75, 1.35, 1.0]]
+)
+"""What opposite walls add to the pressure on each other at the distance L, relative to it: packing fractions,
+a and b of exp(a - b (L - 3)). The envelope of the differences between the module's equations and
+`film.white_bear_slit` of spheres at L from 2 to 5 and eta from 0.1 to 0.4, continued to 0.49."""
+_FREEZING = {2: 0.70, 3: 0.49}
+"""Packing fractions that make discs and spheres comparable in `_opposite`."""
+SHORTEST = 2.0
+"""Shortest distance of walls, in diameters, for which `wall_pressure` states anything."""
+LARGEST_UNCERTAINTY = 0.1
+"""Relative uncertainty above which `wall_pressure` states nothing."""
 _STEP = 1e-4  # of the central differences, in packing fraction
 _STRETCH = 1e-3  # and in length, relative to it
 
@@ -90,28 +103,45 @@ def wall_pressure(
     The force on a wall over the area that centres can touch, of the canonical ensemble: the module's
     equations, and the canonical correction of first order in 1/N, surfaces included (`_canonical`). The
     uncertainty is that of the equation of state, and of surfaces, edges and corners, estimated as that of
-    `surface_tension`. Neglected: 1/N^2, and what opposite walls have to do with each other (exponentially
-    small in their distance, and exact to fifth order in the density from four diameters on).
+    `surface_tension`; what opposite walls do to each other, which is exponentially small in their distance
+    (`_opposite`; from four diameters on it begins at the sixth order in the density); and the square of the
+    relative correction in 1/N for the next order.
 
     length: the side of the container along each of its walled `axes`, in diameters; density: particles per
-    volume that centres can touch. Returns two numbers in k_B T / sigma^d. Raises ValueError for a container
-    no larger than a particle, a number of axes it does not have, or a fluid that would be denser than eta =
-    0.49.
+    volume that centres can touch. Returns two numbers in k_B T / sigma^d. Raises ValueError for walls at less
+    than two diameters, a number of axes that the container does not have, a fluid that would be denser than
+    eta = 0.49, and where the uncertainty would be above a tenth of the pressure.
     """
-    if not length > 1.0:
-        raise ValueError(f"length: {length} (must be above 1, the diameter)")
+    if not length >= SHORTEST:
+        rule = f"must be at least {SHORTEST:g} diameters: closer walls are no walls of one fluid"
+        raise SceneError("length", length, rule)
     if not 1 <= axes <= checked_dimension(dimension):
         raise ValueError(f"axes: {axes} (from 1 to {dimension} have walls)")
     walled = int(axes)
     sides = (length - 1.0,) * walled
     none = (0.0,) * walled
-    eta, value = _in_container(sides, density, count, dimension, none)
+    eta, value, shift = _in_container(sides, density, count, dimension, none)
     errors = [number_density(eta, dimension) * float(compressibility_uncertainty(eta, dimension))]
+    errors += [math.sqrt(walled) * _opposite(eta, dimension, length) * value, shift**2 / value]
     for kind in range(walled):
         further = [0.0] * walled
         further[kind] = _unknown(dimension, kind)
         errors.append(_in_container(sides, density, count, dimension, further)[1] - value)
-    return value, math.hypot(*errors)
+    error = math.hypot(*errors)
+    if not error <= LARGEST_UNCERTAINTY * value:
+        raise SceneError(
+            "length", length, f"the pressure would be uncertain by {100.0 * error / value:.2g} %"
+        )
+    return value, error
+
+
+def _opposite(eta: float, dimension: int, length: float) -> float:
+    """Return the relative change of the pressure on a wall by the opposite one; discs as spheres as dense,
+    relative to freezing."""
+    fractions, amplitudes, decays = _OPPOSITE
+    dense = eta * _FREEZING[3] / _FREEZING[dimension]
+    amplitude, decay = (float(np.interp(dense, fractions, values)) for values in (amplitudes, decays))
+    return math.exp(amplitude - decay * (length - 3.0))
 
 
 class _Container:
@@ -156,8 +186,8 @@ class _Container:
 
 def _in_container(
     sides: Sequence[float], density: float, count: int, dimension: int, further: Sequence[float]
-) -> tuple[float, float]:
-    """Packing fraction of the bulk, and pressure on the walls across the first axis."""
+) -> tuple[float, float, float]:
+    """Return the bulk's packing fraction, the pressure across the first axis, and its part of order 1/N."""
     here = _Container(sides, dimension, further)
     eta = here.bulk(density)
     bulk = float(number_density(eta, dimension) * compressibility_factor(eta, dimension))
@@ -169,7 +199,8 @@ def _in_container(
     surplus = (wide * stretched(wide).surplus(eta) - narrow * stretched(narrow).surplus(eta)) / (
         2.0 * _STRETCH
     )
-    return eta, bulk - surplus + _canonical(stretched, density, count)
+    shift = _canonical(stretched, density, count)
+    return eta, bulk - surplus + shift, shift
 
 
 def _canonical(stretched: Callable[[float], _Container], density: float, count: int) -> float:

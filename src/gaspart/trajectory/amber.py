@@ -11,7 +11,7 @@ import struct
 import zlib
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import fields
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from gaspart.engines import ENGINES, Engine
 from gaspart.state.optional_tallies import OptionalTally, tallied_fields
 from gaspart.state.tally import Tally
 from gaspart.trajectory.correlator import meaning_of
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
 
 NOTE = (
     "Reduced units: lengths and times are in the scene's own units, masses relative to the reference "
@@ -35,6 +38,7 @@ WORD = 4
 """Bytes of a checksum, and of all that a netCDF-3 header counts."""
 _HEAD = 1024  # bytes from the start of a file within which the attributes of `BOOKKEEPING` lie
 _VECTORS = ("atom", "spatial")
+_ORIGIN = "cell_origin"
 _EXTRA: dict[str, tuple[str, tuple[str, ...], dict[str, str]]] = {
     "spins": (
         ">f4",
@@ -66,6 +70,24 @@ def counters(engine: Engine, tallies: Iterable[OptionalTally] = ()) -> tuple[str
     be zero. tallies: the optional ones that the run has."""
     absent = {name for kind in ENGINES.values() for name in kind.counters} - set(engine.counters)
     return tuple(name for name in tallied_fields(tallies) if name not in {"time", *absent})
+
+
+def cell(scene: Scene, lengths: np.ndarray, piston: np.ndarray | None) -> dict[str, np.ndarray]:
+    """The variables of the cell of a frame: what the container has for particles now, up to a piston.
+
+    In two dimensions the cell is as high as its longest side. Readers take it for periodic along z as well,
+    and some refuse to look farther than half of the smallest side.
+    """
+    sides, origin = np.full(3, float(np.max(lengths))), np.zeros(3)
+    sides[: len(lengths)] = lengths
+    found = {"cell_lengths": sides, "cell_angles": np.full(3, 90.0)}
+    if piston is None:
+        return found
+    for number, _ in scene.pistons:
+        axis, high = divmod(number, 2)
+        sides[axis] = piston[0] if high else sides[axis] - piston[0]
+        origin[axis] = 0.0 if high else piston[0]
+    return found | {_ORIGIN: origin}
 
 
 def face_names(dimension: int, walls: int = 0) -> list[str]:
@@ -108,6 +130,7 @@ class Layout:
             "time": (">f8", (), {"units": "picosecond"}),
             "cell_lengths": (">f8", ("cell_spatial",), {"units": "angstrom"}),
             "cell_angles": (">f8", ("cell_angular",), {"units": "degree"}),
+            **({_ORIGIN: (">f8", ("cell_spatial",), {"units": "angstrom"})} if "piston" in extra else {}),
             "kinetic_energy": (">f8", (), {"long_name": "kinetic energy of all particles"}),
             **{name: (">f8", _ALONG[name], faces if "face" in _ALONG[name] else {}) for name in counters},
         }
@@ -138,23 +161,22 @@ class Layout:
     def header(
         self,
         attributes: dict,
-        radii: np.ndarray,
-        types: np.ndarray,
+        particles: Mapping[str, np.ndarray],
         initial: Mapping[str, np.ndarray] | None = None,
     ) -> bytes:
-        """A file of no frames. Its first attributes are those of `BOOKKEEPING`. initial: what the particles
-        were given at time 0, in double precision."""
+        """A file of no frames. Its first attributes are those of `BOOKKEEPING`. particles: the radius, mass
+        and type of each; initial: what the particles were given at time 0, in double precision."""
         bookkeeping = dict(
             zip(BOOKKEEPING, (np.int32(0), np.int32(0), np.float64(self.frame.itemsize)), strict=True)
         )
-        header = bytearray(self._header({**bookkeeping, **attributes}, radii, types, initial or {}))
+        header = bytearray(self._header({**bookkeeping, **attributes}, particles, initial or {}))
         for name, value in (("header_bytes", len), ("header_crc32", zlib.crc32)):
             at = _value_at(header, name)
             header[at : at + WORD] = struct.pack(">I", value(header))
         return bytes(header)
 
     def _header(
-        self, attributes: dict, radii: np.ndarray, types: np.ndarray, initial: Mapping[str, np.ndarray]
+        self, attributes: dict, particles: Mapping[str, np.ndarray], initial: Mapping[str, np.ndarray]
     ) -> bytes:
         import netCDF4
 
@@ -167,8 +189,9 @@ class Layout:
             "spatial": ("S1", ("spatial",), list("xyz")),
             "cell_spatial": ("S1", ("cell_spatial",), list("abc")),
             "cell_angular": ("S1", ("cell_angular", "label"), [list("alpha"), list("beta "), list("gamma")]),
-            "radius": ("f8", ("atom",), radii),
-            "type": ("i4", ("atom",), types),
+            "radius": ("f8", ("atom",), particles["radius"]),
+            "mass": ("f8", ("atom",), particles["mass"]),
+            "type": ("i4", ("atom",), particles["type"]),
             **{name: ("f8", _initial_axes(name, values), values) for name, values in initial.items()},
         }
         if initial:

@@ -16,7 +16,6 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
-from gaspart.scene.faces import mean_velocity
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.optional_tallies import OptionalTally, StressTally
@@ -174,7 +173,7 @@ class Correlator(_Correlator):
         weights = masses[self._moving]
         self._weights = (weights / weights.sum())[:, None]
         self._conserved = np.array(scene.conserved_axes)
-        self._frame = np.array(mean_velocity(scene))
+        self._frame = np.array(scene.frame_velocity)
         self._scale = _scale(self._weights, self._conserved)
         self._positioned = displacements
         components = self._moving.sum() * scene.dimension

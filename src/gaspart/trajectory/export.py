@@ -1,124 +1,208 @@
-"""One frame of a trajectory as a state for other programs: GSD (HOOMD) and LAMMPS data.
+"""Frames of a trajectory in the formats of other programs: GSD (HOOMD), extended XYZ and LAMMPS data.
 
-Positions and velocities are those of the trajectory's frame, in single precision: particles that touched may
+Positions and velocities are those of the trajectory's frames, in single precision: particles that touched may
 overlap by 1e-7 of a diameter. Walls, faces and gravity are not part of these formats.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from gaspart.errors import SceneError, optional
 from gaspart.files import FileKind, begins_with, output_path, writing
+from gaspart.keys.values import count_of
 from gaspart.state.insertion import per_particle
 from gaspart.system import descriptor_path
 from gaspart.trajectory.opening import check_frames, opened, run_path
 from gaspart.trajectory.recipe import read_recipe
 
+ALL = "all"
+"""The word for all frames of a trajectory."""
+
+
+def _is_xyz(path: Path) -> bool:
+    """Return True if a file is an XYZ file written by gaspart."""
+    with path.open("rb") as file:
+        return b" Program=gaspart\n" in file.read(1000)
+
+
 EXPORT_FORMATS = {
     ".gsd": FileKind("a GSD file", begins_with(b"\xdf\x65" * 4)),
+    ".xyz": FileKind("an XYZ file written by gaspart", _is_xyz),
     ".data": FileKind("LAMMPS data written by gaspart", begins_with(b"gaspart: ")),
 }
+_SYMBOLS = (
+    "H",
+    "He",
+    "Li",
+    "Be",
+    "B",
+    "C",
+    "N",
+    "O",
+    "F",
+    "Ne",
+    "Na",
+    "Mg",
+    "Al",
+    "Si",
+    "P",
+    "S",
+    "Cl",
+    "Ar",
+)
+"""Names of species in an XYZ file: readers such as ASE accept chemical symbols only."""
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """One frame: positions and velocities (N, 3), diameters, masses and types (N,), lengths (3,), time."""
+    """One frame: positions and velocities (N, 3), numbers, diameters, masses and types (N,), lengths and
+    origin (3,) of the container, periodic (3,), time and number of the frame."""
 
     positions: np.ndarray
     velocities: np.ndarray
+    numbers: np.ndarray
     diameters: np.ndarray
     masses: np.ndarray
     types: np.ndarray
     lengths: np.ndarray
+    origin: np.ndarray
+    periodic: tuple[bool, ...]
     time: float
+    frame: int
     dimension: int
 
 
-def export(trajectory: str | Path, path: str | Path, frame: int = -1, overwrite: bool = False) -> Path:
-    """Write a frame of a trajectory as .gsd or LAMMPS .data; returns the path.
+def export(trajectory: str | Path, path: str | Path, frame: int | str = -1, overwrite: bool = False) -> Path:
+    """Write a frame of a trajectory as .gsd, .xyz or LAMMPS .data; returns the path.
 
-    frame: counted from 0, or from the end if negative. A file of the same kind at `path` is replaced only
-    with `overwrite`, any other never. Raises SceneError for another suffix, a missing frame, and a
-    file that cannot be read or written.
+    frame: counted from 0, or from the end if negative; "all" writes all into .gsd or .xyz, where each has its
+    own number of particles and container. A file of the same kind at `path` is replaced only with
+    `overwrite`, any other never. Raises SceneError for another suffix, a missing frame, and a file that
+    cannot be read or written.
     """
     path = output_path(path)
     if path.suffix not in EXPORT_FORMATS:
-        raise SceneError("output", str(path), f"must end in {' or '.join(EXPORT_FORMATS)}")
-    snapshot = _snapshot(run_path(trajectory), frame)
+        raise SceneError("output", str(path), f"must end in {', '.join(EXPORT_FORMATS)}")
+    if frame == ALL and path.suffix == ".data":
+        raise SceneError("frame", frame, "LAMMPS data has one frame: give its number, or write .xyz or .gsd")
+    snapshots = _snapshots(run_path(trajectory), frame)
+    write = {".gsd": _write_gsd, ".xyz": _write_xyz, ".data": _write_data}[path.suffix]
     with writing(path, EXPORT_FORMATS[path.suffix], overwrite) as scratch:
-        (_write_gsd if path.suffix == ".gsd" else _write_data)(scratch, snapshot)
+        write(scratch, snapshots)
     return path
 
 
-def _snapshot(path: Path, frame: int) -> Snapshot:
+def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
+    """One frame, or all, read one after the other. What cannot be exported is refused at once."""
     recipe = read_recipe(path)
     recipe.require_all(path)
-    scene = recipe.scene
     with opened(path) as file:
         there = len(file.dimensions["frame"])
-        if not -there <= frame < there:
-            raise SceneError("frame", frame, f"the trajectory has {there}")
-        frame %= there  # netCDF counts -1 from the allocated frames of an unfinished file
-        check_frames(path, range(frame, frame + 1))
-        places = np.asarray(file["coordinates"][frame], dtype=float)
-        inside = np.isfinite(places).all(axis=1)  # of particles that come and go
-        masses = np.resize(per_particle(scene, "mass"), scene.capacity)[: len(places)]
-        return Snapshot(
-            positions=places[inside],
-            velocities=np.asarray(file["velocities"][frame], dtype=float)[inside],
-            diameters=2.0 * np.asarray(file["radius"][:])[inside],
-            masses=masses[inside].astype(float),
-            types=np.asarray(file["type"][:])[inside],
-            lengths=np.asarray(file["cell_lengths"][frame], dtype=float),
-            time=float(file["time"][frame]),
-            dimension=scene.dimension,
-        )
+    if frame == ALL:
+        numbers = range(there)
+    elif not -there <= count_of("frame", frame, least=-there) < there:
+        raise SceneError("frame", frame, f"the trajectory has {there}")
+    else:
+        frame = int(frame) % there  # netCDF counts -1 from the allocated frames of an unfinished file
+        numbers = range(frame, frame + 1)
+    check_frames(path, numbers)
+    return _read(path, numbers)
 
 
-def _write_gsd(path: Path, snapshot: Snapshot) -> None:
-    """A frame of HOOMD's schema: the origin in the middle of the box, discs in a box without thickness."""
+def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
+    scene = read_recipe(path).scene
+    with opened(path) as file:
+        diameters, types = 2.0 * np.asarray(file["radius"][:]), np.asarray(file["type"][:])
+        masses = np.resize(per_particle(scene, "mass"), scene.capacity)[: len(types)].astype(float)
+        for n in numbers:
+            places = np.asarray(file["coordinates"][n], dtype=float)
+            inside = np.isfinite(places).all(axis=1)  # of particles that come and go
+            moves = "cell_origin" in file.variables
+            yield Snapshot(
+                positions=places[inside],
+                velocities=np.asarray(file["velocities"][n], dtype=float)[inside],
+                numbers=np.flatnonzero(inside),
+                diameters=diameters[inside],
+                masses=masses[inside],
+                types=types[inside],
+                lengths=np.asarray(file["cell_lengths"][n], dtype=float),
+                origin=np.asarray(file["cell_origin"][n], dtype=float) if moves else np.zeros(3),
+                periodic=(*scene.container.periodic, True)[:3],
+                time=float(file["time"][n]),
+                frame=n,
+                dimension=scene.dimension,
+            )
+
+
+def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
+    """Frames of HOOMD's schema; `log/time` has the time, and the step is the number of the frame."""
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
-    flat = snapshot.dimension == 2
-    frame = hoomd.Frame()
+    with path.open("rb") as scratch, hoomd.open(descriptor_path(scratch), "w") as file:
+        for snapshot in snapshots:
+            file.append(_gsd_frame(hoomd.Frame(), snapshot))
+
+
+def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
+    """A frame with the origin in the middle of the box, discs in a box without thickness."""
+    sides = np.where([False, False, snapshot.dimension == 2], 0.0, snapshot.lengths)
     frame.configuration.dimensions = snapshot.dimension
-    sides = np.where([False, False, flat], 0.0, snapshot.lengths)
+    frame.configuration.step = snapshot.frame
     frame.configuration.box = [*sides, 0.0, 0.0, 0.0]
     frame.particles.N = len(snapshot.positions)
-    frame.particles.types = [f"species_{n}" for n in range(int(snapshot.types.max()) + 1)]
+    frame.particles.types = [f"species_{n}" for n in range(int(snapshot.types.max(initial=0)) + 1)]
     frame.particles.typeid = snapshot.types
     frame.particles.type_shapes = _shapes(snapshot)
-    frame.particles.position = snapshot.positions - 0.5 * sides
+    frame.particles.position = snapshot.positions - snapshot.origin - 0.5 * sides
     frame.particles.velocity = snapshot.velocities
     frame.particles.diameter = snapshot.diameters
     frame.particles.mass = snapshot.masses
-    with path.open("rb") as scratch, hoomd.open(descriptor_path(scratch), "w") as file:
-        file.append(frame)
+    frame.log = {"time": np.array([snapshot.time])}
+    return frame
 
 
 def _shapes(snapshot: Snapshot) -> list[dict]:
     """The sphere of each type, {} if its particles differ: a file without any size means a diameter of 1."""
     shapes: list[dict] = []
-    for n in range(int(snapshot.types.max()) + 1):
+    for n in range(int(snapshot.types.max(initial=0)) + 1):
         sizes = np.unique(snapshot.diameters[snapshot.types == n]).tolist()
         shapes.append({"type": "Sphere", "diameter": sizes[0]} if len(sizes) == 1 else {})
     return shapes
 
 
-def _write_data(path: Path, snapshot: Snapshot) -> None:
+def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
+    """Extended XYZ, with the container's boundary, and the ids of particles."""
+    columns = "species:S:1:pos:R:3:velo:R:3:radius:R:1:masses:R:1:id:I:1"
+    with path.open("w", encoding="ascii") as file:
+        for one in snapshots:
+            cell = " ".join(repr(x) for x in np.diag(one.lengths).ravel().tolist())
+            origin = " ".join(repr(x) for x in one.origin.tolist())
+            pbc = " ".join("T" if along else "F" for along in one.periodic)
+            comment = f'Lattice="{cell}" Origin="{origin}" pbc="{pbc}" Properties={columns} Time={one.time!r}'
+            file.write(f"{len(one.positions)}\n{comment} Program=gaspart\n")
+            kinds = [_SYMBOLS[kind % len(_SYMBOLS)] for kind in one.types]
+            rows = np.column_stack([one.positions, one.velocities, 0.5 * one.diameters, one.masses])
+            for number, kind, row in zip(one.numbers, kinds, rows, strict=True):
+                file.write(f"{kind} " + " ".join(f"{x:.9g}" for x in row) + f" {number + 1}\n")
+
+
+def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
     """LAMMPS data of atom_style sphere: its density is that of a ball of the particle's mass and diameter."""
+    (snapshot,) = snapshots
     count = len(snapshot.positions)
     density = snapshot.masses / (math.pi / 6.0 * snapshot.diameters**3)
-    low = np.array([0.0, 0.0, -0.5 * snapshot.lengths[2] if snapshot.dimension == 2 else 0.0])
+    low = snapshot.origin - [0.0, 0.0, 0.5 * snapshot.lengths[2] if snapshot.dimension == 2 else 0.0]
     lines = [
         f"gaspart: {count} particles at time {snapshot.time!r}; atom_style sphere",
         "",
         f"{count} atoms",
-        f"{int(snapshot.types.max()) + 1} atom types",
+        f"{int(snapshot.types.max(initial=0)) + 1} atom types",
         "",
     ]
     for axis, start, side in zip("xyz", low, snapshot.lengths, strict=True):

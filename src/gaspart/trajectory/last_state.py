@@ -10,7 +10,6 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.scene.faces import GRADIENT
-from gaspart.scene.moving_walls import has_piston
 from gaspart.scene.open_faces import refuse_open
 from gaspart.state.given import state_from_arrays
 from gaspart.state.state import State
@@ -60,7 +59,7 @@ def _of_frame(recipe: Recipe, frame: xr.Dataset) -> State:
         frame[name].values.astype(float) if name in frame else None for name in ("spins", "vibrations")
     )
     piston, displaced = None, None
-    if has_piston(scene):
+    if scene.has_piston:
         piston = np.array([float(frame[f"piston_{name}"]) for name in ("position", "velocity")])
     if scene.shear_rate is not None:
         begun = recipe.initial.displaced if recipe.initial else None

@@ -14,7 +14,7 @@ from gaspart.scene.scene import Scene
 from gaspart.system import descriptor_path
 from gaspart.trajectory import amber
 from gaspart.trajectory.frames import CheckedFrames, damaged_frame, frame_count
-from gaspart.trajectory.partial import PARTIAL
+from gaspart.trajectory.partial import PARTIAL, replica_path
 
 if TYPE_CHECKING:
     import netCDF4
@@ -56,11 +56,17 @@ def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
                 raise ValueError(rule)
             yield file, header, frames
     except OSError as error:
-        raise SceneError("file", str(path), f"cannot be read: {error.strerror}") from None
+        rule = f"cannot be read: {error.strerror}"
+        if not path.exists() and (first := replica_path(path, 1)).exists():
+            rule = f"is a run of several replicas; name one of them, as {first.name}"
+        raise SceneError("file", str(path), rule) from None
     except ValueError as error:
         if isinstance(error, SceneError):
             raise
-        raise SceneError("file", str(path), str(error)) from None
+        rule = str(error)
+        if path.suffix in (".yaml", ".yml"):
+            rule = f"must be a trajectory; run a scene first: gaspart run {path.name} -o {path.stem}.nc"
+        raise SceneError("file", str(path), rule) from None
 
 
 def open_netcdf(path: Path) -> netCDF4.Dataset:

@@ -87,3 +87,8 @@ def _alone(partial: Path) -> Iterator[None]:
 def _open_or_create(path: str, flags: int) -> int:
     """The opener of a file that may not exist yet, and is no link."""
     return os.open(path, flags | os.O_CREAT | NO_LINK, 0o666)
+
+
+def replica_path(path: Path, number: int) -> Path:
+    """Return the file of a replica of the run at a path: `run-1.nc`, `run-2.nc` ... of `run.nc`."""
+    return path.with_name(f"{path.stem}-{number}{path.suffix}")

@@ -9,14 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.open_faces import is_open
-from gaspart.scene.scene import Scene
 from gaspart.state.tally import ENERGY, Tally
 from gaspart.trajectory import amber
 from gaspart.trajectory.correlator import stress_units
 from gaspart.trajectory.opening import open_checked, run_path
 from gaspart.trajectory.pairs import pair_names
-from gaspart.trajectory.recipe import stored_recipe
+from gaspart.trajectory.recipe import Recipe, stored_recipe
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,8 +28,11 @@ _REDUCED = {
 _UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum", *amber.INITIAL]
 """Variables of a file that `open_trajectory` does not read: names of axes, what detects damage, and what
 belongs to its recipe."""
+GIVEN_START = "given_start"
+"""Attribute of an open trajectory that starts from a given state."""
 _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "units" in field.metadata} | {
     "kinetic_energy": ENERGY,
+    "mass": "mass",
     "vibrations": ENERGY,
     "velocity_product_sum": "length^2/time^2",
     "squared_displacement_sum": "length^2",
@@ -43,14 +44,15 @@ _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "uni
 def open_trajectory(path: str | Path) -> xr.Dataset:
     """A trajectory, or the finished part of a `.partial` one, as an xarray.Dataset, read as it is used.
 
-    Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius and type (atom) are coordinates,
-    and plots over frames have the time as their axis. A run with correlations has the dimension lag.
+    Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius, mass and type (atom) are
+    coordinates, and plots over frames have the time as their axis. A run with correlations has the dimension
+    lag.
     Of discs that spin, `spins` is (frame, atom); of spheres (frame, atom, spatial).
     Lengths and times are in the scene's units, counters cumulative since time 0. Attributes state the scene
     (YAML), engine and seed (JSON), and what follows from the scene: dimension and, unless faces are open,
-    count, packing_fraction, number_density. Where they are, atoms are numbers of particles, and coordinates
-    and velocities of a number that no particle has in a frame are NaN. Close it, or use it in a `with`
-    statement.
+    count, packing_fraction, number_density; given_start: 1 if the run starts from a given state. Where they
+    are, atoms are numbers of particles, and coordinates and velocities of a number that no particle has in a
+    frame are NaN. Close it, or use it in a `with` statement.
 
     Raises SceneError for a file that is unreadable, truncated, damaged in its header, or not written by
     gaspart; and, when values of a frame are read for the first time, if that frame is damaged: its checksum
@@ -72,10 +74,11 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
         raise
     scene = recipe.scene
     data = opened = xr.open_dataset(store, decode_times=False, drop_variables=_UNUSED)
-    attributes = {**data.attrs, **_following(scene)}
+    attributes = {**data.attrs, **_following(recipe)}
     if "spins" in data and scene.dimension == 2:
         data["spins"] = data["spins"].isel(spatial=2)
-    data = data.isel(spatial=slice(scene.dimension)).set_coords(["time", "radius", "type"])
+    named = [name for name in ("time", "radius", "mass", "type") if name in data]  # no masses before 0.3
+    data = data.isel(spatial=slice(scene.dimension)).set_coords(named)
     faces = amber.face_names(scene.dimension, len(scene.walls))
     if "piston" in data:
         data = _with_piston(data)
@@ -102,10 +105,12 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     return data
 
 
-def _following(scene: Scene) -> dict[str, float]:
-    """Attributes that follow from a scene."""
-    names = ("dimension", *(() if is_open(scene) else ("count", "packing_fraction", "number_density")))
-    return {name: getattr(scene, name) for name in names}
+def _following(recipe: Recipe) -> dict[str, float]:
+    """Return the attributes that follow from a scene and its start."""
+    scene = recipe.scene
+    given = {GIVEN_START: 1} if recipe.initial is not None else {}
+    names = ("dimension", *(() if scene.is_open else ("count", "packing_fraction", "number_density")))
+    return {name: getattr(scene, name) for name in names} | given
 
 
 def _with_piston(data: xr.Dataset) -> xr.Dataset:

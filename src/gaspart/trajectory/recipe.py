@@ -14,8 +14,7 @@ from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.face_checks import check_piston_end
-from gaspart.scene.moving_walls import has_piston
-from gaspart.scene.open_faces import is_open, refuse_open
+from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.state.given import state_at_time_zero, state_from_arrays
@@ -177,7 +176,7 @@ class Recipe:
             "spins": scene.rough and not self.keep,
             "vibrations": scene.vibrates and not self.keep,
             "displacements": self.displacements,
-            "piston": has_piston(scene),
+            "piston": scene.has_piston,
             "pair_collisions": self.pairs,
         }
         extra = [name for name, present in names.items() if present]
@@ -240,24 +239,26 @@ class Recipe:
         scene, versions = self.scene, provenance.versions()
         groups = [len(scene.species)] * len(scene.particles) + list(range(len(scene.species)))
         counts = [1] * len(scene.particles) + [kind.count for kind in scene.species]
-        types, radii = (  # of particles that may come as well, which are all alike
-            np.resize(values, scene.capacity)[: self.stored_count]
-            for values in (np.repeat(groups, counts), per_particle(scene, "radius"))
-        )
+        each = {name: per_particle(scene, name) for name in ("radius", "mass")}
+        particles = {  # of particles that may come as well, which are all alike
+            name: np.resize(values, scene.capacity)[: self.stored_count]
+            for name, values in {**each, "type": np.repeat(groups, counts)}.items()
+        }
         attributes = {
             "Conventions": "AMBER",
             "ConventionVersion": "1.0",
             "program": "gaspart",
             "programVersion": versions["gaspart_version"],
             "title": f"{scene.count} hard {'discs' if scene.dimension == 2 else 'spheres'}"
-            + (" at the start" if is_open(scene) else ""),
+            + (" at the start" if scene.is_open else ""),
             "note": amber.NOTE,
+            "boundary": " ".join("periodic" if along else "wall" for along in scene.container.periodic),
             **self.attributes(),
             **versions,
             "kernels": source_digest(),
             **({"git_revision": revision} if revision else {}),
         }
-        return self.layout.header(attributes, radii, types, self._initial())
+        return self.layout.header(attributes, particles, self._initial())
 
 
 def _is_numbered(seed: int | tuple[int, ...], replica: int, replicas: int) -> bool:

@@ -224,13 +224,9 @@ class Recording:
             inner["vibrations"] = state.vibrations
         if self._recipe.displacements:
             inner["displacements"] = state.unwrapped[followed] - self._origin[followed]
-        # in 2D the cell is one diameter thick
-        lengths = np.full(3, 2.0 * self._recipe.scene.largest_radius)
-        lengths[: state.dimension] = state.lengths
         return {
             "time": state.time,
-            "cell_lengths": lengths,
-            "cell_angles": np.full(3, 90.0),
+            **amber.cell(self._recipe.scene, state.lengths, state.piston),
             "kinetic_energy": state.kinetic_energy,
             **{name: getattr(tally, name) for name in counted},
             "coordinates": by_number(state, state.positions, self._recipe.scene.capacity)[followed],

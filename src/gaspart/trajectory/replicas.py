@@ -19,12 +19,15 @@ from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import count_of
 from gaspart.trajectory.frames import frame_count
-from gaspart.trajectory.partial import PARTIAL, partial_path
+from gaspart.trajectory.partial import PARTIAL, partial_path, replica_path
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe, begun_as, read_recipe
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from gaspart.engines import Engine
+    from gaspart.scene.scene import Scene
 
 
 def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
@@ -32,17 +35,17 @@ def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
     and for replicas that would be one run, bit for bit: from one state, if nothing is drawn after that."""
     if count_of("replicas", replicas, least=1, most=MOST_REPLICAS) == 1:
         return [recipe]
-    if not differ(recipe):
+    if not differ(recipe.scene, recipe.engine, recipe.initial is not None):
         rule = "would be one run, bit for bit: they start from one state, and nothing is drawn after that"
         raise SceneError("replicas", replicas, rule)
     return [replace(recipe, seed=_seed(recipe, k), replica=(k, replicas)) for k in range(1, replicas + 1)]
 
 
-def differ(recipe: Recipe) -> bool:
-    """Whether runs of other seeds are other runs: random numbers are drawn, for the first state or later."""
-    scene, drawn = recipe.scene, recipe.initial is None
-    drawn = drawn and (scene.vibrates or any(kind.count for kind in scene.species))
-    return drawn or recipe.engine.draws(scene)
+def differ(scene: Scene, engine: Engine, given: bool = False) -> bool:
+    """Return True if runs of other seeds are other runs: random numbers are drawn, for the first state unless
+    it is given, or later."""
+    drawn = not given and (scene.vibrates or any(kind.count for kind in scene.species))
+    return drawn or engine.draws(scene)
 
 
 def _seed(recipe: Recipe, number: int) -> tuple[int, ...]:
@@ -66,7 +69,7 @@ def replica_paths(path: str | Path, replicas: int) -> list[Path]:
     path = Path(path)
     if replicas == 1:
         return [path]
-    return [path.with_name(f"{path.stem}-{k}{path.suffix}") for k in range(1, replicas + 1)]
+    return [replica_path(path, k) for k in range(1, replicas + 1)]
 
 
 def path_of_all(path: Path, recipe: Recipe) -> Path:

@@ -27,7 +27,7 @@ def scenes(draw, most=60):
     radii = st.floats(0.01, 0.1)
     species = [
         gp.Species(
-            draw(st.integers(1, most)), draw(radii), draw(st.sampled_from([1.0, 0.1])), temperature=1.0
+            draw(st.integers(1, most)), draw(radii), mass=draw(st.sampled_from([1.0, 0.1])), temperature=1.0
         )
         for _ in range(draw(st.integers(1, 2)))
     ]

@@ -14,8 +14,14 @@ STARTS = {
     "rest": [gp.Species(COUNT, RADIUS)],
     "cold": [gp.Species(COUNT, RADIUS, speed=0.05)],
     "hot": [gp.Species(COUNT, RADIUS, temperature=50.0)],
-    "light": [gp.Species(COUNT - 1, RADIUS, temperature=1.0), gp.Species(1, RADIUS, 1e-8, temperature=1.0)],
-    "heavy": [gp.Species(COUNT - 1, RADIUS, temperature=1.0), gp.Species(1, RADIUS, 1e4, temperature=1e3)],
+    "light": [
+        gp.Species(COUNT - 1, RADIUS, temperature=1.0),
+        gp.Species(1, RADIUS, mass=1e-8, temperature=1.0),
+    ],
+    "heavy": [
+        gp.Species(COUNT - 1, RADIUS, temperature=1.0),
+        gp.Species(1, RADIUS, mass=1e4, temperature=1e3),
+    ],
 }
 SCENES = {
     "thermostat": {"thermostat": gp.Thermostat(0.1, 0.05), "restitution": gp.Restitution(0.7)},

@@ -46,7 +46,7 @@ def test_contact_values_are_those_of_one_species_where_particles_are_alike():
 
 @pytest.mark.filterwarnings("ignore:gaspart")
 def test_a_mixture_meets_by_its_contact_values():
-    species = [gp.Species(250, 0.5, temperature=1.0), gp.Species(100, 0.8, 3.0, temperature=1.0)]
+    species = [gp.Species(250, 0.5, temperature=1.0), gp.Species(100, 0.8, mass=3.0, temperature=1.0)]
     scene = gp.Scene(gp.Container((14.0, 14.0, 14.0), "periodic"), species)
     sim = advanced(scene, 3000, settle=20, cells_per_side=1, model="enskog")
     state, tally, volume = sim.state, sim.tally, scene.container.volume

@@ -33,7 +33,7 @@ def exact_rate(state, volume):
 def pair_of_species(dimension):
     """Two species of different sizes and masses in a periodic container."""
     side = 60.0 if dimension == 3 else 400.0
-    species = [gp.Species(3000, 0.5, temperature=1.0), gp.Species(2000, 1.0, 4.0, temperature=1.0)]
+    species = [gp.Species(3000, 0.5, temperature=1.0), gp.Species(2000, 1.0, mass=4.0, temperature=1.0)]
     return gp.Scene(gp.Container((side,) * dimension, "periodic"), species)
 
 
@@ -110,7 +110,7 @@ def test_velocities_become_those_of_maxwell():
 
 
 def test_masses_come_to_one_temperature():
-    species = [gp.Species(2000, 0.5, temperature=2.0), gp.Species(2000, 0.5, 8.0, temperature=1.0)]
+    species = [gp.Species(2000, 0.5, temperature=2.0), gp.Species(2000, 0.5, mass=8.0, temperature=1.0)]
     scene = gp.Scene(gp.Container((100.0, 100.0, 100.0), "periodic"), species)
     sim = advanced(scene, 400)
     state, energies = sim.state, sim.state.kinetic_energies

@@ -86,7 +86,7 @@ def test_a_corner_reflects_both_components():
 
 def light_in_a_hundred(seed=1):
     """A hundred particles that hardly move and one of the mass 1e-12, so small that nothing collides."""
-    kinds = [gp.Species(100, 1e-6, temperature=1.0), gp.Species(1, 1e-6, 1e-12, temperature=1.0)]
+    kinds = [gp.Species(100, 1e-6, temperature=1.0), gp.Species(1, 1e-6, mass=1e-12, temperature=1.0)]
     return gp.Simulation(gp.Scene(gp.Container((10.0, 10.0, 10.0)), kinds), gp.DSMC(), seed)
 
 

@@ -37,7 +37,7 @@ def test_no_particle_leaves_and_no_energy_is_lost(scene, seed):
 def test_velocities_after_a_wall(components):
     """Outgoing normal speeds of mean sqrt(pi T/2m) and mean square 2T/m; tangential ones drawn or kept."""
     scene = between(4.0, 4.0, components=components)
-    scene = scene.with_species(gp.Species(1, 1e-3, 2.0))  # the kernels of the tests above know masses
+    scene = scene.with_species(gp.Species(1, 1e-3, mass=2.0))  # the kernels of the tests above know masses
     sim = gp.Simulation(scene, gp.EventDriven(), seed=2)
     sim.record_events = True
     sim.advance(max_events=30_000)
@@ -78,7 +78,7 @@ def test_a_gas_takes_the_temperature_of_its_walls():
     """In each direction, spins included; the energy of a canonical gas has a variance to compare with."""
     scene = gp.Scene(
         gp.Container((8.0, 8.0)),
-        [gp.Species(100, 0.05, 2.0, temperature=0.3)],
+        [gp.Species(100, 0.05, mass=2.0, temperature=0.3)],
         gravity=(0.0, -0.5),  # without effect on velocities
         restitution=gp.Restitution(1.0, 1.0),
         faces={name: gp.Thermal(2.0) for name in ("x_low", "x_high", "y_low", "y_high")},

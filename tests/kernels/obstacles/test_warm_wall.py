@@ -84,7 +84,7 @@ def test_velocities_after_a_wall(dimension):
 
 def test_a_gas_takes_the_temperature_of_a_wall():
     """Of two masses, by collisions and hits, from another temperature; the energy is counted."""
-    kinds = [gp.Species(40, 0.2, mass, temperature=0.3) for mass in (1.0, 3.0)]
+    kinds = [gp.Species(40, 0.2, mass=mass, temperature=0.3) for mass in (1.0, 3.0)]
     scene = replace(DISCS, species=kinds, faces={})
     simulation = gp.Simulation(scene, gp.EventDriven(), seed=3)
     simulation.advance(duration=200.0)

@@ -93,7 +93,7 @@ def test_integer_sums_hold_ten_thousand_million_of_the_largest_terms(sign):
 def scenes():
     """A gas of two masses between plain walls; a granular gas that a thermal wall heats."""
     box = gp.Container((10.0, 10.0))
-    species = [gp.Species(2, 0.5, temperature=1.0), gp.Species(2, 0.3, 0.1, temperature=1.0)]
+    species = [gp.Species(2, 0.5, temperature=1.0), gp.Species(2, 0.3, mass=0.1, temperature=1.0)]
     law = gp.Restitution(0.9, 0.5)
     yield gp.Scene(box, species)
     yield gp.Scene(box, species, restitution=law, faces={"x_low": gp.Thermal(1.0)})

@@ -39,7 +39,7 @@ SEARCHES = (
 
 def rough_gas(boundary="wall", faces=None, count=120):
     faces = FACES | {"x_high": gp.Thermal(1.0, "normal")} if faces is None else faces
-    kinds = [gp.Species(count, 0.2, temperature=1.0), gp.Species(10, 0.4, 3.0, temperature=1.0)]
+    kinds = [gp.Species(count, 0.2, temperature=1.0), gp.Species(10, 0.4, mass=3.0, temperature=1.0)]
     return gp.Scene(gp.Container((12.0, 12.0), boundary), kinds, restitution=ROUGH, faces=faces)
 
 

@@ -14,9 +14,10 @@ from gaspart.analysis.expected.run import (
     SOURCES,
     Expected,
     bias_of,
+    contact_of_number,
     equation_of,
     partners,
-    shift_of,
+    scale_of_number,
 )
 from gaspart.analysis.run import Run
 from gaspart.engines.dsmc import rates
@@ -42,13 +43,15 @@ def compressibility_factor(run: Run) -> Expected | None:
         return 1.0 + beyond, beyond * bias_of(run, "rates"), f"Enskog equation, {OF_NUMBER}"
     if gas is not None:
         eta, d = gas.packing_fraction, gas.dimension
-        value = float(theory.compressibility_factor(eta, d)) + shift_of(eta, d, run.count)
-        source = "reference equation of state of the fluid, corrected for the number of particles"
-        return value, float(theory.compressibility_uncertainty(eta, d)), source
+        if (contact := contact_of_number(run, eta, d)) is None:
+            return None
+        scale = 2.0 ** (d - 1) * eta * partners(run)
+        return 1.0 + scale * contact[0], scale * contact[1], f"equation of state of the fluid, {OF_NUMBER}"
     if mixture is None or run.scene.gas is not None:
         return None
-    value = theory.mixture_compressibility_factor(*mixture.sizes)
-    value += shift_of(mixture.packing_fraction, mixture.dimension, run.count)
+    if (scale := scale_of_number(run, mixture)) is None:
+        return None
+    value = 1.0 + (theory.mixture_compressibility_factor(*mixture.sizes) - 1.0) * scale * partners(run)
     return value, math.nan, f"{_SANTOS}, corrected for the number of particles"
 
 
@@ -78,33 +81,32 @@ def collision_rate(run: Run) -> Expected | None:
     if gas is None:
         return None
     eta, d = gas.packing_fraction, gas.dimension
-    value = bulk.collision_rate(gas, equation) * mean_speed_factor(d * (run.count - 1))
+    value = bulk.collision_rate(gas, equation) * mean_speed_factor(d * (run.count - 1)) * partners(run)
     if equation != EXACT:
-        value *= partners(run)
         return value, value * bias_of(run, "rates"), f"{SOURCES[equation]}, {OF_NUMBER}"
-    beyond = bulk.excess(gas, equation)
-    value *= 1.0 + shift_of(eta, d, run.count) / beyond
-    unsure = float(theory.compressibility_uncertainty(eta, d)) / beyond
-    return value, value * unsure, "Enskog's rate, exact in equilibrium"
+    if (contact := contact_of_number(run, eta, d)) is None:
+        return None
+    value /= bulk.contact_value(gas, equation)
+    return value * contact[0], value * contact[1], "Enskog's rate, exact in equilibrium"
 
 
 def contact_values(run: Run) -> Expected | None:
     """g_ij of N particles, of N_i (N_j - delta_ij) pairs."""
     mixture = _mixture_of_species(run)
-    if mixture is None:
+    if mixture is None or (scale := scale_of_number(run, mixture)) is None:
         return None
-    found = theory.mixture_contact_values(*mixture.sizes) * _finite_contact(run, mixture)
+    found = theory.mixture_contact_values(*mixture.sizes) * scale
     return [found[pair] for pair in pairs_of(run.scene)], np.nan, f"contact values of {_SANTOS}"
 
 
 def pair_rates(run: Run) -> Expected | None:
     """Collisions of a particle of the first species of a pair, which has N_j - delta_ij partners."""
     mixture = None if run.is_subset else _mixture_of_species(run)
-    if mixture is None:
+    if mixture is None or (scale := scale_of_number(run, mixture)) is None:
         return None
     found = theory.mixture_collision_rates(*mixture.sizes, temperature=run.temperature, masses=mixture.masses)
     found = found * (1.0 - np.diag(1.0 / np.array(mixture.counts)))
-    found *= _finite_contact(run, mixture) * mean_speed_factor(run.freedom)
+    found *= scale * mean_speed_factor(run.freedom)
     return [found[pair] for pair in pairs_of(run.scene)], np.nan, f"contact values of {_SANTOS}"
 
 
@@ -114,13 +116,6 @@ def _mixture_of_species(run: Run) -> Mixture | None:
     if mixture is None or len(mixture.counts) != len(run.scene.species) or equation_of(run) != EXACT:
         return None
     return mixture
-
-
-def _finite_contact(run: Run, mixture: Mixture) -> float:
-    """The contact value of N particles over that of infinitely many, to first order, as of equal ones."""
-    eta, d = mixture.packing_fraction, mixture.dimension
-    beyond = float(theory.compressibility_factor(eta, d)) - 1.0
-    return (1.0 + shift_of(eta, d, run.count) / beyond) / partners(run)
 
 
 def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
@@ -146,6 +141,16 @@ def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
     return value * unit, error * unit, "fluid between hard walls"
 
 
+def wall_force(run: Run) -> Expected | None:
+    """The pressure times the area of each face."""
+    touched = np.subtract(*run.scene.reach(run.scene.largest_moving_radius)[::-1])
+    found = wall_pressure(run, touched)
+    if found is None:
+        return None
+    areas = np.array([np.delete(touched, axis).prod() for axis in run.scene.walled_axes]).repeat(2)
+    return found[0] * areas, found[1] * areas, found[2]
+
+
 def pressure_tensor(run: Run, temperature: float) -> Expected | None:
     """n k_B T [(1 - 1/N) + Z_N - 1] on the diagonal: N - 1 particles' worth of flight about the centre of
     mass."""
@@ -153,13 +158,15 @@ def pressure_tensor(run: Run, temperature: float) -> Expected | None:
     if gas is None:
         return None
     eta, d = gas.packing_fraction, gas.dimension
-    if equation == EXACT:
-        beyond = bulk.excess(gas, equation) + shift_of(eta, d, gas.count)
-    else:
-        beyond = partners(run) * bulk.excess(gas, equation)
-    pressure = gas.count / run.scene.container.volume * temperature * (partners(run) + beyond)
-    source = "equation of state" if equation == EXACT else SOURCES[equation]
-    return pressure * np.eye(d).ravel(), math.nan, f"{source}, {OF_NUMBER}"
+    ideal = gas.count / run.scene.container.volume * temperature * partners(run)
+    if equation != EXACT:
+        pressure = ideal * (1.0 + bulk.excess(gas, equation))
+        return pressure * np.eye(d).ravel(), math.nan, f"{SOURCES[equation]}, {OF_NUMBER}"
+    if (contact := contact_of_number(run, eta, d)) is None:
+        return None
+    scale = 2.0 ** (d - 1) * eta
+    pressure, error = ideal * (1.0 + scale * contact[0]), ideal * scale * contact[1]
+    return pressure * np.eye(d).ravel(), error * np.ones(d * d), f"equation of state, {OF_NUMBER}"
 
 
 def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expected | None:

@@ -13,13 +13,8 @@ from gaspart.analysis.bulk import BOLTZMANN
 from gaspart.analysis.expected.run import Expected, equation_of
 from gaspart.analysis.expected.walls import FLUID, FREE, Plates, dilute, heating_of, plates_of
 from gaspart.analysis.run import Run
-from gaspart.scene.driving import driven_axes
-from gaspart.scene.faces import sliding_faces
-from gaspart.scene.moving_walls import moving_wall
-from gaspart.scene.open_faces import is_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
-from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.scene.walls import Plate
 from gaspart.theory.heat import TEMPERATURE_JUMP
 
@@ -38,7 +33,7 @@ def velocity(run: Run, axis: int, places: np.ndarray) -> Expected | None:
         return _between(plates, run, axis, places)
     if plates := plates_of(run, driven=True):
         return _pushed(plates, run, axis, places)
-    if scene.faces or scene.thermostat or run.dissipates or driven_axes(scene) or scene.walls:
+    if scene.faces or scene.thermostat or run.dissipates or scene.driven_axes or scene.walls:
         return None
     if not run.moving.all():
         return None
@@ -59,7 +54,7 @@ def _drift(run: Run) -> np.ndarray:
 
 def _between(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expected | None:
     """Between plates of one temperature, or that do not slide."""
-    velocities = dict(sliding_faces(run.scene))
+    velocities = dict(run.scene.sliding_faces)
     ends = [velocities.get(2 * plates.axis + side) for side in (0, 1)]
     rest = (0.0,) * run.dimension
     low, high = (np.array(face.velocity if face else rest) for face in ends)
@@ -118,8 +113,8 @@ def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndar
         return _closed(run)
     masses, radii = run.masses[members], run.radii[members]
     area = opening(scene, axis, place, float(radii.max()))
-    moved = scene.thermostat or run.dissipates or run.has_gravity or moving_wall(scene)
-    plain = not (scene.faces or face_temperatures(scene) or moved)
+    moved = scene.thermostat or run.dissipates or run.has_gravity or scene.moving_wall
+    plain = not (scene.faces or scene.face_temperatures or moved)
     alike = np.ptp(masses) == 0.0 and np.ptp(radii) == 0.0 and run.moving.all()
     if area is None or not alike or not plain or _path(run) < area ** (1.0 / (run.dimension - 1)):
         return None
@@ -135,8 +130,10 @@ def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndar
 
 
 def _closed(run: Run) -> Expected | None:
-    """Nothing passes on average in a steady state, which a start in a region is not."""
-    if is_open(run.scene) or any(kind.region is not None for kind in run.scene.species):
+    """Return the flux 0 of a steady state; None for a start in a region, and beside a piston, which moves
+    what it compresses."""
+    scene = run.scene
+    if scene.is_open or scene.has_piston or any(kind.region is not None for kind in scene.species):
         return None
     return np.zeros(1), 0.0, "a steady state between walls"
 

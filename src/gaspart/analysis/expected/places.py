@@ -7,12 +7,9 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis import bulk
 from gaspart.analysis.bulk import BOLTZMANN, ENSKOG
-from gaspart.analysis.expected.run import Expected, equation_of, partners, shift_of
+from gaspart.analysis.expected.run import Expected, contact_of_number, equation_of, scale_of_number
 from gaspart.analysis.run import Run
-from gaspart.scene.moving_walls import moving_wall
-from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.trajectory.pairs import pairs_of
 
 
@@ -26,9 +23,9 @@ def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expecte
         return None
     near = (distance > gas.diameter) & (distance < gas.diameter + 1.5 * width)
     eta, d = gas.packing_fraction, gas.dimension
-    beyond = bulk.excess(gas, equation) + shift_of(eta, d, gas.count)
-    contact = beyond / (2.0 ** (d - 1) * eta) / partners(run)
-    return np.where(near, contact, np.nan), np.nan, "g at contact, from Z of this number"
+    if (contact := contact_of_number(run, eta, d)) is None:
+        return None
+    return np.where(near, contact[0], np.nan), np.nan, "g at contact, from Z of this number"
 
 
 def _of_points(run: Run, values: Any) -> Expected | None:
@@ -83,10 +80,13 @@ def chemical_potential(run: Run) -> Expected | None:
         found = _into_points(run, np.array(diameters), np.array(counts))
         return None if found is None else (found, 0.0, "insertion among independent places")
     if run.scene.alike:
-        value = theory.excess_chemical_potential(eta, d)
-        value += theory.insertion_finite_size_correction(eta, d, run.count)
-        error = float(theory.chemical_potential_uncertainty(eta, d))
-        return float(value), error, "Gibbs and Duhem, of this number"
+        side = min(run.scene.container.lengths) / diameters[0]
+        try:
+            return *theory.insertion_potential(eta, d, run.count, side), "Gibbs and Duhem, of this number"
+        except ValueError:
+            return None
+    if scale_of_number(run, mixture) is None:
+        return None
     sizes, which = np.unique(diameters, return_inverse=True)
     numbers = np.bincount(which, counts)
     value = theory.mixture_chemical_potentials(eta, d, sizes, numbers)
@@ -108,7 +108,7 @@ def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | N
 def temperature(run: Run) -> Expected | None:
     """The same everywhere in equilibrium."""
     scene = run.scene
-    if scene.faces or face_temperatures(scene) or run.dissipates or scene.thermostat or moving_wall(scene):
+    if scene.faces or scene.face_temperatures or run.dissipates or scene.thermostat or scene.moving_wall:
         return None
     return run.temperature, 0.0, "equilibrium"
 

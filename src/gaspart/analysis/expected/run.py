@@ -11,14 +11,20 @@ from __future__ import annotations
 import json
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from gaspart import theory
 from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine, engine_from_dict
+from gaspart.scene.gas import Mixture
 
 Expected: TypeAlias = tuple[Any, Any, str]
 """Values, their uncertainties, and the source."""
 OF_NUMBER = "of this number of particles"
+LEAST_OF_MIXTURE = 10
+"""Least number of particles of several sizes for which a theory is stated: terms of second order in 1/N are
+not known."""
 SOURCES = {EXACT: "Enskog", BOLTZMANN: "Boltzmann equation", ENSKOG: "Enskog equation"}
 """Of what kinetic theory states of each equation; of particles that touch it is an approximation."""
 
@@ -46,6 +52,27 @@ def partners(run: Run) -> float:
     return 1.0 - 1.0 / run.count
 
 
-def shift_of(packing_fraction: float, dimension: int, count: int) -> float:
-    """Z_N - Z, to first order in 1/N."""
-    return float(theory.finite_size_correction(packing_fraction, dimension, count, "canonical"))
+def contact_of_number(run: Run, packing_fraction: float, dimension: int) -> tuple[float, float] | None:
+    """Return the contact value of the N particles of a periodic gas, and its uncertainty.
+
+    None where theory does not state it: for few particles at high density (`theory.finite_contact_value`).
+    """
+    lengths = np.array(run.scene.container.lengths)
+    volume = packing_fraction * float(lengths.prod()) / run.count  # of a particle
+    diameter = (volume / theory.particle_volume(dimension)) ** (1.0 / dimension)
+    try:
+        side = float(lengths.min()) / diameter
+        return theory.finite_contact_value(packing_fraction, dimension, run.count, side)
+    except ValueError:
+        return None
+
+
+def scale_of_number(run: Run, mixture: Mixture) -> float | None:
+    """Return the contact value of N particles divided by that of infinitely many, as of equal ones.
+
+    None for fewer than `LEAST_OF_MIXTURE` particles, and where it is not known for equal ones.
+    """
+    eta, d = mixture.packing_fraction, mixture.dimension
+    if run.count < LEAST_OF_MIXTURE or (found := contact_of_number(run, eta, d)) is None:
+        return None
+    return found[0] / float(theory.contact_value(eta, d))

@@ -20,7 +20,7 @@ from gaspart.scene.scene import Scene
 from gaspart.theory.dsmc import diffusion_by_modes
 
 _WINDOW = 12.0, 24.0
-"""Collisions of a particle from which the slope of D is taken, see `analysis.diffusion`."""
+"""Collisions of a particle between which the slope of D is taken, by default; see `analysis.diffusion`."""
 
 
 def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) -> Expected | None:
@@ -46,19 +46,28 @@ def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
     return gas.temperature / gas.mass * np.exp(-rate * time), math.nan, f"{source}, exact initial decay"
 
 
-def diffusion(run: Run, ends: np.ndarray | None = None) -> Expected | None:
+def diffusion(
+    run: Run, ends: np.ndarray | None = None, window: np.ndarray | tuple[float, float] = _WINDOW
+) -> Expected | None:
     """D of spheres in a periodic cube; see `diffusion_in_cube`. ends (2,): lags between which it is half of
-    the slope of the mean-squared displacement along an axis."""
+    the slope of the mean-squared displacement along an axis; window (2,): collisions of a particle between
+    which the slope is that of D."""
     if ends is not None:
         found = mean_squared_displacement(run, ends, axes=True)
         return found and (0.5 * float(np.diff(found[0])[0] / np.diff(ends)[0]), *found[1:])
     gas, sides = run.moving_fluid, run.scene.container.lengths
     if gas is None or np.ptp(sides) > 1e-6 * sides[0]:
         return None
-    return diffusion_in_cube(gas, sides[0], engine_of(run), run.scene)
+    return diffusion_in_cube(gas, sides[0], engine_of(run), run.scene, window)
 
 
-def diffusion_in_cube(gas: Gas, side: float, engine: Engine | None, scene: Scene | None) -> Expected | None:
+def diffusion_in_cube(
+    gas: Gas,
+    side: float,
+    engine: Engine | None,
+    scene: Scene | None,
+    window: np.ndarray | tuple[float, float] = _WINDOW,
+) -> Expected | None:
     """D of spheres in a periodic cube, by the engine that moves them in a scene, by default an exact one.
 
     Of spheres that touch it is Erpenbeck and Wood's, less the shift of Yeh and Hummer, and less what modes of
@@ -71,7 +80,7 @@ def diffusion_in_cube(gas: Gas, side: float, engine: Engine | None, scene: Scene
         return None
     if engine is None or scene is None or engine.equation == EXACT:
         value, error = theory.diffusion_in_cube(gas.packing_fraction, side, **gas.particle)
-        late = _after_window(gas)
+        late = _after_window(gas, window)
         return value + late, math.hypot(error, 0.5 * late), "Erpenbeck and Wood, Yeh and Hummer"
     value = bulk.diffusion(gas, engine.equation)
     density = float(theory.number_density(gas.packing_fraction, 3, gas.diameter))
@@ -86,11 +95,11 @@ def diffusion_in_cube(gas: Gas, side: float, engine: Engine | None, scene: Scene
     return value + added, error, f"{SOURCES[engine.equation]}, with the flow that its cells resolve"
 
 
-def _after_window(gas: Gas) -> float:
+def _after_window(gas: Gas, window: np.ndarray | tuple[float, float]) -> float:
     """What D(t) at the collisions of a particle between which its slope is taken lacks of its limit, by the
     hydrodynamic modes of the container (`theory.diffusion_modes`)."""
     unit = gas.diameter / gas.thermal_speed
-    times = np.linspace(*_WINDOW, 9) / bulk.collision_rate(gas, EXACT) / unit
+    times = np.linspace(*window, 9) / bulk.collision_rate(gas, EXACT) / unit
     lacking = theory.diffusion_modes(times, gas.packing_fraction, 3, gas.count) - times / gas.count
     return float(lacking.mean()) * gas.diameter**2 / unit
 

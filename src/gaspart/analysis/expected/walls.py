@@ -11,10 +11,7 @@ from gaspart import theory
 from gaspart.analysis.bulk import BOLTZMANN
 from gaspart.analysis.expected.run import Expected, equation_of
 from gaspart.analysis.run import Run
-from gaspart.scene.driving import driven_axes
-from gaspart.scene.faces import Thermal, faces_of
-from gaspart.scene.features import features
-from gaspart.scene.thermal_faces import face_temperatures
+from gaspart.scene.faces import Thermal
 from gaspart.theory.heat import INTERPOLATED
 
 FREE, FLUID = 100.0, 0.1
@@ -112,12 +109,12 @@ def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None
 
 def plates_of(run: Run, driven: bool = False) -> Plates | None:
     """The plates of a run, None for any other scene. driven: of one whose gas a force drives along them."""
-    scene, thermal = run.scene, faces_of(run.scene, Thermal)
+    scene, thermal = run.scene, run.scene.faces_of(Thermal)
     numbers = [number for number, _ in thermal]
-    if not scene.alike or features(scene) - _PLAIN - {"gravity"} or not run.moving.all():
+    if not scene.alike or scene.features - _PLAIN - {"gravity"} or not run.moving.all():
         return None
     pulled = {axis for axis, pull in enumerate(scene.gravity or ()) if pull != 0.0}
-    if bool(pulled) != driven or pulled != set(driven_axes(scene)):
+    if bool(pulled) != driven or pulled != set(scene.driven_axes):
         return None
     if len(numbers) != 2 or numbers[0] // 2 != numbers[1] // 2 or len(scene.faces) != 2:
         return None
@@ -158,13 +155,13 @@ def _free_path(density: float, diameter: float, run: Run) -> float:
 def _in_equilibrium(run: Run) -> bool:
     """Whether all that exchanges energy with the gas has one temperature and is at rest."""
     scene = run.scene
-    faces = [face for _, face in faces_of(scene, Thermal)]
+    faces = [face for _, face in scene.faces_of(Thermal)]
     still = len(faces) == len(scene.faces) and not any(face.slides for face in faces)
-    temperatures = face_temperatures(scene)
+    temperatures = scene.face_temperatures
     one = max(temperatures, default=0.0) - min(temperatures, default=0.0) <= _EQUAL * max(
         temperatures, default=0.0
     )
-    return still and one and not (run.dissipates or scene.thermostat or driven_axes(scene))
+    return still and one and not (run.dissipates or scene.thermostat or scene.driven_axes)
 
 
 def _conducted(plates: Plates, points: bool) -> tuple[float, float, str] | None:
@@ -242,7 +239,7 @@ def _friction(plates: Plates, run: Run) -> Expected | None:
 
 def _driven(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
     """The weight of the gas along the faces, half on each of two equal ones, exactly."""
-    scene, driven = run.scene, driven_axes(run.scene)
+    scene, driven = run.scene, run.scene.driven_axes
     equal = len(faces) == 2 and faces[0] // 2 == faces[1] // 2 and len(scene.faces) == 2
     if not driven or not equal or scene.walls or not run.moving.all():
         return None

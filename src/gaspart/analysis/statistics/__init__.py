@@ -8,7 +8,14 @@ model holds. Inputs that are too short, of unequal length or not finite raise Va
 
 from gaspart.analysis.statistics.blocks import CorrelatedMean, autocorrelation_time, correlated_mean
 from gaspart.analysis.statistics.distributions import Histogram, histogram_chi_square
-from gaspart.analysis.statistics.fits import Fit, PowerLaw, fit_linear, fit_polynomial, fit_power_law
+from gaspart.analysis.statistics.fits import (
+    Fit,
+    PowerLaw,
+    fit_curve,
+    fit_linear,
+    fit_polynomial,
+    fit_power_law,
+)
 from gaspart.analysis.statistics.means import (
     Combination,
     average,
@@ -35,6 +42,7 @@ __all__ = [
     "combine",
     "combine_estimates",
     "correlated_mean",
+    "fit_curve",
     "fit_linear",
     "fit_polynomial",
     "fit_power_law",

@@ -1,7 +1,7 @@
-"""Linear least squares with covariance: polynomials and power laws."""
+"""Least squares with covariance: polynomials, power laws and other curves."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -195,3 +195,24 @@ def fit_power_law(
         degrees_of_freedom=fit.degrees_of_freedom,
         p_value=fit.p_value,
     )
+
+
+def fit_curve(
+    function: Callable[..., np.ndarray],
+    x: ArrayLike,
+    y: Estimate,
+    start: Sequence[float],
+    bounds: tuple[Sequence[float], Sequence[float]] | tuple[float, float] = (-math.inf, math.inf),
+) -> tuple[np.ndarray, np.ndarray]:
+    """Fit the parameters of function(x, *parameters) to values with known errors.
+
+    Returns the parameters and their covariance. Raises ValueError for errors that are not positive and finite
+    (scipy then returns the starting values), and RuntimeError if the fit does not converge.
+    """
+    from scipy.optimize import curve_fit
+
+    errors = positive_errors(y.error, np.size(y.value))
+    found = curve_fit(
+        function, x, y.value, start, sigma=errors, absolute_sigma=True, bounds=bounds, check_finite=True
+    )
+    return found[0], found[1]

@@ -18,6 +18,7 @@ from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Workspace
 from gaspart.kernels.model import ContactLaw, flight_dtype
 from gaspart.kernels.physics.exact_sum import WIDTH
+from gaspart.scene.accessible import Accessible
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
@@ -74,6 +75,9 @@ def workspace_for(
     kinds, which = kinds_of(state)
     threads, faces, d = engine.threads, 2 * scene.dimension, scene.dimension
     radius, mass, inertia = (np.ascontiguousarray(column) for column in kinds.T)
+    inverse = np.zeros((0, faces))
+    if scene.has_unequal_areas:
+        inverse = 1.0 / Accessible(scene).areas(radius)
     return Workspace(
         margin=float(not scene.centres_to_walls),
         dt=step,
@@ -96,6 +100,8 @@ def workspace_for(
         wall_hits=np.zeros((threads, faces), np.int64),
         wall_impulse=np.zeros((threads, faces, WIDTH), np.int64),
         wall_heat=np.zeros((threads, faces, WIDTH), np.int64),
+        inverse_area=inverse,
+        per_area=np.zeros((threads, faces if len(inverse) else 0, d + 1, WIDTH), np.int64),
     )
 
 

@@ -25,7 +25,7 @@ _FEWEST_CELLS = 64
 
 def is_uniform(scene: Scene) -> bool:
     """Whether the density is the same everywhere and stays so: it is known then."""
-    return all(scene.container.periodic) and spreads(scene)
+    return scene.is_periodic and spreads(scene)
 
 
 def spreads(scene: Scene) -> bool:
@@ -68,7 +68,7 @@ def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
     sums = [float((state.radii**power).sum()) for power in (d, d - 1)]
     fields = np.repeat(np.array(sums)[:, None] * ball_volume(d) / volume, cells, axis=1)
     steps = max(1.0, _SAMPLES * cells / max(1, state.count))
-    around = all(scene.container.periodic)
+    around = scene.is_periodic
     reach = np.array([math.ceil(sigma * inverse) for inverse in grid.inverse], dtype=np.int64)
     axis, slabs = slabs_of(grid.per_side, reach)
     drift = state.momentum / state.masses.sum() if around and state.count else np.zeros(d)

@@ -16,6 +16,7 @@ from gaspart.engines.dsmc.pace import FINEST
 from gaspart.engines.dsmc.resolution import Resolution
 from gaspart.engines.dsmc.tallies import WallShearPart, tally_parts
 from gaspart.engines.features.law import LawPart, contact_law
+from gaspart.engines.features.per_area import ThreadedPerAreaPart
 from gaspart.engines.features.thermostat import step_kicks
 from gaspart.engines.stepped import SteppedDynamics
 from gaspart.errors import SceneError
@@ -66,6 +67,7 @@ class DsmcDynamics(SteppedDynamics):
             LawPart(law) if law else None,
             self._kicks,
             WallShearPart(self._faces.shear) if self._faces and self._faces.shear is not None else None,
+            ThreadedPerAreaPart(self._workspace.per_area, _per_area) if scene.has_unequal_areas else None,
         )
         optional = tally_parts(tallies, scene, state, engine.threads)
         self._parts = [*(part for part in parts if part), *optional]
@@ -215,3 +217,8 @@ class DsmcDynamics(SteppedDynamics):
         if resolution.dense:
             resolution.dense.fields[...] = checkpoint["fields"]
         super()._place_again(checkpoint)
+
+
+def _per_area(sums: np.ndarray) -> np.ndarray:
+    """Return the values of the sums per accessible area."""
+    return exact_parts(sums)[..., 0]

@@ -15,7 +15,6 @@ import numpy as np
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
-from gaspart.scene.thermal_faces import face_temperatures
 
 SLOPE, BEND = {2: 0.5625, 3: 1.5}, {2: 0.0, 3: 0.5}
 """Coefficients of the contact value, see `contact_values`, by dimension."""
@@ -62,8 +61,8 @@ Kinds: TypeAlias = Sequence[Species | Particle]
 def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
     """The rates of a scene at its start, or as hot as its faces; dense: with contact values of a dense gas;
     instead: fewer kinds of particles that stand for those of the scene, each pair of which is evaluated."""
-    d, kinds = scene.dimension, moving_kinds(scene) if instead is None else instead
-    heat = max(face_temperatures(scene), default=0.0)
+    d, kinds = scene.dimension, scene.moving_kinds if instead is None else instead
+    heat = max(scene.face_temperatures, default=0.0)
     if not kinds:
         return Rates(0.0, 0.0, math.inf)
     squares = [max(square_of(kind, d), heat / kind.mass) for kind in kinds]
@@ -74,17 +73,12 @@ def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
 def highest_speed(scene: Scene) -> float:
     """The highest mean speed that particles can come to have with the energy of the start, all of it shared
     so that each has the same momentum."""
-    kinds = moving_kinds(scene)
+    kinds = scene.moving_kinds
     energy = sum(
         0.5 * kind.count * kind.mass * scene.dimension * square_of(kind, scene.dimension) for kind in kinds
     )
     inverse, number = sum(kind.count / kind.mass for kind in kinds), sum(kind.count for kind in kinds)
     return math.sqrt(2.0 * energy * inverse) / max(1, number)
-
-
-def moving_kinds(scene: Scene) -> list[Species | Particle]:
-    """Those whose particles are there and not fixed."""
-    return [kind for kind in scene.kinds if kind.count and not kind.fixed]
 
 
 def _rates(scene: Scene, kinds: Kinds, dense: bool, squares: list[float]) -> tuple[float, float]:

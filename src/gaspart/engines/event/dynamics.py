@@ -17,7 +17,7 @@ from gaspart.engines.event.search import chosen_search, make_lists, neighbour_li
 from gaspart.engines.event.stalling import MANY, CollapsePart, check_clocks, check_events, check_progress
 from gaspart.engines.event.tally import EventTally, tally_parts
 from gaspart.engines.event_log import EventLog
-from gaspart.engines.features.open_faces import OpenPart, with_room
+from gaspart.engines.features.open_faces import crowded_error, with_room
 from gaspart.engines.features.part import write_parts
 from gaspart.errors import SimulationError
 from gaspart.kernels.event import loop, prediction
@@ -65,9 +65,6 @@ class EventDynamics(Dynamics):
         self._model, unit_mass = event_model(scene, state, seed, self._grid, largest)
         self._collapse = CollapsePart(self._model, n)
         self._parts = [*event_parts(scene, state, seed, self._model, unit_mass), self._collapse]
-        if self._model.faces and self._model.faces.open:
-            inside = self._model.faces.open
-            self._parts.append(OpenPart(scene, seed, inside, self._queue, self._boxes))
         self._parts += tally_parts(tallies, self._flights, self._model, unit_mass, scene, state)
         self._epochs = Epochs(scene, state.masses, sum(part.gained for part in self._parts))
         self._base, self._quiet = self._base_from(0.0), 0
@@ -114,7 +111,8 @@ class EventDynamics(Dynamics):
         log: EventLog | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Process events up to time `until`, at most `max_events` of them (collisions and wall hits).
+        """Process events up to time `until`, at most `max_events` of them (collisions, wall hits, and
+        attempts to enter through open faces).
 
         max_work: the number of events, crossings and predictions of a new epoch after which to return as
         well, to within a factor of 2, at the time reached.
@@ -166,6 +164,8 @@ class EventDynamics(Dynamics):
                 self._predict()
             if reason == loop.COLLAPSE:
                 raise self._collapse.error(self.time)
+            if reason == loop.CROWDED:
+                raise crowded_error(self.time, len(self._flights))
 
     @property
     def _at_rest(self) -> bool:

@@ -10,7 +10,9 @@ from gaspart.engines.features.gravity import GravityPart, gravity_of
 from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.masses import scaled_masses
 from gaspart.engines.features.moving_wall import MovingWallPart, moving_wall_of
+from gaspart.engines.features.open_faces import OpenPart, reservoirs_of
 from gaspart.engines.features.part import Part
+from gaspart.engines.features.per_area import EventPerAreaPart
 from gaspart.engines.features.piston import PistonPart
 from gaspart.engines.features.rest import rest_watch
 from gaspart.engines.features.shear import ShearPart, shear_of
@@ -48,15 +50,17 @@ def event_model(
     unit_mass, masses = (1.0, None) if law else scaled_masses(state.masses)
     oversized, warm = np.flatnonzero(state.radii > largest), warm_walls(scene, state, seed, unit_mass)
     moving = moving_wall_of(scene, state, unit_mass)
+    faces = special_faces(scene, state, seed, unit_mass) if has_special_faces(scene) else None
     model = Model(
         space=Space(scene.container.lengths, scene.container.periodic, float(not scene.centres_to_walls)),
         masses=masses,
         gravity=gravity_of(scene, state),
         law=law,
-        faces=special_faces(scene, state, seed, unit_mass) if has_special_faces(scene) else None,
+        faces=faces,
         walls=interior_walls(scene, boxes, largest, warm, moving) if scene.walls else None,
         oversized=Oversized(oversized, largest) if len(oversized) else None,
         shear=shear_of(scene),
+        reservoirs=reservoirs_of(scene, seed, faces.open) if faces and faces.open else None,
     )
     return model, unit_mass
 
@@ -75,10 +79,12 @@ def event_parts(
         ShearPart(scene, state, model.shear) if model.shear else None,
         VibratingPart(scene, faces.motion) if faces and faces.motion else None,
         PistonPart(faces.piston, scene) if faces and faces.piston else None,
+        OpenPart(scene, faces.open, model.reservoirs) if faces and faces.open else None,
         LawPart(law) if law else None,
         DurationPart(law, law.duration, gravity) if law and law.duration else None,
         kicks(scene, seed, unit_mass),
         rest_watch(scene, state),
+        EventPerAreaPart(scene, state, unit_mass) if scene.has_unequal_areas else None,
     )
     return [part for part in parts if part]
 

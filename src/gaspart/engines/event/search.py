@@ -9,7 +9,6 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.kernels.model import NUMBER_BITS
 from gaspart.scene.geometry import ball_volume
-from gaspart.scene.open_faces import is_open
 from gaspart.state.boxes import make_boxes
 
 if TYPE_CHECKING:
@@ -50,7 +49,7 @@ def obstacle_to_lists(scene: Scene) -> str | None:
         return "interior walls"
     if scene.shear_rate is not None:
         return "sheared faces"
-    if is_open(scene):
+    if scene.is_open:
         return "open faces"
     if not _SMALLEST < scene.largest_radius < _LARGEST:
         return "particles of so extreme a size"

@@ -49,7 +49,7 @@ class EventDriven(Engine):
     title: ClassVar[str] = "event-driven"
     records_events: ClassVar[bool] = True
     tallies: ClassVar[frozenset[str]] = frozenset(
-        ("stress", "impulses", "pair_impulses", "wall_shear", "entries")
+        ("stress", "impulses", "pair_impulses", "wall_shear", "entries", "fixed_collisions", "per_area")
     )
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     neutral_settings: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")

@@ -14,10 +14,8 @@ from gaspart.engines.features.vibrating import motion_of
 from gaspart.kernels.model import NONE, STICKY, Faces, Ramp, Sliding
 from gaspart.kernels.obstacles.face import RULES
 from gaspart.kernels.physics.running_sum import values
-from gaspart.scene.driving import has_dragged_faces
-from gaspart.scene.faces import FACES, sliding_faces
+from gaspart.scene.faces import FACES
 from gaspart.scene.scene import Scene
-from gaspart.scene.thermal_faces import face_temperatures, partial_faces, ramps
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 from gaspart.state.wells import places_in_wells, well_energies, wells_of
@@ -35,10 +33,10 @@ def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 def sliding_velocities(scene: Scene) -> np.ndarray | None:
     """(2d, d) the velocities of the container's faces, None if it has no `has_dragged_faces`."""
-    if not has_dragged_faces(scene):
+    if not scene.drags_faces:
         return None
     velocities = np.zeros((2 * scene.dimension, scene.dimension))
-    for n, face in sliding_faces(scene):
+    for n, face in scene.sliding_faces:
         velocities[n] = face.velocity
     return velocities
 
@@ -46,20 +44,20 @@ def sliding_velocities(scene: Scene) -> np.ndarray | None:
 def accommodations(scene: Scene) -> np.ndarray | None:
     """(2d,) the fractions of hits of the container's faces after which velocities are drawn, None if all
     are."""
-    if not partial_faces(scene):
+    if not scene.partial_faces:
         return None
     fractions = np.ones(2 * scene.dimension)
-    for n, face in partial_faces(scene):
+    for n, face in scene.partial_faces:
         fractions[n] = face.accommodation
     return fractions
 
 
 def ramp_of(scene: Scene) -> Ramp | None:
     """The temperatures that vary along faces, None without any."""
-    if not ramps(scene):
+    if not scene.ramps:
         return None
     axes, high = np.full(2 * scene.dimension, NONE), np.zeros(2 * scene.dimension)
-    for n, face in ramps(scene):
+    for n, face in scene.ramps:
         axes[n], high[n] = face.varies_along, face.temperatures[1]
     return Ramp(axes, high)
 
@@ -96,9 +94,9 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
 def face_energy(scene: Scene) -> float:
     """Upper estimate of the energy that a thermal face or wall or a well gives a particle, at whatever speed
     it moves."""
-    hottest = max(face_temperatures(scene), default=0.0)
+    hottest = max(scene.face_temperatures, default=0.0)
     deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
-    fastest = max((math.hypot(*(face.velocity or ())) for _, face in sliding_faces(scene)), default=0.0)
+    fastest = max((math.hypot(*(face.velocity or ())) for _, face in scene.sliding_faces), default=0.0)
     heaviest = max((kind.mass for kind in scene.kinds), default=0.0) if fastest else 0.0
     return scene.dimension * hottest + 2.0 * deepest + heaviest * fastest**2
 

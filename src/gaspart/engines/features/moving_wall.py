@@ -8,7 +8,7 @@ from gaspart.engines.features.part import Part
 from gaspart.errors import SceneError
 from gaspart.kernels import model as kernels
 from gaspart.kernels.obstacles.moving_wall import advance_wall
-from gaspart.scene.moving_walls import MOVING_WALL, moving_wall
+from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
@@ -16,7 +16,7 @@ from gaspart.state.state import State
 def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.MovingWall | None:
     """The wall that moves, as it does in a state, in units of `unit_mass`; None if there is none. Raises
     SceneError without particles on both its sides, which keep it inside the container."""
-    wall = moving_wall(scene)
+    wall = scene.moving_wall
     if wall is None or state.piston is None:
         return None
     place, velocity = state.piston

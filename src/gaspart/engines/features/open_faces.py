@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from gaspart.engines.features.part import Part
 from gaspart.errors import SimulationError
 from gaspart.kernels import model as kernels
-from gaspart.scene.faces import Open, faces_of
-from gaspart.scene.open_faces import is_open, number_density
+from gaspart.kernels.event.entry import schedule_first
+from gaspart.kernels.obstacles.open_face import NUMBERS
+from gaspart.scene.faces import Open
+from gaspart.scene.open_faces import attempt_rate
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
-
-if TYPE_CHECKING:
-    from gaspart.kernels.event.box_lists import BoxLists
-    from gaspart.kernels.event.entry import Reservoirs
-    from gaspart.kernels.event.queue import Queue
-    from gaspart.kernels.model import Model, Particles, Tally
 
 _ENTRY_DRAWS = 7  # the purpose of their random numbers, after those of interior walls
 _ARRAYS = "positions", "velocities", "images", "radii", "masses", "species", "spins", "moments_of_inertia"
@@ -44,74 +40,59 @@ def with_room(scene: Scene, state: State) -> State:
 
 def opened(scene: Scene, state: State) -> kernels.Open | None:
     """The kernels' `Open` of a state with all numbers; None without open faces."""
-    if not is_open(scene):
+    if not scene.is_open:
         return None
     present = np.isfinite(state.positions[:, 0]).astype(np.uint8)
-    return kernels.Open(present, np.zeros(2 * scene.dimension, dtype=np.int64))
+    blocks = -(-len(present) // NUMBERS)
+    return kernels.Open(present, np.zeros(blocks, np.int64), np.zeros(2 * scene.dimension, np.int64))
 
 
-def reservoirs(scene: Scene, seed: int | tuple[int, ...]) -> Reservoirs | None:
-    """What is outside; None if that is nothing."""
-    from gaspart.kernels.event.entry import Reservoirs
-
+def reservoirs_of(
+    scene: Scene, seed: int | tuple[int, ...], inside: kernels.Open
+) -> kernels.Reservoirs | None:
+    """The gases behind open faces; None if there is a vacuum behind all of them."""
     rates, widths = np.zeros((2, 2 * scene.dimension))
-    for number, face in faces_of(scene, Open):
+    for number, face in scene.faces_of(Open):
         if face.temperature is not None:
-            area = scene.container.volume / scene.container.lengths[number // 2]
             widths[number] = math.sqrt(face.temperature / scene.species[0].mass)
-            rates[number] = number_density(scene, face) * area * widths[number] / math.sqrt(2.0 * math.pi)
+            rates[number] = attempt_rate(scene, number, face)
     if not rates.any():
         return None
     up_to = np.cumsum(rates) / rates.sum()
     up_to[np.flatnonzero(rates)[-1] :] = 1.0  # whatever rounding makes of it
-    return Reservoirs(key_of(seed, _ENTRY_DRAWS), float(rates.sum()), up_to, widths)
+    next_one = np.zeros(1, dtype=np.int64), np.full(1, np.inf), np.zeros(3)
+    return kernels.Reservoirs(
+        key_of(seed, _ENTRY_DRAWS), float(rates.sum()), up_to, widths, *next_one, inside
+    )
+
+
+def crowded_error(time: float, most: int) -> SimulationError:
+    """The error of a run in which more than `most` particles would be inside."""
+    return SimulationError(f"at time {time:g} there is no room for more than {most} particles")
 
 
 class OpenPart(Part):
     """The open faces of a scene: which particles are inside, how many have entered since the tally began, and
-    the number and the time, on the clocks of the epoch, of the next attempt to enter.
+    the number and the time, on the clocks of the epoch, of the next attempt to enter."""
 
-    queue, boxes: those of the particles, in which one that enters is put.
-    """
-
-    def __init__(
-        self,
-        scene: Scene,
-        seed: int | tuple[int, ...],
-        inside: kernels.Open,
-        queue: Queue | None,
-        boxes: BoxLists,
-    ) -> None:
-        self._scene, self._inside, self._search = scene, inside, (queue, boxes)
-        self._reservoirs = reservoirs(scene, seed)
-        self._number, self._next = np.zeros(1, dtype=np.int64), np.full(1, np.inf)
-        arrays = {"present": inside.present, "entries": inside.entries}
-        arrays |= {"entry_number": self._number, "entry_next": self._next}
-        super().__init__(arrays, times=(self._next,), scheduled=self._next)
-
-    def _wait(self, clock: float) -> None:
-        """Schedule the next attempt, after the time `clock`."""
-        from gaspart.kernels.event.entry import waiting_time
-
-        if self._reservoirs:
-            self._next[0] = clock + waiting_time(self._reservoirs, int(self._number[0]))
+    def __init__(self, scene: Scene, inside: kernels.Open, reservoirs: kernels.Reservoirs | None) -> None:
+        self._scene, self._inside, self._reservoirs = scene, inside, reservoirs
+        arrays, times = {"present": inside.present, "entries": inside.entries}, ()
+        if reservoirs:
+            arrays |= {"entry_number": reservoirs.number, "entry_next": reservoirs.time}
+            times = (reservoirs.time,)
+        super().__init__(arrays, times=times)
 
     def set_clock(self, clock: float) -> None:
-        """The first attempt."""
-        self._wait(clock)
+        """Schedule the first attempt to enter."""
+        if self._reservoirs:
+            schedule_first(self._reservoirs, clock)
 
-    def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Let a particle try to enter. Returns that the events of all others are as they were. Raises
-        SimulationError if there is no room for it."""
-        from gaspart.kernels.event.entry import NO_ROOM, attempt
-
-        time, number = self.next, int(self._number[0])
-        if attempt(particles, (time, number), *self._search, model, tally, self._reservoirs) == NO_ROOM:
-            most = len(self._inside.present)
-            raise SimulationError(f"at time {start + time:g} there is no room for more than {most} particles")
-        self._number += 1
-        self._wait(time)
-        return False
+    def begin_epoch(self, length: float, start: float, model: kernels.Model) -> kernels.Model:
+        """Count the vacant numbers, which a checkpoint does not have."""
+        absent = np.flatnonzero(self._inside.present == 0)
+        self._inside.vacant[:] = np.bincount(absent // NUMBERS, minlength=len(self._inside.vacant))
+        return model
 
     def write(self, state: State, clock: float) -> None:
         """Leave only the particles that are inside, with their numbers."""

@@ -7,7 +7,6 @@ import numpy as np
 from gaspart.engines.features.part import Part
 from gaspart.kernels import model as kernels
 from gaspart.kernels.obstacles.piston import advance_piston
-from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
@@ -17,9 +16,9 @@ _OF_EPOCH = 2.0**-24  # a particle at rest on which the piston lies meets it aga
 
 def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | None:
     """The piston of a state, in units of `unit_mass`; None if there is none."""
-    if not pistons(scene) or state.piston is None:
+    if not scene.pistons or state.piston is None:
         return None
-    ((n, face),) = pistons(scene)
+    ((n, face),) = scene.pistons
     x, velocity = state.piston
     inwards = (scene.container.lengths[n // 2] - x, -velocity) if n % 2 else (x, velocity)
     push = face.acceleration(scene, n // 2)
@@ -34,7 +33,7 @@ class PistonPart(Part):
     def __init__(self, piston: kernels.Piston, scene: Scene) -> None:
         super().__init__({"piston": piston.motion})
         self._piston, self._lengths = piston, scene.container.lengths
-        ((number, face),) = pistons(scene)
+        ((number, face),) = scene.pistons
         fallen = 2.0 * face.acceleration(scene, number // 2) * self._lengths[number // 2]
         self.gained = 4.0 * (fallen if face.speed is None else face.speed**2)
 

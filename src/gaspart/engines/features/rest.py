@@ -17,9 +17,7 @@ import numpy as np
 
 from gaspart.engines.features.jams import FURTHEST, Jams
 from gaspart.engines.features.part import Part
-from gaspart.scene.driving import driven_axes
 from gaspart.scene.scene import Scene
-from gaspart.scene.thermal_faces import face_temperatures
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
@@ -90,6 +88,6 @@ class RestWatch(Part):
 def rest_watch(scene: Scene, state: State) -> RestWatch | None:
     """The watch of a scene in which all particles may come to rest: contacts that last, gravity that
     drives no flow, and no face or wall that gives energy."""
-    falls = scene.gravity is not None and not driven_axes(scene)
-    still = not (scene.faces or face_temperatures(scene))
+    falls = scene.gravity is not None and not scene.driven_axes
+    still = not (scene.faces or scene.face_temperatures)
     return RestWatch(scene, state) if scene.contact_duration > 0.0 and falls and still else None

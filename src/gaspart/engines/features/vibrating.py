@@ -6,7 +6,7 @@ import numpy as np
 
 from gaspart.engines.features.part import Part
 from gaspart.kernels.model import Model, Motion
-from gaspart.scene.faces import Vibrating, faces_of
+from gaspart.scene.faces import Vibrating
 from gaspart.scene.scene import Scene
 
 # A particle that is pressed to the face meets it again after a part of an epoch, or of the duration of a
@@ -17,7 +17,7 @@ _OF_SPEED = 2.0**-48  # it parts with this part of the face's speed at least
 
 def motion_of(scene: Scene) -> Motion | None:
     """How the faces move, before the first epoch; None if none vibrates."""
-    moving = faces_of(scene, Vibrating)
+    moving = scene.faces_of(Vibrating)
     if not moving:
         return None
     shape = (2 * scene.dimension,)
@@ -40,7 +40,7 @@ class VibratingPart(Part):
 
     def __init__(self, scene: Scene, motion: Motion) -> None:
         super().__init__({})
-        self._scene, self._motion, self._faces = scene, motion, faces_of(scene, Vibrating)
+        self._scene, self._motion, self._faces = scene, motion, scene.faces_of(Vibrating)
         self.gained = (2.0 * max(face.greatest_speed for _, face in self._faces)) ** 2
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:

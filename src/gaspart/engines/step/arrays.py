@@ -71,10 +71,15 @@ def model_for(
 
 
 def step_tally(
-    faces: int, threads: int, largest: tuple[float, float], asked: Iterable[TallyPart]
+    faces: int,
+    threads: int,
+    largest: tuple[float, float],
+    asked: Iterable[TallyPart],
+    areas: tuple[np.ndarray, np.ndarray] | None,
+    fixed: bool,
 ) -> StepTally:
     """A tally at zero, for so many faces; largest: see `largest_terms`; asked: the parts of optional
-    tallies."""
+    tallies; areas: the `inverse_areas` if they differ; fixed: whether there are fixed particles."""
     tally = StepTally(
         counts=np.zeros(layout.PASSED + 1, dtype=np.int64),
         sums=np.zeros((len(layout.SUMS), 2)),
@@ -85,6 +90,12 @@ def step_tally(
         momentum=largest[0],
         energy=largest[1],
     )
+    if fixed:
+        tally = tally._replace(fixed=True)
+    if areas is not None:
+        inverse, size = areas
+        per_area = np.zeros((threads, faces, 2, 2), dtype=np.int64)
+        tally = tally._replace(per_area=per_area, share=inverse / inverse.max(), size=size)
     for part in asked:
         tally = tally._replace(**part.kernel)
     return tally
@@ -107,6 +118,7 @@ def rules_for(
         walls=None,
         oversized=None,
         shear=None,
+        reservoirs=None,
     )
     radius = 0.0 if scene.centres_to_walls else state.radii.max(initial=0.0)
     inset = np.where(np.repeat(scene.container.periodic, 2), 0.0, radius + special.width).reshape(-1, 2)

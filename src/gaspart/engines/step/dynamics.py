@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gaspart.engines.features.masses import largest_terms
+from gaspart.engines.features.per_area import ThreadedPerAreaPart, inverse_areas
 from gaspart.engines.step.arrays import empty_particles, masses_of, model_for, parts_for, step_tally
 from gaspart.engines.step.limits import (
     check_late,
@@ -64,7 +66,14 @@ class StepDynamics(SteppedDynamics):
         units = unit_mass, self._largest[0]
         asked = tally_parts(tallies, self._particles, self._model, scene, engine.threads, units)
         self._parts = [*parts_for(scene, self._model.rules), *asked]
-        self._tally = step_tally(2 * scene.dimension, engine.threads, self._largest, asked)
+        areas = inverse_areas(scene, state) if scene.has_unequal_areas else None
+        self._tally = step_tally(
+            2 * scene.dimension, engine.threads, self._largest, asked, areas, scene.has_fixed
+        )
+        if areas is not None:
+            read = partial(self._per_area, float(areas[0].max()))
+            assert self._tally.per_area is not None
+            self._parts.append(ThreadedPerAreaPart(self._tally.per_area, read))
 
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
@@ -125,6 +134,16 @@ class StepDynamics(SteppedDynamics):
         """With those of which all threads have one, as if it were that of the first."""
         whole = {key: getattr(self._tally, key)[np.newaxis] for key in _OF_ALL}
         return whole | {key: getattr(self._tally, key) for key in _BY_THREAD}
+
+    def _per_area(self, most: float, sums: np.ndarray) -> np.ndarray:
+        """Return the momentum along each axis and the heat given to each face per accessible area,
+        (2d, d + 1); most: one divided by the least area."""
+        d = self._scene.dimension
+        units = np.array(self._largest) * (self._unit_mass * most)
+        given = running_sum.whole_parts(sums.sum(axis=0), 1.0).sum(axis=-1) * units
+        found, faces = np.zeros((2 * d, d + 1)), np.arange(2 * d)
+        found[faces, faces // 2], found[:, d] = given.T
+        return found
 
     def _counts(self) -> dict[str, Any]:
         tally = self._tally

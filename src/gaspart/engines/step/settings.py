@@ -83,7 +83,7 @@ class TimeStepped(Engine):
 
     timed_at: ClassVar[tuple[float, float]] = (0.1, 0.08)
     advised: ClassVar[tuple[str, ...]] = ("time_step", "precision")
-    tallies: ClassVar[frozenset[str]] = frozenset(("impulses",))
+    tallies: ClassVar[frozenset[str]] = frozenset(("impulses", "fixed_collisions", "per_area"))
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -58,7 +58,10 @@ class Workspace(NamedTuple):
     (threads, 2, 3); sums (threads, 2, 2).
 
     The tally, by thread: counts (threads, 8), see the names at the module's top; virial and loss (threads,
-    WIDTH); wall_hits (threads, 2d); wall_impulse and wall_heat (threads, 2d, WIDTH), see `exact_sum`.
+    WIDTH); wall_hits (threads, 2d); wall_impulse and wall_heat (threads, 2d, WIDTH), see `exact_sum`;
+    per_area (threads, 2d, d + 1, WIDTH), the momentum that each face is given along each axis and the energy,
+    each per area that centres of particles of the kind can reach. inverse_area (K, 2d): one divided by that
+    area. Both have no entry unless these areas differ.
     """
 
     margin: float
@@ -82,6 +85,8 @@ class Workspace(NamedTuple):
     wall_hits: np.ndarray
     wall_impulse: np.ndarray
     wall_heat: np.ndarray
+    inverse_area: np.ndarray
+    per_area: np.ndarray
 
 
 class Faces(NamedTuple):

@@ -135,6 +135,35 @@ def drag(face, mass, context, velocity, shear):
         add_shear(face, -mass, context, shear)
 
 
+@inner_helper
+def press(face, which, impulse, context):
+    """Count the momentum that a particle of a kind gives to a face along its normal."""
+    workspace, part = context.workspace, context.part
+    add_exact(workspace.wall_impulse[part, face], impulse)
+    if len(workspace.inverse_area) > 0:
+        add_exact(workspace.per_area[part, face, face // 2], impulse * workspace.inverse_area[which, face])
+
+
+@inner_helper
+def warm(face, which, heat, shear, context):
+    """Count the energy, and the momentum (3,) along a thermal face, that a particle of a kind gives to it."""
+    workspace, part = context.workspace, context.part
+    add_exact(workspace.wall_heat[part, face], heat)
+    if len(workspace.inverse_area) > 0:
+        d, inverse = len(context.space.lengths), workspace.inverse_area[which, face]
+        for k in range(d):
+            if k != face // 2:
+                add_exact(workspace.per_area[part, face, k], shear[k] * inverse)
+        add_exact(workspace.per_area[part, face, d], heat * inverse)
+
+
+@inner_helper
+def momentum_of(mass, flights):
+    """Return the momentum (3,) of the particle in a thread's room, with 0 for a third component in 2D."""
+    velocity = flights[0].velocity
+    return mass * velocity[0], mass * velocity[1], mass * velocity[2] if len(velocity) == 3 else 0.0
+
+
 @inner_kernel
 def leave_thermal(i, face, which, number, context, faces, law):
     """Give particle i, of a kind, at a thermal face, the velocity of one that leaves it: the draw with this
@@ -143,9 +172,10 @@ def leave_thermal(i, face, which, number, context, faces, law):
     flights, mass, inertia = workspace.flights[part], workspace.mass[which], workspace.inertia[which]
     d, axis, side = len(context.space.lengths), face // 2, 1.0 if face % 2 else -1.0
     if mirrors(i, face, number, key, faces.accommodation):
-        add_exact(workspace.wall_impulse[part, face], 2.0 * mass * abs(flights[0].velocity[axis]))
+        press(face, which, 2.0 * mass * abs(flights[0].velocity[axis]), context)
         flights[0].velocity[axis] = -flights[0].velocity[axis]
         return
+    arrived = momentum_of(mass, flights)
     level = temperature_at(face, flights[0].position, context.space.lengths, faces.level, faces.ramp)
     width, square, given = sqrt(level / mass), 0.0, 0.0
     for k in range(d):
@@ -166,43 +196,46 @@ def leave_thermal(i, face, which, number, context, faces, law):
                 given = draw_spin(i, level, inertia, key, (components, number, block), law.spins)
     for k in range(d):
         square -= flights[0].velocity[k] * flights[0].velocity[k]
-    add_exact(workspace.wall_impulse[part, face], impulse)
-    add_exact(workspace.wall_heat[part, face], 0.5 * mass * square + given)
+    left = momentum_of(mass, flights)
+    shear = arrived[0] - left[0], arrived[1] - left[1], arrived[2] - left[2]
+    press(face, which, impulse, context)
+    warm(face, which, 0.5 * mass * square + given, shear, context)
 
 
 @inner_kernel
 def bounce(i, face, which, context, law):
     """Reflect particle i, of a kind, in its place in a thread's room, at a hard face."""
-    part, workspace, axis, side = context.part, context.workspace, face // 2, 1.0 if face % 2 else -1.0
-    flights = context.workspace.flights[part]
+    axis, side = face // 2, 1.0 if face % 2 else -1.0
+    flights = context.workspace.flights[context.part]
     if law is None:
         impulse = 2.0 * context.workspace.mass[which] * abs(flights[0].velocity[axis])
         flights[0].velocity[axis] = -flights[0].velocity[axis]
     else:
         load_spin(i, 0, which, context, law)
         normal = side if axis == 0 else 0.0, side if axis == 1 else 0.0, side if axis == 2 else 0.0
-        sums = Sums(context.workspace.sums[part])
+        sums = Sums(context.workspace.sums[context.part])
         impulse = collide_wall_by_law(
             flights, 0, normal, 0.0, open_space(context.space.lengths), sums, law_of(context, law)
         )
         store_spin(i, 0, context, law)
         count_loss(context)
-    add_exact(workspace.wall_impulse[part, face], impulse)
+    press(face, which, impulse, context)
 
 
 @inner_helper
-def bounce_often(face, times, speed, mass, context):
-    """Count that many elastic bounces of a smooth particle at a face, at one speed."""
-    workspace, part = context.workspace, context.part
-    workspace.wall_hits[part, face] += np.int64(times)
-    add_exact(workspace.wall_impulse[part, face], 2.0 * mass * speed * times)
+def bounce_often(face, times, speed, which, context):
+    """Count that many elastic bounces of a smooth particle of a kind at a face, at one speed."""
+    workspace = context.workspace
+    workspace.wall_hits[context.part, face] += np.int64(times)
+    press(face, which, 2.0 * workspace.mass[which] * speed * times, context)
 
 
 @inner_helper
-def lean(face, axis, mass, left, context, gravity):
-    """Let a particle rest at a face for a time: the face carries its weight."""
+def lean(face, which, left, context, gravity):
+    """Let a particle of a kind rest at a face for a time: the face carries its weight."""
+    axis = face // 2
     context.workspace.flights[context.part, 0].velocity[axis] = 0.0
-    add_exact(context.workspace.wall_impulse[context.part, face], mass * abs(gravity[axis]) * left)
+    press(face, which, context.workspace.mass[which] * abs(gravity[axis]) * left, context)
 
 
 @inner_kernel
@@ -210,7 +243,7 @@ def finish_axis(axis, left, which, context, gravity):
     """Let a smooth, elastic particle in a thread's room fly along one axis, on which nothing depends, for a
     time. Between the first bounce and the last ones whole periods of its motion are made at once."""
     space, workspace = context.space, context.workspace
-    flights, radius, mass = workspace.flights[context.part], workspace.radius[which], workspace.mass[which]
+    flights, radius = workspace.flights[context.part], workspace.radius[which]
     skipped = False
     while True:
         first, face, speed = inf, NONE, 0.0
@@ -224,7 +257,7 @@ def finish_axis(axis, left, which, context, gravity):
             return
         left -= first
         put_at_face(face, -speed, flights, radius, space)
-        bounce_often(face, 1.0, speed, mass, context)
+        bounce_often(face, 1.0, speed, which, context)
         if skipped:
             continue
         y, u, a = along(axis, face % 2 == 0, flights, radius, space, gravity)
@@ -234,13 +267,13 @@ def finish_axis(axis, left, which, context, gravity):
             period = 2.0 * speed / a  # the pull is towards this face, away from that one
         if gravity is not None:
             if not period > left * 2.0**-53:
-                lean(face, axis, mass, left, context, gravity)
+                lean(face, which, left, context, gravity)
                 return
         number = floor(left / period)
         left = max(left - number * period, 0.0)
-        bounce_often(face, number, speed, mass, context)
+        bounce_often(face, number, speed, which, context)
         if across:
-            bounce_often(face ^ 1, number, w, mass, context)
+            bounce_often(face ^ 1, number, w, which, context)
         skipped = True
 
 
@@ -268,8 +301,8 @@ def comes_to_rest(face, speed, left, which, context, gravity, law):
         return False
     mass = workspace.mass[which]
     add_exact(workspace.loss[context.part], 0.5 * mass * speed * speed)
-    add_exact(workspace.wall_impulse[context.part, face], mass * speed)
-    lean(face, axis, mass, left, context, gravity)
+    press(face, which, mass * speed, context)
+    lean(face, which, left, context, gravity)
     return True
 
 

@@ -1,135 +1,196 @@
 """Particles of reservoirs outside of open faces, which try to enter.
 
-All attempts at all faces are one Poisson process, the n-th of which has the random words of the counter n:
-when it happens, where and how fast depend on nothing else, and whether it succeeds on what is inside.
+All attempts at all faces are one Poisson process. Attempt n has the random words of the counter n: where it
+happens, how fast, and how long after it the next one happens depend on nothing else. Whether it succeeds
+depends on what is inside.
 """
 
-from typing import NamedTuple
+from math import inf
 
-import numpy as np
+from numpy import int64, uint64
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
-from gaspart.kernels.event.box_lists import insert
-from gaspart.kernels.event.prediction import NOT_CROSSED, predict_after
+from gaspart.kernels.event.box_lists import insert, member
+from gaspart.kernels.event.prediction import NOT_CROSSED, predict_after, without_contacts
 from gaspart.kernels.event.queue import count_event
 from gaspart.kernels.model import NONE
+from gaspart.kernels.obstacles.open_face import lowest_vacant, occupy
 from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.rng import flux_speed, log_of, normal_pair, random_words, uniform
 from gaspart.kernels.physics.running_sum import add
 
-_WHERE, _HOW_FAST = 0, 1  # which random words of an attempt
-REFUSED, ENTERED, NO_ROOM = range(3)
+_PLACE, _VELOCITY = 0, 1  # which random words of an attempt
 
 
-class Reservoirs(NamedTuple):
-    """What is outside of the open faces. key (2,), of the random numbers; rate: attempts per time, at all
-    faces; up_to (2d,): the share of them at a face and those before it; width (2d,): (k_B T / m)^(1/2) of
-    each reservoir."""
-
-    key: np.ndarray
-    rate: float
-    up_to: np.ndarray
-    width: np.ndarray
+@inner_helper
+def waiting_time(word, rate):
+    """Return a time of the exponential distribution of this rate."""
+    return -log_of(uniform(word)) / rate
 
 
 @kernel
-def waiting_time(reservoirs, number):
-    """The time before attempt `number`, after that before it: of an exponential distribution."""
-    word, _, _, _ = random_words(reservoirs.key, _WHERE, number, 0)
-    return -log_of(uniform(word)) / reservoirs.rate
+def schedule_first(reservoirs, clock):
+    """Schedule the first attempt after the time `clock`, by the words of the counter 0."""
+    word, _, _, _ = random_words(reservoirs.key, _PLACE, 0, 0)
+    reservoirs.number[0] = 1
+    reservoirs.time[0] = clock + waiting_time(word, reservoirs.rate)
+
+
+@inner_helper
+def next_attempt(reservoirs):
+    """Return the time of the next attempt; infinite without reservoirs."""
+    if reservoirs is not None:
+        return reservoirs.time[0]
+    return inf
+
+
+@inner_helper
+def face_of(word, reservoirs):
+    """Return the face of an attempt."""
+    face, fraction = 0, uniform(word)
+    while fraction >= reservoirs.up_to[face]:
+        face += 1
+    return face
+
+
+@inner_helper
+def place_on(place, face, words, lengths):
+    """Set a place on a face, by two random `words`."""
+    axis, n = face // 2, 0
+    for k in range(len(lengths)):
+        if k == axis:
+            place[k] = lengths[k] if face % 2 else 0.0
+        else:
+            place[k] = uniform(words[n]) * lengths[k]
+            n += 1
+
+
+@inner_helper
+def overlaps(flights, place, j, time, space):
+    """Return True if particle j, which is not moved, overlaps a new one at a place and a `time`."""
+    late, sigma, square = time - flights[j].clock, 2.0 * flights[j].radius, 0.0
+    for k in range(len(space.lengths)):
+        x = flights[j].position[k] + flights[j].velocity[k] * late
+        gap = abs(x - place[k])
+        if space.periodic[k]:
+            gap = min(gap, space.lengths[k] - gap)
+        square += gap * gap
+    return square < sigma * sigma
 
 
 @inner_kernel
-def lowest_free(present):
-    """The lowest number that no particle inside has, or NONE."""
-    for i in range(len(present)):
-        if not present[i]:
-            return i
-    return NONE
-
-
-@inner_kernel
-def is_free(flights, i, time, space, present):
-    """Whether particle i, where it stands, overlaps none that is inside at a `time`; none is moved."""
+def is_free_of_all(flights, place, time, space, present):
+    """Return True if a new particle overlaps none that is inside."""
     for j in range(len(flights)):
         if present[j]:
-            late, square = time - flights[j].clock, 0.0
-            sigma = flights[i].radius + flights[j].radius
-            for k in range(len(space.lengths)):
-                x = flights[j].position[k] + flights[j].velocity[k] * late
-                gap = abs(x - flights[i].position[k])
-                if space.periodic[k]:
-                    gap = min(gap, space.lengths[k] - gap)
-                square += gap * gap
-            if square < sigma * sigma:
+            if overlaps(flights, place, j, time, space):
                 return False
     return True
 
 
-@inner_kernel
-def place_on(flights, i, face, words, lengths):
-    """Place a particle on a face, at the two random `words`."""
-    axis, d, n = face // 2, len(lengths), 0
-    for k in range(d):
-        if k == axis:
-            flights[i].position[k] = lengths[k] if face % 2 else 0.0
-        else:
-            flights[i].position[k] = uniform(words[n]) * lengths[k]
-            n += 1
+@inner_helper
+def coordinate(boxes, axis, x):
+    """Return the coordinate of the box that holds `x` along an axis."""
+    return min(int64(x / boxes.widths[axis]), boxes.per_side[axis] - 1)
 
 
 @inner_kernel
-def send_in(flights, i, face, number, reservoirs, model, tally):
-    """Give a particle the velocity of one that enters through a face, and count what it brings."""
+def is_free_of_neighbours(flights, place, time, space, boxes):
+    """Return True if a new particle overlaps none in the boxes about it."""
+    x, y, z = coordinate(boxes, 0, place[0]), coordinate(boxes, 1, place[1]), coordinate(boxes, 2, place[2])
+    for dz in range(3):
+        beside_z = boxes.neighbour[2, z, dz]
+        if beside_z < 0:
+            continue
+        for dy in range(3):
+            beside_y = boxes.neighbour[1, y, dy]
+            if beside_y < 0:
+                continue
+            for dx in range(3):
+                beside_x = boxes.neighbour[0, x, dx]
+                if beside_x < 0:
+                    continue
+                box, j = uint64(beside_x + beside_y + beside_z), uint64(0)
+                for n in range(uint64(boxes.filled[box])):
+                    j = uint64(member(boxes, box, n, j))
+                    if overlaps(flights, place, j, time, space):
+                        return False
+    return True
+
+
+@inner_helper
+def is_free(particles, time, queue, boxes, space, reservoirs):
+    """Return True if the particle of the present attempt overlaps none; without a queue boxes are empty."""
+    if queue is not None:
+        return is_free_of_neighbours(particles.flights, reservoirs.place, time, space, boxes)
+    return is_free_of_all(particles.flights, reservoirs.place, time, space, reservoirs.opened.present)
+
+
+@inner_kernel
+def send_in(flights, i, face, reservoirs, model, tally):
+    """Give a particle the place and the velocity with which it enters, and count what it brings."""
     axis, d, width = face // 2, len(model.space.lengths), reservoirs.width[face]
+    number, key = reservoirs.number[0], reservoirs.key
     mass, inwards = mass_of(i, model.masses, model.law), -1.0 if face % 2 else 1.0
-    speed = width * flux_speed(reservoirs.key, _HOW_FAST, number)
-    one, other, _ = normal_pair(reservoirs.key, _HOW_FAST, number, 1)
+    speed = width * flux_speed(key, _VELOCITY, number)
+    one, other, _ = normal_pair(key, _VELOCITY, number, 1)
     flights[i].velocity[axis] = inwards * speed
     flights[i].velocity[(axis + 1) % d] = width * one
     if d == 3:
         flights[i].velocity[(axis + 2) % d] = width * other
     square = 0.0
     for k in range(d):
+        flights[i].position[k] = reservoirs.place[k]
         square += flights[i].velocity[k] * flights[i].velocity[k]
     add(tally.wall_impulse, face, mass * speed)
     add(tally.wall_energy, face, -0.5 * mass * square)
 
 
 @inner_helper
-def find_next(particles, i, time, queue, boxes, model, tally):
+def predict_entered(particles, i, time, queue, boxes, model, tally):
     """Put a particle into its box, and predict its next events, where there is a queue."""
     if queue is not None:
         for k in range(len(model.space.lengths)):
-            box = np.int64(particles.flights[i].position[k] / boxes.widths[k])
-            particles.predictions[i].box[k] = min(box, boxes.per_side[k] - 1)
+            particles.predictions[i].box[k] = coordinate(boxes, k, particles.flights[i].position[k])
         insert(particles.predictions, boxes, i)
         event = time, count_event(queue), True
-        predict_after(particles, (i, NONE), queue, boxes, model, tally, event, NOT_CROSSED)
+        predict_after(particles, (i, NONE), queue, boxes, without_contacts(model), tally, event, NOT_CROSSED)
 
 
-@kernel
-def attempt(particles, event, queue, boxes, model, tally, reservoirs):
-    """Let a particle try to enter. event: the time, and the number of the attempt. Returns REFUSED, ENTERED,
-    or NO_ROOM where there is no number for it."""
-    time, number = event
-    flights, opened = particles.flights, model.faces.open
-    _, word, first, second = random_words(reservoirs.key, _WHERE, number, 0)
-    face, share = 0, uniform(word)
-    while share >= reservoirs.up_to[face]:
-        face += 1
-    i = lowest_free(opened.present)
-    if i == NONE:
-        return NO_ROOM
-    place_on(flights, i, face, (first, second), model.space.lengths)
-    if not is_free(flights, i, time, model.space, opened.present):
-        for k in range(len(model.space.lengths)):
-            flights[i].position[k] = np.nan
-        return REFUSED
-    send_in(flights, i, face, number, reservoirs, model, tally)
-    flights[i].clock = time
-    particles.images[i] = 0
-    opened.present[i] = 1
-    opened.entries[face] += 1
-    find_next(particles, i, time, queue, boxes, model, tally)
-    return ENTERED
+@inner_kernel
+def admit(particles, queue, boxes, model, tally, limits, reservoirs):
+    """Process attempts to enter, up to the first that succeeds.
+
+    limits (3,): the time of the next event of the particles inside, the time at which to stop, and the most
+    attempts. Returns (number of attempts, time of the last one, whether all numbers of particles are taken).
+    """
+    soonest, stop, most = limits
+    attempts, last, time, entered = 0, -inf, reservoirs.time[0], False
+    while attempts < most and time < soonest and time <= stop and not entered:
+        wait, where, first, second = random_words(reservoirs.key, _PLACE, reservoirs.number[0], 0)
+        face = face_of(where, reservoirs)
+        place_on(reservoirs.place, face, (first, second), model.space.lengths)
+        entered = is_free(particles, time, queue, boxes, model.space, reservoirs)
+        if entered:
+            i = lowest_vacant(reservoirs.opened)
+            if i == NONE:
+                return attempts, last, True
+            send_in(particles.flights, i, face, reservoirs, model, tally)
+            particles.flights[i].clock = time
+            particles.images[i] = 0
+            occupy(reservoirs.opened, i, face)
+            predict_entered(particles, i, time, queue, boxes, model, tally)
+        attempts += 1
+        last = time
+        time += waiting_time(wait, reservoirs.rate)
+        reservoirs.number[0] += 1
+        reservoirs.time[0] = time
+    return attempts, last, False
+
+
+@inner_helper
+def admit_before(particles, queue, boxes, model, tally, limits, reservoirs):
+    """Process attempts to enter, if there are reservoirs. Arguments and result are those of `admit`."""
+    if reservoirs is not None:
+        return admit(particles, queue, boxes, model, tally, limits, reservoirs)
+    return 0, -inf, False

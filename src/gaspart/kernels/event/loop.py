@@ -18,13 +18,20 @@ from numpy import int64
 from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.event.all_pairs import first_of_all
 from gaspart.kernels.event.box_lists import move, withdraw
+from gaspart.kernels.event.entry import admit_before, next_attempt
 from gaspart.kernels.event.impulses import speed_on_arrival, tally_impulse
 from gaspart.kernels.event.islands import wake_island
 from gaspart.kernels.event.monitors import collapse_detected, is_full, record_event
 from gaspart.kernels.event.neighbour_lists import is_room_lacking, renew
 from gaspart.kernels.event.pair_contact import collide
 from gaspart.kernels.event.pair_impulses import note_velocity, tally_pairs
-from gaspart.kernels.event.prediction import NOT_CROSSED, predict_after, predict_after_piston, predict_island
+from gaspart.kernels.event.prediction import (
+    NOT_CROSSED,
+    predict_after,
+    predict_after_piston,
+    predict_island,
+    without_contacts,
+)
 from gaspart.kernels.event.prefetch import CACHED, CACHED_LISTS, crossing_of, prefetch, prefetch_lists
 from gaspart.kernels.event.queue import count_event, is_outdated, soonest, time_of
 from gaspart.kernels.event.sheared_search import follow
@@ -36,21 +43,14 @@ from gaspart.kernels.obstacles.sticky import part_if_held
 from gaspart.kernels.obstacles.well import meet_edge
 
 # Why a run ended: the time, the number of events, the record, a collapse, a full neighbour list, the number
-# of crossings.
-STOP, EVENTS, FULL, COLLAPSE, NO_ROOM, CROSSED = range(6)
+# of crossings, more particles inside than there are numbers.
+STOP, EVENTS, FULL, COLLAPSE, NO_ROOM, CROSSED, CROWDED = range(7)
 
 
 @inner_helper
 def without_obstacles(model):
     """What all contacts depend on. Their functions need not be translated again for each kind of obstacle."""
-    return Model(model.space, model.masses, model.gravity, model.law, None, None, None, model.shear)
-
-
-@inner_helper
-def without_contacts(model):
-    """What predictions depend on, whatever happens at contacts."""
-    obstacles = model.faces, model.walls, model.oversized
-    return Model(model.space, None, model.gravity, None, *obstacles, model.shear)
+    return Model(model.space, model.masses, model.gravity, model.law, None, None, None, model.shear, None)
 
 
 @inner_helper
@@ -199,8 +199,8 @@ def fetch_ahead(particles, queue, boxes, next_bucket, lists):
 
 @kernel
 def run(particles, queue, boxes, model, tally, monitors, limits, all_pairs):
-    """Process all events up to a time, at most so many of them (collisions and wall hits), and at most so
-    many crossings and outdated contacts between them: `limits` (3,).
+    """Process all events up to a time, at most so many of them (collisions, wall hits, attempts to enter),
+    and at most so many crossings and outdated contacts between them: `limits` (3,).
 
     all_pairs: () for the search of all pairs before every event, without a queue; otherwise None. numba
     leaves out only what depends on an argument that is None, so both arguments are needed. Returns (reason,
@@ -221,6 +221,14 @@ def run(particles, queue, boxes, model, tally, monitors, limits, all_pairs):
             if i >= 0:
                 next_bucket = fetch_ahead(particles, queue, boxes, next_bucket, boxes.lists)
             time = time_of(particles.predictions, i) if i >= 0 else inf
+        if next_attempt(model.reservoirs) < time:
+            ends = time, stop, most - done
+            tried, when, crowded = admit_before(particles, queue, boxes, model, tally, ends, model.reservoirs)
+            if crowded:
+                return CROWDED, done + tried, crossed, max(last, when)
+            if tried > 0:
+                done, last = done + tried, when
+                continue
         if i < 0 or not time <= stop:
             return STOP, done, crossed, last
         if queue is not None:

@@ -7,8 +7,8 @@ from gaspart.kernels.event.pressed_contact import least_parting, part, release_p
 from gaspart.kernels.event.sheared_contact import fold, unfold
 from gaspart.kernels.event.sheared_stress import end_flight, tally_contact
 from gaspart.kernels.event.stress import note_pair
-from gaspart.kernels.model import COLLISIONS, VIRIAL
-from gaspart.kernels.physics.collision import exchange_momentum, gap_along
+from gaspart.kernels.model import COLLISIONS, FIXED_COLLISIONS, VIRIAL
+from gaspart.kernels.physics.collision import exchange_momentum, gap_along, meets_fixed
 from gaspart.kernels.physics.flight import advance
 from gaspart.kernels.physics.running_sum import add
 
@@ -45,3 +45,4 @@ def collide(flights, i, j, time, model, tally):
     sigma = flights[i].radius + flights[j].radius
     tally.worst[0] = max(tally.worst[0], abs(rr / (sigma * sigma) - 1.0))
     tally.counts[COLLISIONS] += 1
+    tally.counts[FIXED_COLLISIONS] += meets_fixed(i, j, model.law)

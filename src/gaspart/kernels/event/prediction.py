@@ -12,7 +12,7 @@ from gaspart.kernels.event.neighbour_lists import is_renewed_first, next_renewal
 from gaspart.kernels.event.oversized import search_oversized
 from gaspart.kernels.event.queue import EVENT_COUNT, bucket_of, fill, reschedule
 from gaspart.kernels.event.sheared_search import search_sheared
-from gaspart.kernels.model import NONE, WALLS
+from gaspart.kernels.model import NONE, WALLS, Model
 from gaspart.kernels.obstacles.face import next_face
 from gaspart.kernels.obstacles.interior_wall import find_wall
 from gaspart.kernels.obstacles.moving_wall import next_moving
@@ -23,6 +23,13 @@ from gaspart.kernels.prefetch import fetch
 # No box was crossed: all is predicted anew. As int64, since numba compiles a function again for each type of
 # integer, and for a constant as well.
 NOT_CROSSED = (int64(0), int64(0), int64(0))
+
+
+@inner_helper
+def without_contacts(model):
+    """Return the model without what matters at contacts only: what predictions depend on."""
+    obstacles = model.faces, model.walls, model.oversized
+    return Model(model.space, None, model.gravity, None, *obstacles, model.shear, None)
 
 
 @inner_helper

@@ -32,6 +32,7 @@ from gaspart.kernels.physics.contact import time_to_plane
 from gaspart.kernels.physics.flight import acceleration_of, advance, face_plane
 from gaspart.kernels.physics.lees_edwards import shift_image
 from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.per_area import add_per_area, spin_before, velocity_before
 from gaspart.kernels.physics.running_sum import add
 
 RULES = {
@@ -233,6 +234,9 @@ def meet_face(particles, i, face, time, model, tally, faces):
         particles.images[i, axis] += 1 if upper else -1
         return False
     place_at(flights, i, face, space, faces)
+    velocity = velocity_before(flights, i, tally.per_area)
+    before = velocity, spin_before(i, model.law, tally.per_area)
     hard = reflect(flights, i, face, model, tally, model.law, faces)
+    add_per_area(flights, i, face, before, model, tally.per_area)
     rest_after(flights, i, face, hard, model, tally, model.gravity)
     return True

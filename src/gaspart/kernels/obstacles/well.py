@@ -6,6 +6,7 @@ from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.model import NONE, STICKY, WELL_EDGES
 from gaspart.kernels.physics.flight import advance, face_plane
 from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.per_area import add_per_area, spin_before, velocity_before
 from gaspart.kernels.physics.running_sum import add
 
 
@@ -68,5 +69,9 @@ def meet_edge(flights, i, face, time, model, tally, faces):
     """Advance a particle to the edge of a well, and let it in or out. Returns the number of the face."""
     if faces is not None:
         advance(flights, i, time, model.space, model.gravity)
-        return collide_edge(flights, i, face - WELL_EDGES, model, tally, model.law, faces)
+        velocity = velocity_before(flights, i, tally.per_area)
+        before = velocity, spin_before(i, model.law, tally.per_area)
+        met = collide_edge(flights, i, face - WELL_EDGES, model, tally, model.law, faces)
+        add_per_area(flights, i, met, before, model, tally.per_area)
+        return met
     return face

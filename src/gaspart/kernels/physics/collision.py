@@ -222,6 +222,22 @@ def collide_wall_by_law(flights, i, normal, least, space, tally, law):
 
 
 @inner_helper
+def is_fixed(i, law, duration):
+    """Return True if a particle is fixed: one that a jam holds has no mobility, either, until it is free."""
+    if duration is not None:
+        return duration.inverse_mass[i] == 0.0
+    return law.inverse_mass[i] == 0.0
+
+
+@inner_helper
+def meets_fixed(i, j, law):
+    """Return 1 if one of two particles is fixed, otherwise 0."""
+    if law is None:
+        return 0
+    return 1 if is_fixed(i, law, law.duration) or is_fixed(j, law, law.duration) else 0
+
+
+@inner_helper
 def exchange_momentum(flights, i, j, rr, rv, model, tally, law):
     """What passes at a contact, by the law if there is one. Returns |r . dp|."""
     if law is None:

@@ -20,7 +20,7 @@ from gaspart.kernels.physics.collision import collide_by_law
 from gaspart.kernels.physics.contact import time_to_plane
 from gaspart.kernels.physics.flight import advance, face_plane
 from gaspart.kernels.physics.running_sum import add, add_whole
-from gaspart.kernels.step.impulses import add_impulse
+from gaspart.kernels.step.impulses import add_impulse, add_share
 from gaspart.kernels.step.model import LOSS, VIRIAL
 
 _SHORT = 2.0**-12  # of a step: bounces on a floor in less time are not distinguished
@@ -147,13 +147,15 @@ def taken(sums, n):
 
 
 @inner_kernel
-def record_face(face, rules, tally):
-    """Move what an event at a face has added to the rules' tally into that of the step engine."""
+def record_face(i, face, rules, tally):
+    """Move what an event of a particle at a face has added to the rules' tally into that of the engine."""
     event = rules.tally
     tally.wall_hits[0, face] += event.wall_hits[face]
-    add_whole(tally.wall_impulse[0, face], taken(event.wall_impulse, face), tally.momentum)
+    given = taken(event.wall_impulse, face), taken(event.wall_energy, face)
+    add_whole(tally.wall_impulse[0, face], given[0], tally.momentum)
     add_whole(tally.wall_loss[0], taken(event.sums, LOST), tally.energy)
-    add_whole(rules.heat[face], taken(event.wall_energy, face), tally.energy)
+    add_whole(rules.heat[face], given[1], tally.energy)
+    add_share(i, face, given, tally, 0, tally.per_area)
     event.wall_hits[face] = 0
 
 
@@ -198,7 +200,7 @@ def meet_faces(particles, slot, rules, dt, tally, law):
             collide_face(flights, i, face, model, rules.tally, law, faces)
         add_impulse_of_face(particles, slot, before, rules, tally, tally.impulses)
         advance(flights, i, 0.0, space, gravity)
-        record_face(face, rules, tally)
+        record_face(particles.index[slot], face, rules, tally)
     if met:
         scatter(particles, slot, rules)
     return met

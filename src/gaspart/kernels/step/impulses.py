@@ -57,6 +57,15 @@ def add_reflection(particles, slot, axis, at, tally, thread, impulses):
 
 
 @inner_helper
+def add_share(i, face, given, tally, thread, per_area):
+    """Add the momentum and the heat that a particle gives to a face to the sums per accessible area."""
+    if per_area is not None:
+        share, (impulse, heat) = tally.share[tally.size[i], face], given
+        add_whole(per_area[thread, face, 0], share * impulse, tally.momentum)
+        add_whole(per_area[thread, face, 1], share * heat, tally.energy)
+
+
+@inner_helper
 def own_impulses(impulses, part):
     """The sums of one thread, as if there were no others."""
     if impulses is None:

@@ -14,10 +14,19 @@ import numpy as np
 from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.model import ContactLaw, Space
 
-COUNTS = ("collisions", "pair_tests", "box_visits", "overlaps_left", "multiple_contacts", "rebuilds")
+COUNTS = (
+    "collisions",
+    "pair_tests",
+    "box_visits",
+    "overlaps_left",
+    "multiple_contacts",
+    "rebuilds",
+    "fixed_collisions",
+)
 SUMS, EXTREMES = ("virial_sum", "dissipated_energy"), ("deepest_overlap", "worst_contact")
 """What StepTally has, by the fields of `state.tally.Tally`. Two more counts are for the engine alone."""
-COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS, LATE, PASSED = range(len(COUNTS) + 2)
+_NUMBERS = range(len(COUNTS) + 2)
+COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS, FIXED, LATE, PASSED = _NUMBERS
 VIRIAL, LOSS = range(len(SUMS))
 DEEPEST, WORST = range(len(EXTREMES))
 FASTEST, DISPLACEMENT = range(2)
@@ -88,7 +97,12 @@ class StepTally(NamedTuple):
     `kernels.physics.planes`, or None; pull, the acceleration along it; per_length, bins in a unit of length;
     turns, one over the number of bins if the axis is periodic, otherwise 0; row (N,), that of each particle,
     or None if there is one. They are not in a tuple of their own: numba passes no tuples in tuples to
-    threads."""
+    threads.
+
+    per_area (threads, 2d, 2, 2), by `add_whole`: the momentum along its normal and the heat that each face is
+    given, each times the least area of a face that centres of particles of any size can reach, divided by
+    that of the particle's size: share (sizes, 2d), with size (N,) of each particle. None unless these
+    differ. fixed: True if there are fixed particles, whose collisions are counted apart, otherwise None."""
 
     counts: np.ndarray
     sums: np.ndarray
@@ -104,6 +118,10 @@ class StepTally(NamedTuple):
     per_length: float = 0.0
     turns: float = 0.0
     row: np.ndarray | None = None
+    per_area: np.ndarray | None = None
+    share: np.ndarray | None = None
+    size: np.ndarray | None = None
+    fixed: bool | None = None
 
 
 class Found(NamedTuple):

@@ -10,7 +10,7 @@ from gaspart.kernels.compile.policy import inner_allocating_kernel, inner_helper
 from gaspart.kernels.physics.periodic import nearest
 from gaspart.kernels.physics.running_sum import add_whole
 from gaspart.kernels.step.boundaries import is_free, meet_faces
-from gaspart.kernels.step.impulses import add_reflection
+from gaspart.kernels.step.impulses import add_reflection, add_share
 from gaspart.kernels.step.model import DISPLACEMENT, FASTEST
 
 _BLOCK = 128
@@ -44,6 +44,7 @@ def reflect(particles, slot, axis, planes, model, tally, thread):
         impulse = 2.0 * model.impulse_share * particles.masses[particles.index[slot]] * abs(v)
         tally.wall_hits[thread, 2 * axis + side] += 1
         add_whole(tally.wall_impulse[thread, 2 * axis + side], impulse, tally.momentum)
+        add_share(particles.index[slot], 2 * axis + side, (impulse, 0.0), tally, thread, tally.per_area)
         if model.normal == 1.0:
             x = plane + plane - x
         else:  # it came through |x - plane| / |v| ago
@@ -91,6 +92,7 @@ def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
         impulse = 2.0 * hits * particles.masses[particles.index[slot]] * w
         tally.wall_hits[thread, 2 * axis + side] += hits
         add_whole(tally.wall_impulse[thread, 2 * axis + side], impulse, tally.momentum)
+        add_share(particles.index[slot], 2 * axis + side, (impulse, 0.0), tally, thread, tally.per_area)
         u = w + a * s
         y = max(y - y, half * (w + u) * s)
         at = upper if side else lower, (-u if side else u) - v

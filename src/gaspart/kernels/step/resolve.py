@@ -20,6 +20,7 @@ from gaspart.kernels.step.impulses import add_contact, place_and_speed
 from gaspart.kernels.step.model import (
     COLLISIONS,
     DEEPEST,
+    FIXED,
     LATE,
     LOSS,
     MULTIPLE,
@@ -231,6 +232,14 @@ def collide(particles, i, j, contact, model, tally, law):
 
 
 @inner_helper
+def count_fixed(particles, i, j, tally, fixed):
+    """Count a contact with a fixed particle."""
+    if fixed is not None:
+        one, other = particles.masses[particles.index[i]], particles.masses[particles.index[j]]
+        tally.counts[FIXED] += one == np.inf or other == np.inf
+
+
+@inner_helper
 def resolve(particles, i, j, model, step, tally, law, cells):
     """Collide a pair, if it is still to be resolved: rewind it to its contact, pass the momentum along the
     normal at contact, and play the rest of the step with the new velocities."""
@@ -252,6 +261,7 @@ def resolve(particles, i, j, model, step, tally, law, cells):
         rv += ago * vv
         tally.extremes[WORST] = max(tally.extremes[WORST], abs(rr / ss - 1.0))
     tally.counts[COLLISIONS] += 1
+    count_fixed(particles, i, j, tally, tally.fixed)
     before_i = place_and_speed(particles, i, ago, tally, tally.impulses)
     before_j = place_and_speed(particles, j, ago, tally, tally.impulses)
     speed_i, speed_j = collide(particles, i, j, (ago, rr, rv), model, tally, law)

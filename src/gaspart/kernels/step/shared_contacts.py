@@ -68,7 +68,7 @@ def tally_of_contact(tally, terms):
     return StepTally(
         tally.counts, terms, tally.extremes, tally.wall_hits, tally.wall_impulse, tally.wall_loss,
         tally.momentum, tally.energy, tally.impulses, tally.axis, tally.pull, tally.per_length, tally.turns,
-        tally.row,
+        tally.row, None, None, None, tally.fixed,
     )  # fmt: skip
 
 
@@ -116,7 +116,7 @@ def resolve_part(particles, part, contacts, model, step, tally, cells):
     tally = StepTally(
         counts, tally.sums, extremes, tally.wall_hits, tally.wall_impulse, tally.wall_loss, tally.momentum,
         tally.energy, own_impulses(tally.impulses, part), tally.axis, tally.pull, tally.per_length,
-        tally.turns, tally.row,
+        tally.turns, tally.row, None, None, None, tally.fixed,
     )  # fmt: skip
     resolve_own(particles, contacts, own[:number], model, step, tally, cells)
     contacts.counts[part], contacts.extremes[part], contacts.bounds[part] = counts, extremes, bounds

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import chdir
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +30,7 @@ class Finished:
 
     root: Path
     results: str
-    """`results`, or `results/<run>`."""
+    """`results`, or `results/<run>`; below the prefix of a module, if it has one."""
     config: dict[str, Any]
     """The merged config."""
     points: list[Point]
@@ -59,15 +59,14 @@ class Finished:
         return f"{self.results}/report.html"
 
     def outputs(self) -> Iterator[str]:
-        """The results that go into every archive as they are: figures, tables, measurements, films.
+        """Return the results that go into every archive as they are: figures, tables, measurements, films.
 
-        Figures for a column of a journal as .pdf only: as .png they are a third of all.
+        Figures for a column of a journal are not among them: they are a third of all.
         """
         folder = self.results
         yield f"{folder}/tables/claims.csv"
         for figure in self.figures:
             yield from (f"{folder}/figures/{figure}.{kind}" for kind in ("png", "svg"))
-            yield f"{folder}/figures/journal/{figure}.pdf"
             yield from (f"{folder}/claims/{figure}.csv", f"{folder}/measurements/{figure}.nc")
         for film, block in self.config.get("animations", {}).items():
             if block:
@@ -82,10 +81,11 @@ class Finished:
 
 
 def find_finished(results: str | Path, config: str | Path | None = None) -> Finished:
-    """The run whose results are in a folder, `results` or `results/<run>`.
+    """Find the run whose results are in a folder, `results` or `results/<run>`.
 
     config: its config; by default the only one in the folders `config` and above with the name of this run.
-    The workflow may also be a module of another one, in a folder with its Snakefile and config.
+    The workflow may also be a module of another one, in a folder with its Snakefile and config. If the module
+    has a prefix, the results lie in a folder below.
 
     Raises SceneError for a folder without results, results that are not complete, and trajectories that
     were made with other settings than those of the config.
@@ -95,9 +95,9 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
         rule = "holds no results of a finished run: tables/claims.csv is missing"
         raise SceneError("results", str(results), rule)
     named = folder.name != "results"
-    root = folder.parents[1] if named else folder.parent
-    is_project = any((root / name).is_file() for name in _WORKFLOWS)
-    if (named and folder.parent.name != "results") or not is_project:
+    place = folder.parents[1] if named else folder.parent
+    root = _project_of(place)
+    if (named and folder.parent.name != "results") or root is None:
         rule = "must be the folder results of a project, or that of a run in it, results/<run>"
         raise SceneError("results", str(results), rule)
     name = folder.name if named else None
@@ -105,14 +105,28 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
     merged, files = merged_with_default(file, root / _BASE)
     if merged.get("run") != name:
         raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
-    with chdir(root):
-        planned = check(merged, files)
+    prefix = place.relative_to(root)
     inside = [str(one.relative_to(root)) for one in files if one.is_relative_to(root)]
-    found = Finished(root, str(folder.relative_to(root)), merged, _used(merged, planned), inside)
-    _check_places(found, file)
-    _check_complete(found, results)
-    _check_settings(found)
+    with chdir(root):  # from which scene files are read
+        points = _used(merged, check(merged, files))
+        points = [replace(point, root=str(prefix / point.root)) for point in points]
+        found = Finished(root, str(folder.relative_to(root)), merged, points, inside)
+        _check_places(found, file)
+        _check_complete(found, results)
+        _check_settings(found)
     return found
+
+
+def _project_of(folder: Path) -> Path | None:
+    """Return the nearest folder with a workflow, from `folder` upwards; None if there is none."""
+    return next(
+        (
+            place
+            for place in (folder, *folder.parents)
+            if any((place / name).is_file() for name in _WORKFLOWS)
+        ),
+        None,
+    )
 
 
 def _used(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:

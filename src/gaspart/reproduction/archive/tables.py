@@ -12,6 +12,7 @@ from importlib.metadata import distributions
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from gaspart.reproduction import job_time
 from gaspart.reproduction.archive.digests import digest_of_file, digest_of_numbers, joint_digest
 from gaspart.reproduction.archive.finished import Finished
 from gaspart.reproduction.archive.limits import MOST_ROWS
@@ -63,7 +64,10 @@ class ClaimData(NamedTuple):
 
 
 class JobTime(NamedTuple):
-    """A row of `jobs.csv`: a job of the workflow, in s and MB; when it ended, in UTC."""
+    """A row of `jobs.csv`: a job of the workflow, in s and MB; when it ended, in UTC.
+
+    cpu_seconds, largest_memory: as the job states them; "" for one that an older version made.
+    """
 
     rule: str
     job: str
@@ -114,8 +118,8 @@ def claim_rows(run: Finished, files: Iterable[PointFile]) -> list[ClaimData]:
 
 
 def job_times(run: Finished) -> list[JobTime]:
-    """The time of each job of the run, from Snakemake's benchmarks; those of points that the config no longer
-    has are left out."""
+    """Return the time of each job of the run, from Snakemake's benchmarks and the jobs' logs, without points
+    that the config no longer has."""
     folder, kept = run.root / run.results / "benchmarks", {(one.experiment, one.name) for one in run.points}
     rows = []
     for path in sorted(folder.rglob("*.tsv")):
@@ -123,9 +127,11 @@ def job_times(run: Finished) -> list[JobTime]:
         if rule in ("simulate", "compute") and tuple(names) not in kept:
             continue
         with path.open(newline="", encoding="utf-8") as file:
-            used = next(csv.DictReader(file, delimiter="\t"))
+            timed = next(csv.DictReader(file, delimiter="\t"))
         ended = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
-        rows.append(JobTime(rule, "/".join(names), used["s"], used["cpu_time"], used["max_rss"], ended))
+        own = job_time.used(run.root / run.results, rule, *names)
+        stated = (f"{own.seconds:.2f}", f"{own.memory:.1f}") if own else ("", "")
+        rows.append(JobTime(rule, "/".join(names), timed["s"], *stated, ended))
     return rows
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from gaspart.accuracy import speed
 from gaspart.errors import SceneError
 from gaspart.reproduction.points import point_keys
 
@@ -26,7 +25,7 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
         raise SceneError(f"{where}.accuracy", None, "is required with engine: auto")
     observable, accuracy = settings.get("observable", "Z"), settings["accuracy"]
     try:
-        advice = tabulated(scene, observable, accuracy, speed_of=speed.as_measured)
+        advice = tabulated(scene, observable, accuracy)
     except SceneError as error:
         raise error.inside(where) from None
     made = {key: value for key, value in settings.items() if key not in point_keys.ENGINE_KEYS["auto"]}

@@ -103,6 +103,10 @@ ANIMATION: dict[str, Kind] = {
 }
 
 
+MULTIPLE: Kind = positive("", maximum=100)
+"""A multiple of the length of a point."""
+
+
 def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
     """The top level of a config, given the entries of its figures, by name, and of those with other names."""
     named = {"type": "object", "propertyNames": _NAME}
@@ -125,6 +129,17 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
         ),
         "experiments": described(
             {**named, "minProperties": 1, "additionalProperties": record(EXPERIMENT)}, "what is simulated"
+        ),
+        "lengths": nullable(
+            described(
+                {
+                    "type": "object",
+                    "additionalProperties": {"type": ["object", "null"], "additionalProperties": MULTIPLE},
+                },
+                "multiples of the length of single points, by experiment and name of the point: so many "
+                "times the replicas, or for the rest the length of each run",
+                default=None,
+            )
         ),
         "figures": described(
             {**named, "properties": figures, "additionalProperties": own},

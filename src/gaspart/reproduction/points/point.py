@@ -7,6 +7,7 @@ import re
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
@@ -127,13 +128,13 @@ class Point:
         return SceneError(f"experiments.{self.experiment}.{key}", self.settings.get(key), rule)
 
     def to_dict(self) -> dict:
-        """Plain values only: the parameters of a job."""
-        return asdict(self)
+        """Return plain values without `root`, which depends on where a workflow keeps its files."""
+        return {key: value for key, value in asdict(self).items() if key != "root"}
 
     @classmethod
-    def from_dict(cls, values: dict) -> Point:
-        """The inverse of ``to_dict``."""
-        return cls(**values)
+    def from_dict(cls, values: dict, path: str) -> Point:
+        """Return the point of `to_dict` whose result lies at `path`."""
+        return cls(**values, root=str(Path(path).parents[1]))
 
 
 def name_of(varying: dict, where: str) -> str:

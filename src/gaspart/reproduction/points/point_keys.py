@@ -112,7 +112,7 @@ ENGINE_KEYS: dict[str, dict[str, Kind]] = {
     **{name: _settings(engine) for name, engine in engines.ENGINES.items()},
     "auto": {
         "accuracy": positive(
-            "relative accuracy, half of a 95 % interval; required", exclusiveMaximum=1, default=None
+            "relative accuracy: standard error and bias; required", exclusiveMaximum=1, default=None
         ),
         "observable": choice("observable whose accuracy it is", *having(tabulated=True), default="Z"),
     },

@@ -17,6 +17,7 @@ from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.reproduction.points import config_keys, point_keys
+from gaspart.reproduction.points.lengths import scaled
 from gaspart.reproduction.points.point import Point, name_of
 
 MOST_POINTS = 100_000
@@ -26,16 +27,21 @@ def points(config: dict, experiment: str) -> list[Point]:
     """All points of an experiment. Raises SceneError for an empty grid, or two points of one name."""
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
+    multiples = (config.get("lengths") or {}).get(experiment) or {}
     made: dict[str, Point] = {}
     varied = block.get("grid")
     for varying in _combinations({} if varied is None else varied, f"{where}.grid"):
-        settings = {**block.get("point", {}), **varying}
+        given = {**block.get("point", {}), **varying}
+        name, job = name_of(varying, f"{where}.grid"), block.get("job", "simulate")
+        settings = {key: _plain(key, value) for key, value in given.items() if value is not None}
+        if name in multiples:
+            settings = scaled(job, settings, multiples[name])
         point = _chosen(
             Point(
                 experiment=experiment,
-                name=name_of(varying, f"{where}.grid"),
-                job=block.get("job", "simulate"),
-                settings={key: _plain(key, value) for key, value in settings.items() if value is not None},
+                name=name,
+                job=job,
+                settings=settings,
                 root=config.get("points", "results/points"),
                 config_seed=config["seed"],
             )

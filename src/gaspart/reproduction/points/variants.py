@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING
 from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.errors import SimulationError
 from gaspart.reproduction.points.point import Point
-from gaspart.scene.driving import has_dragged_faces
-from gaspart.scene.features import features
 from gaspart.scene.species import LATTICES
 
 if TYPE_CHECKING:
@@ -46,13 +44,13 @@ def variant(point: Point) -> str:
 def compiled_features(scene: Scene) -> set[str]:
     """The names of what changes the kernels of a scene: features, and what every engine models but compiles
     for scenes that have it."""
-    names = features(scene) - _NUMBERS - {"contact_duration"}
+    names = scene.features - _NUMBERS - {"contact_duration"}
     if names & _LAW:
         names = (names - _LAW) | {"law"}
     extra = {
         "contact_duration": scene.contact_duration > 0.0,  # by default under gravity
         "masses": len({kind.mass for kind in scene.kinds}) > 1,
-        "dragged": has_dragged_faces(scene),
+        "dragged": scene.drags_faces,
         "compressed": any(kind.arrangement == "compressed" for kind in scene.species),
         "oversized": _has_oversized(scene),
     }

@@ -2,6 +2,7 @@
 
 import copy
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -74,10 +75,7 @@ def simulated(tmp_path_factory):
     """The points of the config, simulated."""
     planned = check(CONFIG)
     folder = tmp_path_factory.mktemp("own")
-    points = [
-        type(point).from_dict({**point.to_dict(), "root": str(folder)})
-        for point in figure_points(CONFIG, "my_gas", planned)
-    ]
+    points = [replace(point, root=str(folder)) for point in figure_points(CONFIG, "my_gas", planned)]
     for point in points:
         simulate(Path(point.path), **point.arguments)
     return points
@@ -248,7 +246,7 @@ def test_a_viscosity_needs_frames_of_a_run_with_correlations_of_the_stress(tmp_p
     point["frames"] = 64
     (one, _) = figure_points(config, "my_gas", check(config))
     assert one.schedule.equilibration_frames == 70  # whole intervals between frames, of 10 samples
-    one = type(one).from_dict({**one.to_dict(), "root": str(tmp_path)})
+    one = replace(one, root=str(tmp_path))
     simulate(Path(one.path), **one.arguments)
     found = measured([one], observable="shear_viscosity")
     direct = gp.analysis.shear_viscosity(one.replica_path(0), start=one.schedule.equilibration)

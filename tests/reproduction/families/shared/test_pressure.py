@@ -85,7 +85,7 @@ def test_equilibration_is_dropped(measured):
 
 def test_a_file_of_another_point_is_refused(measured):
     point, _ = measured
-    other = Point.from_dict(point.to_dict() | {"settings": point.settings | {"samples": 30}})
+    other = Point.from_dict(point.to_dict() | {"settings": point.settings | {"samples": 30}}, point.path)
     with pytest.raises(ValueError, match="frames are not those"):
         pressure(other)
 

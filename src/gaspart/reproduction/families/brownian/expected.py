@@ -62,7 +62,7 @@ def motion_of(point: Point) -> BrownianMotion:
     room = math.prod(b - a for a, b in zip(lower, upper, strict=True))
     density = gas.count / (room - theory.particle_volume(3, 2.0 * contact))
     friction = float(theory.friction_rate(density, contact, particle.mass, gas.mass, temperature))
-    conserved = all(scene.container.periodic)
+    conserved = scene.is_periodic
     return BrownianMotion(
         mass=particle.mass,
         gas_mass=gas.mass,

@@ -44,7 +44,7 @@ def slow_beside_fast() -> Scene:
 
 def unequal_masses() -> Scene:
     """Equal numbers of discs of mass 1 and of mass 1e16, at one temperature."""
-    return gas(Species(10, 0.5, 1.0, temperature=1.0), Species(10, 0.5, 1e16, temperature=1.0))
+    return gas(Species(10, 0.5, mass=1.0, temperature=1.0), Species(10, 0.5, mass=1e16, temperature=1.0))
 
 
 def unequal_sizes(dimension: int = 2) -> Scene:

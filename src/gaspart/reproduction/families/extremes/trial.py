@@ -82,7 +82,7 @@ def _run(row: Row, engine: str, referee: Outcome | None) -> dict:
     before = simulation.initial_state
     found = {
         "energy": energy_drift(before, state, tally.dissipated_energy),
-        "momentum": momentum_drift(before, state) if all(simulation.scene.container.periodic) else math.nan,
+        "momentum": momentum_drift(before, state) if simulation.scene.is_periodic else math.nan,
         "overlap": overlap,
         "contacts": contacts,
         "bits": state.positions.tobytes() + state.velocities.tobytes(),

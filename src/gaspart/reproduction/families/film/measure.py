@@ -14,7 +14,7 @@ from gaspart.analysis.bins import Grid
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
 from gaspart.analysis.series import face_pressures
-from gaspart.analysis.statistics import average, correlated_mean, fit_polynomial, mean_of, means_of
+from gaspart.analysis.statistics import average, correlated_mean, fit_curve, fit_polynomial, mean_of, means_of
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
@@ -69,7 +69,9 @@ def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
     first, last, number = settings["theory_widths"]
     widths = np.linspace(first, last, int(number))
     curve = [theory.white_bear_slit(bulk, width, 0.02)[1][0] for width in widths]
-    dataset = table("width", rows, dict).merge(_profile(slits, *functional))
+    dataset = table("width", rows, dict, of=points).merge(
+        _profile(slits, *functional), join="outer", compat="no_conflicts"
+    )
     dataset = dataset.assign_coords(theory_width=widths).assign(curve=("theory_width", curve))
     return _at_the_bulks_potential(
         dataset.assign_attrs(
@@ -197,8 +199,6 @@ def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr
 def _period(width: np.ndarray, excess: Estimate) -> Estimate:
     """The period of a damped oscillation that is fitted to the excess of the pressure over the bulk's against
     the width; NaN through fewer than six widths."""
-    from scipy.optimize import curve_fit
-
     if len(width) < 6:
         return Estimate(math.nan, math.nan)
 
@@ -206,5 +206,5 @@ def _period(width: np.ndarray, excess: Estimate) -> Estimate:
         return amplitude * np.exp(-(width - 2.0) / decay) * np.cos(2.0 * np.pi * (width - phase) / period)
 
     start = (1.5, 1.0, 1.0, 2.0)
-    values, covariance = curve_fit(wave, width, excess.value, start, excess.error, absolute_sigma=True)
+    values, covariance = fit_curve(wave, width, excess, start)
     return Estimate(values[2], np.sqrt(covariance[2, 2]))

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis import order as structure
+from gaspart.analysis import bond_order as structure
 from gaspart.analysis.bins import Grid
 from gaspart.analysis.coexistence import plateau
 from gaspart.analysis.estimate import Estimate
@@ -56,7 +56,7 @@ def freezing_discs(points: list[Point], settings: dict) -> xr.Dataset:
     parts = [table("start", sides, _plateau), _pictures(_of_start(points, sides[-1].start), settings)]
     if compared:
         parts.append(_compared(compared))
-    return xr.merge([dataset, *parts])
+    return xr.merge([dataset, *parts], join="outer", compat="no_conflicts")
 
 
 def freezing_spheres(points: list[Point], settings: dict) -> xr.Dataset:
@@ -72,7 +72,7 @@ def freezing_spheres(points: list[Point], settings: dict) -> xr.Dataset:
     bulk = [point for point in points if point not in slabs]
     dataset = _states(bulk, _sphere)
     dataset["crystalline"] = (dataset["crystalline"] == 1).astype(int)  # 0 where there is no run
-    return dataset.merge(_slab(slabs), combine_attrs="no_conflicts")
+    return dataset.merge(_slab(slabs), join="outer", compat="no_conflicts", combine_attrs="no_conflicts")
 
 
 def _of_start(points: list[Point], start: str) -> dict[float, Point]:
@@ -165,7 +165,7 @@ def _disagreement(dataset: xr.Dataset) -> xr.DataArray:
         worst.append((abs(dataset[f"{what}_drift"]) / dataset[f"{what}_drift_error"]).max("start"))
         if dataset.sizes["start"] == 2:
             worst.append(abs(value.diff("start")).isel(start=0) / np.sqrt((error**2).sum("start")))
-    return xr.concat(worst, "what").max("what")
+    return xr.concat(worst, "what", join="outer", compat="equals").max("what")
 
 
 def _compared(points: list[Point]) -> xr.Dataset:

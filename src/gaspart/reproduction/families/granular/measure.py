@@ -46,7 +46,7 @@ def equipartition(points: list[Point], settings: dict) -> xr.Dataset:
     its error. Over `walls` and `moment`: wall_time, wall_translation, wall_rotation, with errors; over
     `walls`: wall_dimension, wall_inertia, exchange and wall_ratio (see `_walls`) and their errors.
     """
-    between = [point for point in points if not all(point.scene.container.periodic)]
+    between = [point for point in points if not point.scene.is_periodic]
     points = [point for point in points if point not in between]
     rough = [point for point in points if law(point).tangential == 1.0]
     cooled = [point for point in points if point not in rough]
@@ -57,7 +57,7 @@ def equipartition(points: list[Point], settings: dict) -> xr.Dataset:
         table("equilibrium", still, _equilibrium, units={}),
         table("cooling", cooled, _cooling, settings["steady_from"], inner=("step",), units={}),
         table("walls", between, _walls, inner=("moment",), units={}),
-    ])  # fmt: skip
+    ], join="outer", compat="no_conflicts")  # fmt: skip
 
 
 def _start(point: Point) -> dict[str, Any]:
@@ -174,7 +174,12 @@ def cooling(points: list[Point], settings: dict) -> xr.Dataset:
     gases = table("gas", dilute, _gas, inner=("frame",), units={})
     clusters = table("clusters", apart, _clusters, settings["cells_per_side"], inner=("step",), units={})
     shown = min(apart, key=lambda point: law(point).normal)
-    return xr.merge([gases, clusters, _picture(shown)], combine_attrs="drop_conflicts")
+    return xr.merge(
+        [gases, clusters, _picture(shown)],
+        join="outer",
+        compat="no_conflicts",
+        combine_attrs="drop_conflicts",
+    )
 
 
 def _gas(point: Point) -> dict[str, Any]:

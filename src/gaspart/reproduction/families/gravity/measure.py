@@ -253,7 +253,8 @@ def heat_capacity(points: list[Point], settings: dict) -> xr.Dataset:
     pairs = list(zip(ends[::2], ends[1::2], strict=True))
     if any(a["gravity"] != b["gravity"] for a, b in pairs) or len({end["count"] for end in ends}) > 1:
         raise ValueError("points: the two of a pair must differ in their energy only")
-    return table("pair", pairs, _pair, inner=("run",)).assign_attrs(count=ends[0]["count"])
+    of = list(zip(points[::2], points[1::2], strict=True))
+    return table("pair", pairs, _pair, inner=("run",), of=of).assign_attrs(count=ends[0]["count"])
 
 
 def _pair(ends: tuple[dict, dict]) -> dict[str, Any]:

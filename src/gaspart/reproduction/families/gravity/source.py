@@ -43,7 +43,7 @@ def ringing(point: Point) -> dict[str, Estimate]:
     frequencies = np.linspace(2.0, 30.0, 600) * np.pi / np.ptp(time)
     power = np.abs(np.exp(1j * np.outer(frequencies, time)) @ (kinetic - 1.0))
     start = (1.0, 0.01, 0.01, frequencies[power.argmax()], 0.5 * begin)
-    (_, a, b, _, _), covariance = curve_fit(model, time, kinetic, start)
+    (_, a, b, _, _), covariance = curve_fit(model, time, kinetic, start, sigma=None, absolute_sigma=False)
     amplitude = float(np.hypot(a, b))
     direction = np.array([a, b]) / amplitude
     error = np.sqrt(direction @ covariance[1:3, 1:3] @ direction)

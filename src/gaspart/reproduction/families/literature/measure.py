@@ -44,12 +44,9 @@ def literature(points: list[Point], settings: dict) -> xr.Dataset:
     quantities both are those of `count` particles; D is that of particles whose total momentum is zero, and
     viscosity and conductivity are means of the integral over `STRETCH`.
     """
-    rows = [
-        row | {"judged": int(point.experiment in settings["judged"])}
-        for point in points
-        for row in _values(point)
-    ]
-    return table("value", rows, dict, units={})
+    found = [(point, row) for point in points for row in _values(point)]
+    rows = [row | {"judged": int(point.experiment in settings["judged"])} for point, row in found]
+    return table("value", rows, dict, units={}, of=[point for point, _ in found])
 
 
 def _values(point: Point) -> Iterator[dict[str, Any]]:

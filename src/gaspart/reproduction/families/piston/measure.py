@@ -12,7 +12,6 @@ from gaspart.analysis.run import Run
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import prefixed, table
-from gaspart.scene.faces import pistons
 from gaspart.scene.scene import Scene
 from gaspart.theory.enskog import enskog_longitudinal_viscosity
 from gaspart.theory.speeds import mean_speed
@@ -48,7 +47,7 @@ def piston(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _kind(point: Point) -> str:
-    if not pistons(point.scene):
+    if not point.scene.pistons:
         return "expansion"
     return "state" if point.schedule.equilibration_frames else "path"
 
@@ -86,14 +85,14 @@ def _heating(
 
 def _length(run: Run) -> np.ndarray:
     """(frame,) the distance of the piston from the wall opposite."""
-    ((number, _),) = pistons(run.scene)
+    ((number, _),) = run.scene.pistons
     place = run.data["piston_position"].values
     return place if number % 2 else run.scene.container.lengths[number // 2] - place
 
 
 def _state(run: Run) -> dict[str, np.ndarray]:
     scene, length = run.scene, _length(run)
-    ((_, face),) = pistons(scene)
+    ((_, face),) = scene.pistons
     area = scene.container.volume / scene.container.lengths[0]
     places = run.data["coordinates"].values[:, :, 0] / length[:, None]
     temperature = 2.0 * run.data["kinetic_energy"].values.mean() / (scene.dimension * scene.count)

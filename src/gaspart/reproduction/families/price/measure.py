@@ -12,7 +12,6 @@ import xarray as xr
 from gaspart.reproduction.families.shared.timings import log_ratios, per_event, ratio_of_jobs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
-from gaspart.scene.features import features
 from gaspart.scene.scene import Scene
 
 PLAIN = "plain"
@@ -36,7 +35,9 @@ def price_of_features(points: list[Point], settings: dict) -> xr.Dataset:
     dataset = table("point", list(groups.values()), _row)
     for point in points:
         if point.job == "count_instructions":
-            dataset = dataset.merge(xr.load_dataset(point.path).rename(engine="kernel"))
+            dataset = dataset.merge(
+                xr.load_dataset(point.path).rename(engine="kernel"), join="outer", compat="no_conflicts"
+            )
     return dataset
 
 
@@ -71,7 +72,7 @@ def _feature(scene: Scene, extras: list[str]) -> str:
     has = {
         "recording": "record_events" in extras,
         "stress": "stress" in extras,
-        **{name: feature in features(scene) for feature, name in FEATURES.items()},
+        **{name: feature in scene.features for feature, name in FEATURES.items()},
         "walls": bool(scene.container.walls),
         "two masses": len({kind.mass for kind in scene.species}) > 1,
     }

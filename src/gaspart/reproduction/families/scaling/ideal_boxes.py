@@ -36,12 +36,14 @@ def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
     numbered = [cost.assign_coords(partition=np.arange(cost.sizes["partition"])) for cost in costs]
     return xr.merge(
         [
-            xr.concat(numbered, "gas", join="outer"),
+            xr.concat(numbered, "gas", join="outer", compat="equals"),
             gases,
             table("source", settings["source_numbers"], _source, costs, found),
             table("plateau", settings["source_plateaus"], _plateau, runs, costs),
             table("series", radii, _series, found),
-        ]
+        ],
+        join="outer",
+        compat="no_conflicts",
     ).assign(rule=settings["rule"])
 
 

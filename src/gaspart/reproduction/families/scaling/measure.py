@@ -78,7 +78,7 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
     main = next(run for run in stepped if 1 in run.boxes)
     fine = sorted((run for run in stepped if 1 not in run.boxes), key=lambda run: run.side)
     costs, events = per_particle(main), per_event(sectors)
-    pair = xr.concat([per_particle(run) for run in fine], "container")
+    pair = xr.concat([per_particle(run) for run in fine], "container", join="outer", compat="equals")
     pair = pair.rename(_names("fine", pair))
     sides = settings["round_per_side"]
     powers = [
@@ -92,7 +92,9 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
             events.rename(partition="sector", **_names("sector", events)),
             near_boxes(near),
             table("power", powers, dict),
-        ]
+        ],
+        join="outer",
+        compat="no_conflicts",
     ).assign(
         **ideal(costs, main.dimension),
         **huge_sphere(huge),
@@ -140,7 +142,12 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     lists = [run for run in runs if not run.boxes.values.any()]
     runs = [run for run in runs if run.sizes["partition"] > 1]
     costs = [per_particle(run) for run in runs]
-    cheapest = xr.concat([cost.isel(partition=int(np.argmin(cost.seconds.values))) for cost in costs], "gas")
+    cheapest = xr.concat(
+        [cost.isel(partition=int(np.argmin(cost.seconds.values))) for cost in costs],
+        "gas",
+        join="outer",
+        compat="equals",
+    )
     cheapest = cheapest.assign(
         count=("gas", [run.attrs["count"] for run in runs]),
         radius=("gas", [run.radius for run in runs]),
@@ -150,7 +157,8 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     ratio = carried / (gases.seconds[-1] * settings["naive_count"])
     naive = naive.rename(count="naive_count", **_names("naive", naive))
     parts = table("part", settings["source_figures"], _regime, gases)
-    return xr.merge([cheapest, naive, listed(lists, cheapest), parts]).assign(
+    merged = [cheapest, naive, listed(lists, cheapest), parts]
+    return xr.merge(merged, join="outer", compat="no_conflicts").assign(
         **entries({
             "work_exponent": trend(gases.count, gases.count * gases.work),
             "extrapolated_seconds": (carried.value, carried.error),
@@ -182,7 +190,9 @@ def event_scaling(points: list[Point], settings: dict) -> xr.Dataset:
         (xr.load_dataset(point.path) for point in points),
         key=lambda run: (run.search, run.dimension, run.attrs["count"]),
     )
-    costs = xr.concat([per_event(run).isel(partition=0) for run in runs], "run")
+    costs = xr.concat(
+        [per_event(run).isel(partition=0) for run in runs], "run", join="outer", compat="equals"
+    )
     costs = costs.assign(
         search=("run", [run.search for run in runs]),
         dimension=("run", [run.dimension for run in runs]),
@@ -193,7 +203,8 @@ def event_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     pairs = gases[gases.search == "pairs"]
     all_pairs = 0.5 * pairs.count * (pairs.count - 1.0) * (pairs.events + 1.0) / pairs.events
     excess = np.abs(pairs.pair_tests / all_pairs - 1.0)
-    return xr.merge([costs, table("method", methods, _exponents, gases, settings["fit_from"])]).assign(
+    exponents = table("method", methods, _exponents, gases, settings["fit_from"])
+    return xr.merge([costs, exponents], join="outer", compat="no_conflicts").assign(
         pairs_excess=float(excess.max()) if excess.size else math.nan
     )
 

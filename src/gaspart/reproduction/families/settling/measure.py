@@ -13,6 +13,7 @@ import xarray as xr
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
+from gaspart.analysis.statistics import fit_curve
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import entries, from_rows, table
@@ -39,7 +40,7 @@ def settling(points: list[Point], settings: dict) -> xr.Dataset:
     floors = [point for point in points if not point.scene.walls]
     piles = [_pile(run, settings["gap"]) for point in floors for run in runs(point, first=0)]
     flows = [_flow(point, settings) for point in hoppers]
-    return from_rows("pile", piles, ("frame",)).merge(_flows(flows))
+    return from_rows("pile", piles, ("frame",)).merge(_flows(flows), join="outer", compat="no_conflicts")
 
 
 def _diameter(radii: np.ndarray) -> float:
@@ -192,7 +193,6 @@ def _fit(width: np.ndarray, rate: Estimate) -> dict[str, tuple]:
 
     width (orifices,); rate (orifices,): logarithms. The offset is not negative.
     """
-    from scipy.optimize import curve_fit
 
     def law(
         width: np.ndarray, amplitude: float, offset: float, exponent: float = DISCHARGE_EXPONENT
@@ -202,12 +202,11 @@ def _fit(width: np.ndarray, rate: Estimate) -> dict[str, tuple]:
     amplitude = math.exp(rate.value[-1]) / width[-1] ** DISCHARGE_EXPONENT
     start = (amplitude, 0.5 * width.min(), DISCHARGE_EXPONENT)
     bounds = ((0.0, 0.0, 0.0), (np.inf, 0.95 * width.min(), 2.0 * DISCHARGE_EXPONENT))
-    data = (width, rate.value)
-    fixed, _ = curve_fit(
+    fixed, _ = fit_curve(
         lambda width, amplitude, offset: law(width, amplitude, offset),
-        *data, start[:2], rate.error, True, bounds=(bounds[0][:2], bounds[1][:2]),
+        width, rate, start[:2], (bounds[0][:2], bounds[1][:2]),
     )  # fmt: skip
-    free, covariance = curve_fit(law, *data, start, rate.error, True, bounds=bounds)
+    free, covariance = fit_curve(law, width, rate, start, bounds)
     deviations = (rate.value - law(width, *fixed)) / rate.error
     fitted = zip(free, np.sqrt(np.diag(covariance)), strict=True)
     found = entries(dict(zip(("amplitude", "offset", "exponent"), fitted, strict=True)))

@@ -215,7 +215,9 @@ def listed(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
     """Over ``listed``: costs per particle of neighbour lists, ``list_seconds`` ... as in `per_particle`;
     ``list_count``, ``list_radius``; and ``list_share``, the time over that of the gas of the same count and
     radius among `gases` (NaN if there is none), with error."""
-    costs = xr.concat([per_particle(run).isel(partition=0) for run in runs], "listed")
+    costs = xr.concat(
+        [per_particle(run).isel(partition=0) for run in runs], "listed", join="outer", compat="equals"
+    )
     shares, partitioned = [], Table(gases, "gas")
     for run, own in zip(runs, Table(costs, "listed"), strict=True):
         same = partitioned[(partitioned.count == run.attrs["count"]) & (partitioned.radius == run.radius)]

@@ -115,7 +115,7 @@ def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
 
     over_time = dict.fromkeys(("collisions", "kurtosis", "never_hit", "temperature_drift"), ("frame",))
     inner = {**over_time, "density": ("snapshot", "bin")}
-    dataset = table("engine", range(len(groups)), row, inner=inner, units={})
+    dataset = table("engine", range(len(groups)), row, inner=inner, units={}, of=points)
     freedom = sum(len(group) - 1 for group in groups)
     return (
         dataset.assign({f"{name}_freedom": freedom for name in means})

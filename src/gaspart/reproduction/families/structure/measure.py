@@ -18,8 +18,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.analysis.bond_order import radial_distribution
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.order import radial_distribution
 from gaspart.analysis.run import Run
 from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import fit_polynomial, jackknife, means_of

@@ -50,7 +50,7 @@ def chemical_potential(points: list[Point], settings: dict) -> xr.Dataset:
         works = [row for row in rows if row["dimension"] == dimension and row["works"]]
         if len(works) >= len(_POWERS):  # the coefficients of the curve
             _add_partition(works, state)
-    return table("point", rows, dict).assign_attrs(enough=settings["enough"])
+    return table("point", rows, dict, of=measured).assign_attrs(enough=settings["enough"])
 
 
 def _row(point: Point, state: MeasuredState, settings: dict) -> dict[str, Any]:

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from gaspart.accuracy.noise import half_width, required
-
+QUANTILE = 1.96
+"""Half of a 95 % interval, in standard errors: figures compare engines at an accuracy of 95 % of all runs."""
 ENGINES = ("event", "step", "boltzmann", "enskog")
 """The engines that are compared; the last two are the models of the DSMC engine."""
 PARTS = ("model", "discretisation", "noise", "equilibration", "finite_size")
@@ -62,8 +62,17 @@ class Choice:
         left = 0.0
         if self.decay and math.isfinite(length):
             left = self.trace * math.exp(-self.equilibration / self.decay) * self.decay / length
-        noise = half_width(0.0, math.sqrt(self.unit / length))
+        noise = QUANTILE * math.sqrt(self.unit / length)
         return dict(zip(PARTS, (self.model, self.discretisation, noise, left, self.finite_size), strict=True))
+
+
+def required(variance: float, accuracy: float, bias: float, least: float = 0.0) -> float:
+    """Return how much is measured for an accuracy that 95 % of all runs have, `least` at least.
+
+    The unit is that in which a measurement has this relative variance; inf if the bias leaves no room.
+    """
+    left = (accuracy - bias) / QUANTILE
+    return max(variance / left**2, least) if left > 0.0 else math.inf
 
 
 def cheapest(choices: Sequence[Choice], accuracy: float) -> Choice:

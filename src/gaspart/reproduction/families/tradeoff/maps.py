@@ -69,7 +69,8 @@ def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: l
             "part": list(PARTS),
         },
     )
-    return dataset.merge(_compared(measured, fractions)).merge(_speeds(timed, cells, fractions))
+    parts = dataset, _compared(measured, fractions), _speeds(timed, cells, fractions)
+    return xr.merge(parts, join="outer", compat="no_conflicts")
 
 
 def _enter(costs: np.ndarray, parts: np.ndarray, made: list[Choice], accuracies: Sequence[float]) -> None:

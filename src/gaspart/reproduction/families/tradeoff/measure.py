@@ -15,13 +15,13 @@ import xarray as xr
 from gaspart import theory
 from gaspart.accuracy import table
 from gaspart.accuracy.models import model_error
-from gaspart.accuracy.noise import required
 from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS, REFERENCE, STEP
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction import table as tables
 from gaspart.reproduction.families.shared.accuracy import costs, setting_name
 from gaspart.reproduction.families.shared.pressure import pressure
+from gaspart.reproduction.families.tradeoff.choices import required
 from gaspart.reproduction.families.tradeoff.frontier import SEEN, frontier
 from gaspart.reproduction.families.tradeoff.maps import maps
 from gaspart.reproduction.families.tradeoff.uniform import (
@@ -73,7 +73,9 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     long = [
         point for point in points if point.job == "simulate" and point.experiment not in settings["cells"]
     ]
-    dataset = dataset.assign(tables.table("steady", long, _steady, rows)).merge(frontier(dataset))
+    dataset = dataset.assign(tables.table("steady", long, _steady, rows)).merge(
+        frontier(dataset), join="outer", compat="no_conflicts"
+    )
     events = [one for one in timed if one["setting"] == "event"]
     dataset = dataset.assign(tables.table("timed", events, _timed))
     cells = cells_by_fraction(points, settings["cells"])
@@ -137,7 +139,7 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
             "accuracy": settings["accuracies"],
             "engine": ["event", "step"],
         },
-    ).merge(maps(points, settings, timed, every))
+    ).merge(maps(points, settings, timed, every), join="outer", compat="no_conflicts")
 
 
 def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:

@@ -36,7 +36,7 @@ def equation_of_state(points: list[Point], settings: dict) -> xr.Dataset:
     points = sorted(points, key=lambda point: point.scene.packing_fraction)
     gases = table("packing_fraction", points, _gas, units={}).set_coords("packing_fraction")
     gases = gases.assign_attrs(dimension=points[0].scene.dimension)
-    return gases.merge(fit_table(gases, settings["fits"]))
+    return gases.merge(fit_table(gases, settings["fits"]), join="outer", compat="no_conflicts")
 
 
 virial_discs = virial_spheres = equation_of_state

@@ -3,8 +3,9 @@ import sys
 import numpy as np
 import pytest
 from scenes import gas
+from scipy.spatial import Delaunay
 
-from gaspart.analysis import order as structure
+from gaspart.analysis import bond_order as structure
 from gaspart.errors import SceneError
 from gaspart.state.initial import initial_state
 
@@ -35,6 +36,33 @@ def test_hexatic_order_of_a_crystal_and_its_direction():
 def test_hexatic_order_of_a_fluid_is_that_of_random_phases():
     positions, lengths = fluid(2)
     assert abs(structure.hexatic(positions, lengths).mean()) < 0.1
+
+
+def voronoi_order(positions, lengths):
+    """psi_6 of discs by the edges of a Delaunay triangulation of their 9 periodic images."""
+    shifts = np.array([(i, j) for i in (0, -1, 1) for j in (0, -1, 1)]) * lengths
+    images = (positions + shifts[:, None]).reshape(-1, 2)
+    indptr, indices = Delaunay(images).vertex_neighbor_vertices
+    values = []
+    for n in range(len(positions)):
+        bonds = images[indices[indptr[n] : indptr[n + 1]]] - images[n]
+        values.append(np.exp(6j * np.arctan2(bonds[:, 1], bonds[:, 0])).mean())
+    return np.array(values)
+
+
+def test_hexatic_order_of_disordered_discs_is_about_voronoi_neighbours():
+    positions, lengths = fluid(2)
+    found = structure.hexatic(positions, lengths)
+    # single precision of coordinates turns the shortest bonds; the six nearest are off by 0.8
+    assert np.abs(found - voronoi_order(positions, lengths)).max() < 1e-3
+    assert abs(found).mean() == pytest.approx(0.366, abs=0.02)  # six nearest: below
+
+
+def test_few_random_particles_have_a_pair_distribution_of_one():
+    rng = np.random.default_rng(4)
+    frames = [12.0 * rng.random((5, 2)) for _ in range(2000)]
+    _, g = structure.radial_distribution(frames, (12.0, 12.0), 1, 5.0)
+    assert g[0] == pytest.approx(1.0, abs=0.02)  # relative to N^2 pairs: 0.8
 
 
 def test_steinhardt_order_of_a_crystal_and_a_fluid():

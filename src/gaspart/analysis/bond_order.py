@@ -41,15 +41,17 @@ def hexatic(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.
     |psi_6| is 1 in a triangular lattice; the mean over discs measures whether all have one orientation.
     Halperin and Nelson, Phys. Rev. Lett. 41, 121 (1978).
     """
-    order = _freud().order.Hexatic(k=6)
-    order.compute(_system(positions, lengths))  # Voronoi neighbours by default
+    system = _system(positions, lengths)
+    neighbours = _freud().locality.Voronoi().compute(system).nlist  # by default freud takes the 6 nearest
+    order = _freud().order.Hexatic(k=6, weighted=False)
+    order.compute(system, neighbors=neighbours)
     return order.particle_order
 
 
 def global_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> float:
     """Q_6 of all bonds of spheres to their 12 nearest neighbours: 0.5745 in a face-centred cubic lattice,
     about 1 / sqrt(12 N) in a fluid. Steinhardt, Nelson and Ronchetti, Phys. Rev. B 28, 784 (1983)."""
-    order = _freud().order.Steinhardt(l=6)
+    order = _freud().order.Steinhardt(l=6, average=False, wl=False, weighted=False, wl_normalize=False)
     order.compute(_system(positions, lengths), neighbors={"num_neighbors": NEIGHBOURS})
     return float(order.order)
 
@@ -57,7 +59,7 @@ def global_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarr
 def local_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.ndarray:
     """(N,) q_6 of each sphere, averaged over it and its 12 neighbours: some 0.48 in a crystal near melting,
     0.15 in the fluid. Lechner and Dellago, J. Chem. Phys. 129, 114707 (2008)."""
-    order = _freud().order.Steinhardt(l=6, average=True)
+    order = _freud().order.Steinhardt(l=6, average=True, wl=False, weighted=False, wl_normalize=False)
     order.compute(_system(positions, lengths), neighbors={"num_neighbors": NEIGHBOURS})
     return order.particle_order
 
@@ -65,8 +67,11 @@ def local_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarra
 def radial_distribution(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Centres (bins,) of shells up to `furthest` and g(r) there, mean over frames (T, N, d)."""
-    rdf = _freud().density.RDF(bins=bins, r_max=furthest)
+    """Centres (bins,) of shells up to `furthest` and g(r) there, mean over frames (T, N, d).
+
+    Pairs are compared with N (N - 1) / 2 of an ideal gas; freud's default mode counts N^2 / 2.
+    """
+    rdf = _freud().density.RDF(bins=bins, r_max=furthest, r_min=0.0, normalization_mode="finite_size")
     for positions in frames:
         rdf.compute(_system(positions, lengths), reset=False)
     return rdf.bin_centers, rdf.rdf

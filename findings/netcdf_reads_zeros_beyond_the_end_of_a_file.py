@@ -1,0 +1,45 @@
+"""The netCDF library reads a truncated netCDF-3 file without an error: what is missing is 0.
+
+Usual guess: an error when the file is opened, or when the missing values are read.
+
+What happens: a file that lost its second half, as on a full disk or in a broken transfer, opens with all
+of its frames; the missing ones are zeros, which look like particles at rest in a corner.
+
+Way out: compare the size of the file with the one that follows from its header.
+
+Seen with netCDF4 1.7.5.1.post1:
+
+    4000 of 8000 bytes of data are left; values 0, 499, 510, 999: [1.0, 1.0, 0.0, 0.0]
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+
+PACKAGES = ["netCDF4==1.7.5.1.post1", "numpy==2.4.6"]
+
+# The script runs again with these packages, in an environment that is removed afterwards.
+if "FINDING_RUNS" not in os.environ:
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, "-m", "venv", "--without-pip", folder], check=True)
+        python = os.path.join(folder, "bin", "python")
+        install = [sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--no-compile"]
+        subprocess.run([*install, *PACKAGES], check=True)
+        inside = {**os.environ, "FINDING_RUNS": "1"}
+        sys.exit(subprocess.run([python, os.path.abspath(__file__)], env=inside, cwd=folder).returncode)
+
+import os
+
+import netCDF4
+import numpy as np
+
+with netCDF4.Dataset("a.nc", "w", format="NETCDF3_64BIT_OFFSET") as file:
+    file.createDimension("frame", None)
+    file.createVariable("x", "f8", ("frame",))[:] = np.ones(1000)
+os.truncate("a.nc", os.path.getsize("a.nc") - 4000)
+with netCDF4.Dataset("a.nc") as file:
+    values = np.ma.getdata(file["x"][:])
+some = values[[0, 499, 510, 999]].tolist()
+print(f"4000 of 8000 bytes of data are left; values 0, 499, 510, 999: {some}")
+assert len(values) == 1000 and some == [1.0, 1.0, 0.0, 0.0], "the behaviour has changed"

@@ -1,0 +1,249 @@
+"""Observables from the counters of a run: force and pressure on walls, collision rate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from gaspart.analysis import series
+from gaspart.analysis.controls import controlled, group_count, wall_controls
+from gaspart.analysis.estimators import engine_class, estimator, knows_energies
+from gaspart.analysis.expected.described import described
+from gaspart.analysis.impulses import USUAL_BINS
+from gaspart.analysis.observable import Observable, observable, scalar
+from gaspart.analysis.observables import name_of, require_defined
+from gaspart.analysis.profiles import Means, with_freedom
+from gaspart.analysis.room import face_areas, touched
+from gaspart.analysis.run import Run, Source, open_run, require_collisions
+from gaspart.analysis.statistics import means_of
+from gaspart.errors import SceneError
+from gaspart.state.optional_tallies import ImpulseTally
+from gaspart.trajectory.amber import face_names
+
+_BLOCKS = 16
+_SLIGHT = 1e-6  # of the weight: rounding of the momentum of single-precision velocities
+
+
+def compressibility_factor(source: Source, start: float | None = None) -> Observable:
+    """Z = P V / (N k_B T) of a periodic scene, dimensionless, by the virial theorem:
+
+    Z = 1 + sum |dr . dp| / (d N k_B T t), with k_B T = 2 E / (d (N - 1)) about the centre of mass. source: a
+    trajectory, by its path or open, or a simulation; start: the time from which frames count (by default a
+    quarter of the run). Theory is that of the fluid, with the correction of first order in 1/N; of mixtures
+    an approximation, without an uncertainty.
+
+    Raises SceneError for walls, fixed particles, contacts that lose energy, too few frames, and no collision.
+    """
+    with open_run(source, start) as run:
+        require_defined("Z", run.scene)
+        require_collisions(run)
+        return scalar("compressibility_factor", series.compressibility(run), run.time, **described("Z", run))
+
+
+def wall_pressure(source: Source, start: float | None = None) -> Observable:
+    """Measure the pressure on each face of the container that is a wall.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        Pressure (face,) in [energy / length^d], with standard errors. Theory, if known: equal particles
+        between hard walls of one distance (`gaspart.theory.wall_pressure`). NaN where it is not known: on
+        side walls while particles rest, and, of particles of several sizes, on faces whose area changes as
+        others move.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no walls, for too few frames, if particles rest where obstacles may carry them, and
+        for particles of several sizes whose file has no tally per area.
+
+    Notes
+    -----
+    The sum over sizes a of the force F_a of their particles divided by the area A_a of the face
+    that their centres can reach, without those that fixed particles and interior walls cover
+    (`gaspart.scene.accessible`), at that time where faces move. By the contact theorem it is k_B T times the
+    density at contact, summed: n k_B T of the volume that is accessible in an ideal gas, and unchanged by a
+    particle that never touches the face. Across the axis of a piston with a load it is the force divided by
+    the area of the container, as the load is defined, so that the mean is the load. The force on a face has
+    no such convention: `wall_force`.
+
+    Contacts of particles at rest are no events: they press a floor with what gravity gives the particles and
+    no event takes. With impulses that the run has kept along an axis, the pressures across it are freed from
+    what fluctuates with them and is known exactly (`gaspart.analysis.controls`); the attribute `estimator`
+    says so.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    >>> sim.advance(duration=20.0)
+    >>> gp.analysis.wall_pressure(sim).face.values.tolist()
+    ['x low', 'x high', 'y low', 'y high']
+    """
+    with _open_walls(source, start, "pressure") as (run, ends):
+        about = described("pressure", run, touched(run, run.time[:1])[0])
+        return _of_faces("wall_pressure", run, ends, about)
+
+
+def wall_force(source: Source, start: float | None = None) -> Observable:
+    """Measure the force on each face of the container that is a wall.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        Force (face,) outwards along the normal, in [energy / length], with standard errors. Side walls have
+        NaN while particles rest.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no walls, for too few frames, and if particles rest where obstacles may carry them.
+
+    Notes
+    -----
+    The momentum given to the face per time. It depends on no area; a pressure does (`wall_pressure`).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    >>> sim.advance(duration=20.0)
+    >>> gp.analysis.wall_force(sim).estimate.attrs["units"]
+    'energy / length'
+    """
+    with _open_walls(source, start, "force") as (run, ends):
+        return _of_faces("wall_force", run, ends, described("force", run))
+
+
+@contextmanager
+def _open_walls(source: Source, start: float | None, name: str) -> Iterator[tuple[Run, np.ndarray]]:
+    """Open a run and the ends (K + 1,) of the blocks of an observable of faces. Raises SceneError."""
+    with open_run(source, start, sheared=True, varying=True) as run:
+        require_defined(name, run.scene)
+        blocks = min(_BLOCKS, len(run.time) - 1)
+        if blocks < 4:
+            raise SceneError("frames", len(run.time), "an error needs 5 or more")
+        yield run, np.linspace(0, len(run.time) - 1, blocks + 1).astype(int)
+
+
+def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) -> Observable:
+    """The result of a function of this name, from blocks of a run."""
+    name = name_of(function)
+    faces, found = on_walls(run, ends, name)
+    freedoms = np.full(len(faces), len(found) - 1.0)
+    improved, time = controlled_on_walls(run, name), np.diff(run.time)
+    for place, (_, regressors, each) in improved.items():
+        found[:, place] = series.over(each * time, ends) / series.over(time, ends)
+        freedoms[place] -= regressors
+    values, errors = means_of(found - found[0])  # no error of rounding at rest
+    along = {"face": (faces, {"long_name": "face of the container"})}
+    result = observable(function, along, values + found[0], errors, **about)
+    serves = knows_energies(engine_class(run), run.scene)
+    asked = ImpulseTally(str(faces[-1])[0], USUAL_BINS) if serves else None
+    of = "wall impulses", "wall impulses, with the known mean of the energy along an axis"
+    result.attrs |= estimator(run, *of, bool(improved), asked)
+    return with_freedom(result, Means(values, errors, freedoms)) if improved else result
+
+
+def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.ndarray]]:
+    """The pressures or forces on the walls of which the run has kept enough, by their place among all walls:
+    the name of each, the number of controls, and the value in each interval (T - 1,)."""
+    faces, each = on_walls(run, np.arange(len(run.time)), name)
+    groups, found = group_count(run) if run.has_states else 0, {}
+    for place, face in enumerate(map(str, faces)) if groups else ():
+        controls = wall_controls(run, "xyz".index(face[0]))
+        if controls is not None:
+            improved = controlled(each[:, place], controls, groups)
+            found[place] = face, controls.shape[1], improved
+    return found
+
+
+def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Names (W,) of the faces that are walls, and the "pressure" or the "force" on them (K, W) between the
+    frames `ends` (K + 1,). Raises SceneError as `wall_pressure`."""
+    require_defined(name, run.scene)
+    time, walls = np.diff(run.time)[:, None], np.repeat(~run.periodic, 2)
+    impulses, resting = series.over(series.face_impulses(run), ends), _rest_on_floors(run, ends)
+    if name == "force":
+        given = impulses + resting
+    elif run.scene.has_unequal_areas:  # of what rests, the sizes are not known
+        given = series.over(series.face_pressures(run) * time, ends)
+        given += np.where((np.abs(resting) > _SLIGHT * impulses).any(axis=0), np.nan, 0.0)
+    else:
+        given = series.over(series.face_pressures(run) * time, ends)
+        given += resting * series.over(time / face_areas(run), ends) / series.over(time, ends)
+    return np.array(face_names(run.dimension))[walls], (given / series.over(time, ends))[:, walls]
+
+
+def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
+    """(K, 2d) momentum that contacts at rest give each face between the frames `ends` (K + 1,).
+
+    On a floor it is the difference of both sides in the balance
+
+        change of the momentum = its gain by gravity + impulses of the lower face - those of the upper one.
+
+    On a ceiling it is 0; on side walls 0, or NaN if that of a floor is more than a millionth of the weight.
+    Raises SceneError if particles rest where something else than faces may carry them.
+    """
+    carried = np.zeros((len(ends) - 1, 2 * run.dimension))
+    if not run.has_gravity or (run.is_subset and not run.dissipates):
+        return carried
+    if run.scene.walls or not run.moving.all():
+        refuse_rest(run, "obstacles may carry particles at rest, whose contacts give no impulse")
+        return carried
+    momentum = np.einsum("tnd,n->td", run.velocities[ends], run.masses)
+    weight = run.masses.sum() * np.where(run.periodic, 0.0, np.array(run.scene.gravity))
+    if not weight.any():  # it drives a flow along walls, and presses nothing
+        return carried
+    gain = weight * np.diff(run.time[ends])[:, None]
+    impulse = np.abs(np.diff(run.data["wall_impulse"].values[ends, : 2 * run.dimension], axis=0))
+    missing = np.diff(momentum, axis=0) - gain - impulse[:, ::2] + impulse[:, 1::2]
+    floors = [2 * axis + (weight[axis] > 0.0) for axis in np.flatnonzero(weight)]
+    carried[:, floors] = (-np.sign(weight) * missing)[:, weight != 0.0]
+    if np.abs(carried[:, floors]).max() > _SLIGHT * np.abs(gain).max():
+        carried[:, np.repeat(weight == 0.0, 2)] = np.nan
+    return carried
+
+
+def refuse_rest(run: Run, rule: str) -> None:
+    """Raise SceneError, with a rule, if a particle rests under gravity in a frame after the first."""
+    if run.has_gravity:
+        along = np.flatnonzero(run.scene.gravity or ())
+        resting = (run.velocities[1:, run.moving][..., along] == 0.0).any(axis=2).any(axis=0).sum()
+        if resting:
+            raise SceneError("particles at rest", int(resting), rule)
+
+
+def collision_rate(source: Source, start: float | None = None) -> Observable:
+    """Collisions of a particle that moves per time, (2 M + F) / (N t) for M collisions of pairs of the N
+    particles that move, and F collisions with fixed ones: its own count, on average.
+
+    source, start: as in `compressibility_factor`. Theory: exact in equilibrium, with the contact value of
+    the fluid's equation of state, corrected for the number of particles. Raises SceneError for too few
+    frames, without a collision, and if particles come to rest.
+    """
+    with open_run(source, start, sheared=True) as run:
+        require_defined("collision_rate", run.scene)
+        refuse_rest(run, "touch others without a collision, so that there is no rate")
+        require_collisions(run)
+        about = described("collision_rate", run)
+        return scalar("collision_rate", series.collision_rate(run), run.time, **about)

@@ -1,0 +1,129 @@
+"""Continuity of a trajectory of another program: velocities that belong to their frames, rows in one order.
+
+Between collisions a particle moves by its velocity times the time. Velocities that were copied from one
+frame into all, and rows in another order in each frame, break this for nearly all particles at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from gaspart.inspection.flights import WRONG, flights
+from gaspart.inspection.frames import Frames
+from gaspart.inspection.samples import steps
+
+_MOST = 0.5
+"""Fraction of the particles from which on a finding is no coincidence."""
+_NEAR = 0.2
+"""Distance within which a predicted position is recognised, in units of the median distance of neighbours. By
+chance 0.6 % of the spheres and 3 % of the discs have a neighbour there."""
+_KEY = np.sqrt([2.0, 3.0, 5.0])
+"""Factors that make one number of a velocity, different for different velocities."""
+
+
+def continuous(frames: Frames, doubt: str | None, identified: bool) -> Frames:
+    """Return frames without copied velocities, and with the first frame whose rows are in another order.
+
+    doubt: the reason to take velocities for copies; identified: True if ids have restored the order.
+    """
+    if frames.velocities is None or len(frames.positions) < 2 or frames.lengths_by_frame is not None:
+        return frames  # in a container that changes, nothing is compared with velocities
+    if _are_copied(frames, doubt is not None):
+        reason = doubt or "velocities are the same in all frames, and positions do not continue them: copies"
+        return replace(frames, velocities=None, no_velocities=reason)
+    return frames if identified else replace(frames, reordered=_reordered_frame(frames))
+
+
+def _are_copied(frames: Frames, doubtful: bool) -> bool:
+    """Return True if velocities are the same in all frames, and particles do not move by them.
+
+    doubtful: velocities are copies unless the times are known and all particles move by them.
+    """
+    velocities = frames.velocities
+    assert velocities is not None, "see `continuous`"
+    if not velocities.any() or np.any(velocities != velocities[0]):
+        return False
+    if frames.time is None:
+        if doubtful:
+            return True
+        # the time that fits most particles; if none does, they do not move by their velocities
+        squares = np.maximum((velocities[0] ** 2).sum(axis=1), np.finfo(float).tiny)
+        times = np.median((steps(frames) * velocities[0]).sum(axis=2) / squares, axis=1)
+        frames = replace(frames, time=np.concatenate([[0.0], np.cumsum(times)]))
+    found = flights(frames)
+    return found.worst > WRONG or not found.number
+
+
+def _reordered_frame(frames: Frames) -> int | None:
+    """The first frame that lists its particles in another order than the frame before it, or None."""
+    for n in range(len(frames.positions) - 1):
+        if _same_velocities_elsewhere(frames, n) or _predicted_elsewhere(frames, n):
+            return n + 1
+    return None
+
+
+def _same_velocities_elsewhere(frames: Frames, n: int) -> bool:
+    """Return True if velocities of frame n occur in frame n + 1, more often in other rows than in their own.
+
+    Those that several particles have say nothing. Two equal particles may exchange their velocities in a
+    head-on collision: where times are known, positions decide.
+    """
+    assert frames.velocities is not None, "see `continuous`"
+    keys = [(velocity * _KEY[: frames.dimension]).sum(axis=1) for velocity in frames.velocities[n : n + 2]]
+    unique = [np.unique(key, return_index=True, return_counts=True) for key in keys]
+    alone = [
+        (key[(counts == 1) & (key != 0.0)], rows[(counts == 1) & (key != 0.0)])
+        for key, rows, counts in unique
+    ]
+    _, before, after = np.intersect1d(alone[0][0], alone[1][0], assume_unique=True, return_indices=True)
+    if not before.size:
+        return False
+    first, then = alone[0][1][before], alone[1][1][after]
+    moved = first != then
+    if frames.time is not None and moved.any():
+        way = frames.velocities[n][first] * (frames.time[n + 1] - frames.time[n])
+        off = _nearest(frames, frames.positions[n + 1][then] - frames.positions[n][first] - way)
+        moved &= (off**2).sum(axis=1) < _near(frames, n + 1, _tree(frames, n + 1)) ** 2
+    return bool(moved.sum() > max(_MOST * len(moved), 2))
+
+
+def _predicted_elsewhere(frames: Frames, n: int) -> bool:
+    """Return True if most particles of frame n + 1 are where other rows of frame n must have moved."""
+    if frames.time is None or frames.count < 3:
+        return False
+    assert frames.velocities is not None, "see `continuous`"
+    predicted = frames.positions[n] + frames.velocities[n] * (frames.time[n + 1] - frames.time[n])
+    tree = _tree(frames, n + 1)
+    near = _near(frames, n + 1, tree)
+    own = np.sqrt((_nearest(frames, frames.positions[n + 1] - predicted) ** 2).sum(axis=1))
+    if (own < near).mean() > 1.0 - _MOST:
+        return False
+    distance, row = tree.query(_wrapped(frames, predicted), k=1, distance_upper_bound=near)
+    elsewhere = np.isfinite(distance) & (row != np.arange(frames.count))
+    return bool(elsewhere.sum() > max(_MOST * frames.count, 2))
+
+
+def _tree(frames: Frames, n: int) -> cKDTree:
+    """The positions of a frame, for searches."""
+    return cKDTree(frames.positions[n], boxsize=np.where(frames.periodic, frames.lengths, 0.0))
+
+
+def _near(frames: Frames, n: int, tree: cKDTree) -> float:
+    """`_NEAR` as a length."""
+    return _NEAR * float(np.median(tree.query(frames.positions[n], k=2)[0][:, 1]))
+
+
+def _wrapped(frames: Frames, positions: np.ndarray) -> np.ndarray:
+    """Positions in the container along periodic axes."""
+    inside = np.where(
+        frames.periodic, positions - frames.lengths * np.floor(positions / frames.lengths), positions
+    )
+    return np.where((inside >= frames.lengths) & frames.periodic, 0.0, inside)
+
+
+def _nearest(frames: Frames, apart: np.ndarray) -> np.ndarray:
+    """Separations by nearest images."""
+    return apart - np.where(frames.periodic, frames.lengths * np.round(apart / frames.lengths), 0.0)

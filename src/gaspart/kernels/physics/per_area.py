@@ -1,0 +1,69 @@
+"""What particles of several sizes give to faces, per area that their centres can reach there.
+
+Particles of one size need no sums of their own: their area is one number.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from gaspart.kernels.compile.policy import inner_helper
+from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.running_sum import add
+
+
+class PerArea(NamedTuple):
+    """Sums of the event-driven engine. inverse (sizes, 2d), one divided by the area of each face that centres
+    of particles of a size can reach, 0 without any; size (N,), that of each particle; sums (2d (d + 1), 2),
+    see `running_sum.add`: of each face the momentum along each axis, outwards along the normal, and the
+    energy."""
+
+    inverse: np.ndarray
+    size: np.ndarray
+    sums: np.ndarray
+
+
+@inner_helper
+def velocity_before(flights, i, per_area):
+    """Return the velocity of a particle, with 0 for a third component in 2D; zeros if nothing is summed."""
+    if per_area is not None:
+        velocity = flights[i].velocity
+        return velocity[0], velocity[1], velocity[2] if len(velocity) == 3 else 0.0
+    return 0.0, 0.0, 0.0
+
+
+@inner_helper
+def spin_energy(i, law):
+    """Return the energy of the spin of a particle; 0 of smooth ones."""
+    if law is None:
+        return 0.0
+    if law.tangential > -1.0:
+        square = law.spins[i, 0] * law.spins[i, 0] + law.spins[i, 1] * law.spins[i, 1]
+        return 0.5 * (square + law.spins[i, 2] * law.spins[i, 2]) / law.inverse_inertia[i]
+    return 0.0
+
+
+@inner_helper
+def spin_before(i, law, per_area):
+    """Return the same if it is summed, otherwise 0."""
+    if per_area is not None:
+        return spin_energy(i, law)
+    return 0.0
+
+
+@inner_helper
+def add_per_area(flights, i, face, before, model, per_area):
+    """Add what a face has taken from a particle. before: its velocity then, and the energy of its spin."""
+    if per_area is not None:
+        (velocity, spin), law = before, model.law
+        mass, inverse = mass_of(i, model.masses, law), per_area.inverse[per_area.size[i], face]
+        d, axis, side = len(model.space.lengths), face // 2, 1.0 if face % 2 else -1.0
+        first, square = face * (d + 1), 0.0
+        for k in range(d):
+            after = flights[i].velocity[k]
+            change = velocity[k] - after
+            square += change * (velocity[k] + after)
+            along = side if k == axis else 1.0
+            add(per_area.sums, first + k, along * mass * change * inverse)
+        lost = 0.5 * mass * square + (spin - spin_energy(i, law))
+        add(per_area.sums, first + d, lost * inverse)

@@ -1,0 +1,176 @@
+"""Looks of the faces of a container and of walls at a temperature: one for each kind, in all pictures.
+
+A hard wall at rest is a thin dark line. A surface at a temperature is thick, from blue (the coldest of the
+scene) to red (the hottest), or orange if all have one temperature; it is dashed if it draws only part of the
+velocities. An open face is dashed, with arrows for what leaves and enters. A surface that moves has hatching,
+and an arrow in the direction of its motion; behind a piston the container is shaded. A sticky face is green,
+and the edge of a well is dotted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gaspart.scene.faces import LeesEdwards, Open, Piston, Sticky, Surface, Thermal, Vibrating, Well
+from gaspart.scene.scene import Scene
+
+Colour = tuple[float, float, float]
+INK: Colour = (0.16, 0.16, 0.16)
+_COLD, _MIDDLE, _HOT = (0.15, 0.38, 0.80), (0.95, 0.55, 0.10), (0.80, 0.10, 0.12)
+_OPEN, _STICKY, _WELL = (0.10, 0.50, 0.55), (0.15, 0.55, 0.20), (0.45, 0.25, 0.65)
+_PIECES = 24
+"""Pieces of a face whose temperature varies along it, each in one colour."""
+
+
+@dataclass(frozen=True)
+class DrawnSurface:
+    """Look of a face or of a wall in a picture.
+
+    Attributes
+    ----------
+    ends : ndarray, shape (2, 2) or (4, 3), [length]
+        Ends of the line in the plane; in space the corners around the rectangle.
+    inward : ndarray, shape (d,)
+        Unit vector into the container.
+    colours : ndarray, shape (M, 3)
+        Red, green and blue from 0 to 1, of equal pieces along it.
+    text : str
+        Meaning, for the legend.
+    dashed, hatched : bool
+        Dashes, and hatching of its outer side.
+    motion : ndarray, shape (d,), optional
+        Unit vector in the direction of motion.
+    through : tuple of int
+        Arrows across it: -1 outwards, 1 inwards.
+    depth : float, [length]
+        Thickness of the shaded region behind it.
+    band : float, [length]
+        Distance of a dotted line inside of it; 0 if there is none.
+    """
+
+    ends: np.ndarray
+    inward: np.ndarray
+    colours: np.ndarray
+    text: str
+    dashed: bool = False
+    hatched: bool = False
+    motion: np.ndarray | None = None
+    through: tuple[int, ...] = ()
+    depth: float = 0.0
+    band: float = 0.0
+
+
+def surfaces_of(scene: Scene, time: float = 0.0, piston: float | None = None) -> tuple[DrawnSurface, ...]:
+    """Return the looks of all surfaces that are more than a hard wall at rest.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    time : float, [time]
+        Time, which determines where vibrating faces are.
+    piston : float, [length], optional
+        Coordinate of the piston or of the moving wall.
+    """
+    lengths = np.array(scene.container.lengths)
+    drawn = []
+    for name, face in scene.faces.items():
+        if isinstance(face, LeesEdwards):
+            continue  # its images slide; there is no surface
+        axis, upper = "xyz".index(name[0]), "high" in name
+        side = float(lengths[axis]) if upper else 0.0
+        place = side
+        if isinstance(face, Vibrating):
+            inwards = float(face.places(np.array(time)))
+            place = side - inwards if upper else inwards
+        elif isinstance(face, Piston) and piston is not None:
+            place = float(piston)
+        inward = np.eye(scene.dimension)[axis] * (-1.0 if upper else 1.0)
+        look = _look_of(face, scene, inward)
+        text = f"{name.replace('_', ' ')}: {look.pop('text')}"
+        drawn.append(
+            DrawnSurface(_outline(lengths, axis, place), inward, text=text, depth=abs(place - side), **look)
+        )
+    return (*drawn, *_warm_walls(scene))
+
+
+def _look_of(face: Surface, scene: Scene, inward: np.ndarray) -> dict[str, Any]:
+    """Return the attributes of a face's look that depend on its kind."""
+    if isinstance(face, Open):
+        activity = face.activity
+        text = "open, to a vacuum" if not activity else f"open, activity {activity:.3g}"
+        return {
+            "text": text,
+            "colours": _one(_OPEN),
+            "dashed": True,
+            "through": (-1, 1) if activity else (-1,),
+        }
+    if isinstance(face, Piston):
+        stated = ", ".join(f"{key} {value:.3g}" for key, value in vars(face).items() if value is not None)
+        return {"text": f"piston, {stated}", "colours": _one(INK), "hatched": True, "motion": inward}
+    if isinstance(face, Vibrating):
+        text = f"vibrates, amplitude {face.amplitude:.3g}, period {face.period:.3g}"
+        return {"text": text, "colours": _one(INK), "hatched": True}
+    if isinstance(face, Sticky):
+        return {"text": f"sticky below momentum {face.momentum:.3g}", "colours": _one(_STICKY)}
+    if isinstance(face, Well):
+        text = f"well of depth {face.depth:.3g}"
+        if face.temperature is not None:
+            text += f", T = {face.temperature:.3g}"
+        colours = _one(_WELL) if face.temperature is None else _one(colour_of(face.temperature, scene))
+        return {"text": text, "colours": colours, "band": float(face.width)}
+    assert isinstance(face, Thermal)
+    return _thermal_look(face, scene)
+
+
+def _thermal_look(face: Thermal, scene: Scene) -> dict[str, Any]:
+    """Return the look of a thermal face: its temperature, accommodation and motion."""
+    low, high = face.temperatures[0], face.temperatures[-1]
+    text = f"T = {low:.3g}" if low == high else f"T = {low:.3g} to {high:.3g}"
+    temperatures = np.linspace(low, high, 1 if low == high else _PIECES)
+    look: dict[str, Any] = {"colours": np.array([colour_of(float(one), scene) for one in temperatures])}
+    if face.accommodation is not None:
+        text += f", accommodation {face.accommodation:.3g}"
+        look["dashed"] = True
+    if face.slides:
+        velocity = np.array(face.velocity)
+        speed = float(np.linalg.norm(velocity))
+        look |= {"hatched": True, "motion": velocity / speed}
+        text += f", slides at {speed:.3g}"
+    return look | {"text": text}
+
+
+def _warm_walls(scene: Scene) -> tuple[DrawnSurface, ...]:
+    """Return the looks of interior walls that have a temperature or move."""
+    drawn = []
+    for wall in scene.walls:
+        if wall.temperature is None:
+            continue
+        corners = list(wall.corners.values())
+        around = corners if len(corners) == 2 else [corners[0], corners[1], corners[3], corners[2]]
+        colours, text = _one(colour_of(wall.temperature, scene)), f"wall: T = {wall.temperature:.3g}"
+        drawn.append(DrawnSurface(np.array(around, float), np.zeros(scene.dimension), colours, text))
+    return tuple(drawn)
+
+
+def colour_of(temperature: float, scene: Scene) -> Colour:
+    """Return the colour of a temperature among those of a scene's surfaces."""
+    low, high = min(scene.face_temperatures), max(scene.face_temperatures)
+    if not high > low:
+        return _MIDDLE
+    part = (temperature - low) / (high - low)
+    red, green, blue = (cold + part * (hot - cold) for cold, hot in zip(_COLD, _HOT, strict=True))
+    return red, green, blue
+
+
+def _one(colour: Colour) -> np.ndarray:
+    return np.array([colour], dtype=float)
+
+
+def _outline(lengths: np.ndarray, axis: int, place: float) -> np.ndarray:
+    """Return the ends of a face in the plane, or the corners around it in space."""
+    corners = {2: ((0,), (1,)), 3: ((0, 0), (1, 0), (1, 1), (0, 1))}[len(lengths)]
+    return np.insert(np.array(corners) * np.delete(lengths, axis), axis, place, axis=1).astype(float)

@@ -1,0 +1,204 @@
+"""Lengths of the runs of each point: the least processor time with which all claims stay decided.
+
+    python -m gaspart.reproduction.allocation config/config.yaml PAGE
+
+reads a finished run, writes the block `lengths` at the end of the config, and a table of all points to PAGE.
+The run is an independent one: before the next run the config gets another seed.
+
+The variance of a claim is a sum over the points of which its number is made, sum_p c_p / x_p, where x_p is
+the multiple of the length of point p. The part c_p is found by enlarging the uncertainties of the rows of
+point p. A decided claim needs a variance of at most V. The time sum_p t_p x_p, where t_p is the time of point
+p, is least under all these conditions if x_p^2 = sum_k lambda_k c_kp / t_p, with a multiplier lambda_k >= 0
+for each claim k (for one claim: J. Neyman, J. R. Stat. Soc. 97, 558 (1934)).
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from gaspart.reproduction import budget
+from gaspart.reproduction.claims.judging import judge, sufficient
+from gaspart.reproduction.config import checked
+from gaspart.reproduction.table import MADE_OF
+
+IN_HAND = 1.3
+"""Factor by which the length of the runs of a claim is larger than the claim needs."""
+SHORTEST, LONGEST = 0.1, 1.5
+"""Limits of the multiples."""
+_ENLARGED = 2.0
+"""Factor by which variances are enlarged, to find their parts."""
+_EXPLAINED = 0.98
+"""Part of a variance above which the rest is an effect of rounding."""
+_HEAD = "\nlengths:"
+
+
+@dataclass(frozen=True)
+class Demand:
+    """A decided claim of a figure. parts: the part of its variance that each point has, of which the sum is 1
+    or less; rest: the part that no single point has; most: the multiple of the variance that it may have."""
+
+    figure: str
+    claim: str
+    parts: Mapping[str, float]
+    rest: float
+    most: float
+
+
+def demands(figure: str, block: Mapping, dataset: xr.Dataset) -> Iterator[Demand]:
+    """Find the demands of the claims of a figure that runs decide and that are decided."""
+    before = budget.claims_of(figure, block, dataset)
+    rows = list(_rows(dataset))
+    after = [budget.claims_of(figure, block, _enlarged(dataset, place)) for place, _ in rows]
+    for n, (claim, verdict) in enumerate(zip(before, judge(before), strict=True)):
+        multiple = sufficient(claim)
+        if not budget.is_decided_by_runs(claim) or not multiple <= 1.0 or verdict == "inconclusive":
+            continue
+        parts: dict[str, float] = {}
+        for (_, points), stated in zip(rows, after, strict=True):
+            grown = (stated[n].measured.error / claim.measured.error) ** 2 - 1.0
+            for point in points:
+                part = max(grown, 0.0) / (_ENLARGED - 1.0) / len(points)
+                parts[point] = parts.get(point, 0.0) + part
+        total = sum(parts.values())
+        scale = 1.0 / max(total, 1.0)
+        parts = {point: part * scale for point, part in parts.items() if part > 0.0}
+        rest = 0.0 if total > _EXPLAINED else 1.0 - total
+        yield Demand(figure, claim.claim, parts, rest, 1.0 / (multiple * IN_HAND))
+
+
+def _rows(dataset: xr.Dataset) -> Iterator[tuple[dict[str, int], list[str]]]:
+    """Find the rows of a measurement that state their points: place by dimension, points."""
+    for name, column in dataset.variables.items():
+        if str(name).endswith(MADE_OF):
+            for place, text in np.ndenumerate(column.values.astype(object)):
+                if isinstance(text, str):  # else a gap of a table with two dimensions
+                    yield dict(zip(map(str, column.dims), place, strict=True)), text.splitlines()
+
+
+def _enlarged(dataset: xr.Dataset, place: Mapping[str, int]) -> xr.Dataset:
+    """Return the data with enlarged uncertainties, and an enlarged scatter of replicas, in a row."""
+    factor = np.ones([dataset.sizes[over] for over in place])
+    factor[tuple(place.values())] = math.sqrt(_ENLARGED)
+    scale = xr.DataArray(factor, dims=tuple(place))
+    changed = {}
+    for name, column in dataset.data_vars.items():
+        replicas = [dim for dim in column.dims if str(dim).endswith("replica")]
+        if not set(place) <= set(column.dims):
+            continue
+        if str(name).endswith("_error"):
+            changed[name] = (column * scale).transpose(*column.dims)
+        elif replicas and column.dtype.kind == "f":
+            mean = column.mean(replicas)
+            changed[name] = (mean + (column - mean) * scale).transpose(*column.dims)
+    return dataset.assign(changed)
+
+
+def allocated(
+    demanded: Sequence[Demand], cost: Mapping[str, float], shown: Mapping[str, Sequence[str]]
+) -> tuple[dict[str, float], list[float]]:
+    """Return the multiple of the length of each point, and the price of each demand.
+
+    cost: time of each point, in s; shown: the points of each figure. The price is the time in s that e times
+    (2.72) the variance would save. The points of a figure that no row states, and those of a claim with a
+    rest, have the multiple that would suffice if all points had it.
+    """
+    names = sorted(cost)
+    index = {name: n for n, name in enumerate(names)}
+    least = np.full(len(names), SHORTEST)
+    shares = np.zeros((len(demanded), len(names)))
+    for k, demand in enumerate(demanded):
+        for point, part in demand.parts.items():
+            shares[k, index[point]] = part
+    for figure, points in shown.items():
+        own = [demand for demand in demanded if demand.figure == figure]
+        stated = {point for demand in own for point in demand.parts}
+        needed = max((1.0 / demand.most for demand in own), default=1.0)
+        uniform = max((1.0 / demand.most for demand in own if demand.rest), default=SHORTEST)
+        for point in points:
+            n = index[point]
+            least[n] = max(least[n], min(uniform if point in stated else needed, 1.0))
+    most = np.array([demand.most for demand in demanded])
+    times = np.array([max(cost[name], 1e-3) for name in names])
+    lengths, prices = _least_cost(shares / most[:, None], times, least)
+    return dict(zip(names, lengths.tolist(), strict=True)), prices.tolist()
+
+
+def _least_cost(shares: np.ndarray, times: np.ndarray, least: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Minimise sum t x under shares @ (1 / x) <= 1 and least <= x <= LONGEST.
+
+    Returns x and the multipliers of the first conditions, which are found by multiplication with what is
+    missing, or too much.
+    """
+    lengths = np.maximum(least, SHORTEST)
+    multipliers = np.where(shares.any(axis=1), times.mean(), 0.0)
+    for _ in range(4000):
+        lengths = np.clip(np.sqrt(multipliers @ shares / times), least, LONGEST)
+        multipliers *= (shares @ (1.0 / lengths)) ** 0.5
+    missing = max(1.0, float((shares @ (1.0 / lengths)).max(initial=0.0)))
+    return lengths * missing, multipliers
+
+
+def main(path: str, page: str) -> None:
+    """Allocate lengths by the run of a config; see the module."""
+    with checked(path) as (config, planned):
+        results = Path("results") / (config.get("run") or "")
+        shown = budget.shown_points(config, planned)
+        demanded = [
+            demand
+            for figure in shown
+            for demand in demands(figure, config["figures"][figure], _measured(results, figure))
+        ]
+        names = {figure: ["/".join(point) for point in points] for figure, points in shown.items()}
+        points = {point for points in shown.values() for point in points}
+        cost = {"/".join(point): budget.point_seconds(results, point) for point in points}
+        found, prices = allocated(demanded, cost, names)
+        had = config.get("lengths") or {}
+    for name in found:
+        experiment, _, point = name.partition("/")
+        found[name] = max(SHORTEST, found[name] * (had.get(experiment) or {}).get(point, 1.0))
+    _write_lengths(Path(path), found)
+    Path(page).write_text(_page(found, cost, demanded, prices), encoding="utf-8")
+
+
+def _measured(results: Path, figure: str) -> xr.Dataset:
+    return xr.load_dataset(results / "measurements" / f"{figure}.nc")
+
+
+def _write_lengths(path: Path, multiples: Mapping[str, float]) -> None:
+    """Replace the block at the end of a config."""
+    lines = [_HEAD.strip()]
+    for experiment, points in itertools.groupby(multiples, key=lambda name: name.partition("/")[0]):
+        lines.append(f"  {experiment}:")
+        lines += [f'    "{name.partition("/")[2]}": {multiples[name]:.2g}' for name in points]
+    before = path.read_text(encoding="utf-8").partition(_HEAD)[0]
+    path.write_text(before.rstrip() + "\n\n" + "\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _page(
+    multiples: Mapping[str, float],
+    cost: Mapping[str, float],
+    demanded: Sequence[Demand],
+    prices: Sequence[float],
+) -> str:
+    """Return a table of all points, the dearest first, and one of the claims that cost most."""
+    rows = ["| point | s in the run | multiple | claim that needs it most |", "| --- | --- | --- | --- |"]
+    for point in sorted(multiples, key=lambda name: -cost[name]):
+        neediest = max(demanded, key=lambda one: one.parts.get(point, 0.0) / one.most, default=None)
+        text = f"{neediest.figure}: {neediest.claim}" if neediest and point in neediest.parts else "–"
+        rows.append(f"| {point} | {cost[point]:.1f} | {multiples[point]:.2g} | {text} |")
+    rows += ["", "| claim | s saved by e times its variance | length that it needs |", "| --- | --- | --- |"]
+    for demand, price in sorted(zip(demanded, prices, strict=True), key=lambda pair: -pair[1]):
+        rows.append(f"| {demand.figure}: {demand.claim} | {price:.1f} | {1.0 / demand.most:.2g} |")
+    return "\n".join(rows) + "\n"
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

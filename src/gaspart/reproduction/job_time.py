@@ -1,0 +1,41 @@
+"""Processor time and memory of a job of the workflow, as the last line of its log.
+
+Snakemake samples the processor time of a job now and then, and not at its end: of 736 s it recorded 607 s. A
+job that a server runs it does not see at all. So each job asks the operating system when its work is done.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+from gaspart.system import largest_memory
+
+_LINE = re.compile(r"^processor time: (\d+\.\d+) s, memory: (\d+\.\d+|nan) MB$", re.MULTILINE)
+
+
+class Used(NamedTuple):
+    """Processor time of a job with its children, in s, and its largest memory, in MB; nan where unknown."""
+
+    seconds: float
+    memory: float
+
+
+def stated() -> str:
+    """Return the line for the log of this process."""
+    return f"processor time: {sum(os.times()[:4]):.2f} s, memory: {largest_memory() / 1e6:.1f} MB"
+
+
+def used(results: Path, rule: str, *names: str) -> Used | None:
+    """Return what the log of a job states; None if it states nothing.
+
+    results: the folder of the logs' folder; names: the wildcards of the rule, as folders and file of the log.
+    """
+    log = (results / "logs").joinpath(rule, *names)
+    try:
+        found = _LINE.findall(log.with_name(f"{log.name}.log").read_text(encoding="utf-8", errors="replace"))
+    except FileNotFoundError:
+        return None
+    return Used(*map(float, found[-1])) if found else None

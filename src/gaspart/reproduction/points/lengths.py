@@ -1,0 +1,62 @@
+"""The settings of a point whose runs have a multiple of their length.
+
+An uncertainty falls as the inverse root of the length. So a point of which no claim needs much can be shorter
+than the others of its grid: `lengths` of a config has the multiples.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from gaspart.reproduction.points.point_keys import LENGTHS
+
+_LEAST_REPLICAS = 6
+"""Number of replicas below which their scatter no longer tells the uncertainty."""
+_LEAST_SAMPLES = 32
+"""Number of samples below which runs have no fewer: blocks are made of them."""
+_LEAST_TIMINGS = 3
+_OF_SEEDS = ("echo", "fill", "pack")
+"""Jobs whose work is the same for each replica, whatever the length."""
+
+
+def scaled(job: str, settings: Mapping[str, Any], multiple: float) -> dict[str, Any]:
+    """Return the settings with `multiple` times as many replicas, and for the rest with longer runs.
+
+    Runs keep the interval between samples as long as there are enough of these. The length of a run that does
+    not begin with an equilibration is not changed: it describes how something proceeds.
+    """
+    made = dict(settings)
+    replicas = made.get("replicas", 1)
+    if replicas > 1 and job in ("simulate", *_OF_SEEDS):
+        made["replicas"] = max(math.ceil(replicas * multiple - 1e-9), min(replicas, _LEAST_REPLICAS))
+        multiple *= replicas / made["replicas"]
+    if job in _OF_SEEDS or (job == "simulate" and not made.get("equilibration")) or "until" in made:
+        return made
+    if job == "simulate" and "lags" not in made:
+        return made | _resampled(made, multiple, _LEAST_SAMPLES, even=False)
+    return made | _resampled(made, multiple, 1 if job == "simulate" else _LEAST_TIMINGS, even=True)
+
+
+def _resampled(settings: Mapping[str, Any], multiple: float, least: int, even: bool) -> dict[str, Any]:
+    """Return the length and the samples of a run that is `multiple` times as long.
+
+    even: whether all intervals between samples stay as they are, as those between lags and of timings do.
+    """
+    found: dict[str, Any] = {}
+    samples = settings.get("samples", 1)
+    each = samples // settings["frames"] if "frames" in settings else 1  # samples of a frame
+    frames = math.ceil(samples / each * multiple - 1e-9)
+    frames = max(frames, min(samples // each, least))
+    if "samples" in settings:
+        found["samples"] = frames * each
+    if "frames" in settings:
+        found["frames"] = frames
+    if even:
+        multiple = frames * each / samples
+    for unit in LENGTHS.keys() & settings.keys():
+        found[unit] = settings[unit] * multiple
+    if "steps" in found:
+        found["steps"] = max(1, round(found["steps"]))
+    return found

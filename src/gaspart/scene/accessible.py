@@ -1,0 +1,296 @@
+r"""Accessible volume and areas: where centres of particles of a radius can be.
+
+A centre can be at a point if a particle there overlaps no wall of the container, no interior wall and no
+fixed particle; other particles that move do not count, nor whether a way leads there. A body is a ball, a
+segment or a rectangle, grown by the radius of the particle: it is convex, and covers one interval of a
+line. On a face of a container of two dimensions the accessible length is that of the line without these
+intervals, exactly. Otherwise it is exact where no body reaches, and where bodies overlap neither each other
+nor the border; elsewhere it is the mean over `SETS` sets of `LINES` parallel lines, shifted at random,
+whose error is the scatter of the sets.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.scene.geometry import ball_volume
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
+    from gaspart.scene.walls import Plate, Wall
+
+LINES, SETS = 8192, 8
+"""Lines of a set, and number of sets."""
+SPREADING = {1: 1.61803398874989484820, 2: 1.32471795724474602596}
+"""Numbers whose powers spread points evenly along one or two axes: x^(d + 1) = x + 1 (Roberts 2018)."""
+
+
+class Measure(NamedTuple):
+    """A volume or an area, and the estimated error of its quadrature, 0 where it is exact."""
+
+    value: float
+    error: float
+
+
+class Ball(NamedTuple):
+    """A ball: centre (d,) and radius."""
+
+    centre: np.ndarray
+    radius: float
+
+    @property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest coordinates, (d,) each."""
+        return self.centre - self.radius, self.centre + self.radius
+
+    def moved(self, shift: np.ndarray) -> Ball:
+        """Return a copy at another position."""
+        return Ball(self.centre + shift, self.radius)
+
+    def interval(self, points: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the ends of the interval covered on each line along an axis through points (M, d), inf and
+        -inf if there is none."""
+        away = np.delete(points - self.centre, axis, axis=1)
+        square = self.radius**2 - (away**2).sum(axis=1)
+        half = np.sqrt(np.maximum(square, 0.0))
+        hit = square > 0.0
+        return (
+            np.where(hit, self.centre[axis] - half, np.inf),
+            np.where(hit, self.centre[axis] + half, -np.inf),
+        )
+
+
+class Slab(NamedTuple):
+    """Points within a distance of the inside of a segment or a rectangle: from `start` (d,), its orthogonal
+    `edges` (K, d). Its rim is not included."""
+
+    start: np.ndarray
+    edges: np.ndarray
+    distance: float
+
+    @property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest coordinates, (d,) each, or a little beyond."""
+        sums = np.array(
+            [np.sum(part, axis=0) for part in product(*((0.0 * edge, edge) for edge in self.edges))]
+        )
+        return self.start + sums.min(axis=0) - self.distance, self.start + sums.max(axis=0) + self.distance
+
+    def moved(self, shift: np.ndarray) -> Slab:
+        """Return a copy at another position."""
+        return Slab(self.start + shift, self.edges, self.distance)
+
+    def interval(self, points: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the same as `Ball.interval`: p + t e is inside where 0 <= its part along each edge <= 1
+        and its distance from their span, a quadratic function of t, is small enough."""
+        from_start = np.array(points)
+        from_start[:, axis] = 0.0
+        from_start -= self.start
+        lower, upper = np.full(len(points), -np.inf), np.full(len(points), np.inf)
+        along = np.zeros(len(self.start))
+        along[axis] = 1.0
+        for edge in self.edges:
+            square = edge @ edge
+            part, slope = from_start @ edge / square, edge[axis] / square
+            low, high = _between(part, slope, 0.0, 1.0)
+            lower, upper = np.maximum(lower, low), np.minimum(upper, high)
+            from_start = from_start - np.multiply.outer(part, edge)
+            along = along - slope * edge
+        square = along @ along
+        if square < 1e-24:  # the line is parallel to the span
+            inside = (from_start**2).sum(axis=1) < self.distance**2
+            return np.where(inside, lower, np.inf), np.where(inside, upper, -np.inf)
+        middle = -(from_start @ along) / square
+        left = self.distance**2 - (from_start**2).sum(axis=1) + square * middle**2
+        half = np.sqrt(np.maximum(left, 0.0) / square)
+        lower, upper = np.maximum(lower, middle - half), np.minimum(upper, middle + half)
+        hit = (left > 0.0) & (lower < upper)
+        return np.where(hit, lower, np.inf), np.where(hit, upper, -np.inf)
+
+
+def _between(part: np.ndarray, slope: float, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the t for which low <= part + slope t <= high."""
+    if slope == 0.0:
+        inside = (part >= low) & (part <= high)
+        return np.where(inside, -np.inf, np.inf), np.where(inside, np.inf, -np.inf)
+    one, other = (low - part) / slope, (high - part) / slope
+    return np.minimum(one, other), np.maximum(one, other)
+
+
+class Body(NamedTuple):
+    """A fixed particle or an interior wall, grown: the parts whose union it is, and its volume."""
+
+    parts: list[Ball | Slab]
+    volume: float
+
+    @property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest coordinates, (d,) each."""
+        lower, upper = zip(*(part.bounds for part in self.parts), strict=True)
+        return np.min(lower, axis=0), np.max(upper, axis=0)
+
+    def is_apart(self, other: Body) -> bool:
+        """Return True if it is known to have no point in common with another body."""
+        one, two = self.parts[0], other.parts[0]
+        if isinstance(one, Ball) and isinstance(two, Ball):
+            return bool(((one.centre - two.centre) ** 2).sum() >= (one.radius + two.radius) ** 2)
+        (low, high), (least, most) = self.bounds, other.bounds
+        return bool(((low >= most) | (high <= least)).any())
+
+
+def grown_wall(wall: Wall | Plate, radius: float) -> Body:
+    """Return an interior wall grown by a radius (Steiner's formula)."""
+    corners = [np.array(corner, float) for corner in wall.corners.values()]
+    edges = np.array([corner - corners[0] for corner in corners[1:3]])
+    sides, d = np.sqrt((edges**2).sum(axis=1)), len(corners[0])
+    slabs = [Slab(corners[0], edges, radius)]
+    volume = ball_volume(d, radius) + 2.0 * radius * float(sides.prod())
+    if d == 3:
+        one, other = edges
+        rim = (corners[0], one), (corners[0], other), (corners[2], one), (corners[1], other)
+        slabs += [Slab(start, edge[None], radius) for start, edge in rim]
+        volume += ball_volume(2, radius) * float(sides.sum())
+    return Body([*slabs, *(Ball(corner, radius) for corner in corners)], volume)
+
+
+class Accessible:
+    """Accessible volume and areas of a scene, for each radius found once.
+
+    fixed: positions (F, d) and radii (F,) of its fixed particles, by default those of its single particles.
+    Raises SceneError for fixed species without them: their positions are known of a run, not of a scene.
+    """
+
+    def __init__(self, scene: Scene, fixed: tuple[np.ndarray, np.ndarray] | None = None) -> None:
+        self._scene = scene
+        if fixed is None and any(kind.fixed and kind.count for kind in scene.species):
+            rule = "has positions in a run only: the accessible volume of the scene alone is not known"
+            raise SceneError("species.fixed", True, rule)
+        if fixed is None:
+            single = [one for one in scene.particles if one.fixed]
+            fixed = np.array([one.position for one in single]), np.array([one.radius for one in single])
+        self._fixed = list(zip(*fixed, strict=True))
+        self._found: dict[tuple[float, int | None], Measure] = {}
+
+    def volume(self, radius: float) -> Measure:
+        """Return the volume, in two dimensions the area, that centres of particles of a radius can
+        reach."""
+        return self._measure(radius, None)
+
+    def areas(self, radii: np.ndarray) -> np.ndarray:
+        """Return the area of each face, in two dimensions the length, that centres of particles of radii (K,)
+        can reach, (K, 2d)."""
+        scene, faces = self._scene, range(2 * self._scene.dimension)
+        if self._fixed or scene.walls:
+            return np.array([[self._measure(r, face).value for face in faces] for r in radii.tolist()])
+        margins = 2.0 * radii[:, None] * (not scene.centres_to_walls) * ~np.array(scene.container.periodic)
+        sides = np.array(scene.container.lengths) - margins
+        across = [np.delete(sides, axis, axis=1).prod(axis=1) for axis in range(scene.dimension)]
+        return np.repeat(np.stack(across, axis=1), 2, axis=1)
+
+    def _bodies(self, radius: float) -> list[Body]:
+        """All bodies grown by a radius, and their periodic images."""
+        bodies = [
+            Body([Ball(place, size + radius)], ball_volume(len(place), size + radius))
+            for place, size in self._fixed
+        ]
+        bodies += [grown_wall(wall, radius) for wall in self._scene.walls]
+        lengths, periodic = np.array(self._scene.container.lengths), self._scene.container.periodic
+        shifts = [
+            np.array(one) * lengths
+            for one in product(*((-1.0, 0.0, 1.0) if around else (0.0,) for around in periodic))
+        ]
+        return [
+            Body([part.moved(shift) for part in body.parts], body.volume)
+            for body in bodies
+            for shift in shifts
+        ]
+
+    def _measure(self, radius: float, face: int | None) -> Measure:
+        if (radius, face) not in self._found:
+            self._found[radius, face] = self._computed(radius, face)
+        return self._found[radius, face]
+
+    def _computed(self, radius: float, face: int | None) -> Measure:
+        """The volume, or the area of a face."""
+        lower, upper = (np.array(ends) for ends in self._scene.reach(radius))
+        axes = [axis for axis in range(len(lower)) if face is None or axis != face // 2]
+        if face is not None:  # the plane in which centres touch it
+            lower[face // 2] = upper[face // 2] = (lower, upper)[face % 2][face // 2]
+        whole = float((upper - lower)[axes].prod())
+        near = [body for body in self._bodies(radius) if _meets(body, lower, upper)]
+        if not near or not whole > 0.0:
+            return Measure(whole, 0.0)
+        if face is None and (covered := _apart(near, lower, upper, self._scene)) is not None:
+            return Measure(whole - covered, 0.0)
+        parts = [part for body in near for part in body.parts]
+        if len(axes) == 1:
+            return Measure(float(free_lengths(parts, lower[None], axes[0], (lower, upper))[0]), 0.0)
+        means = [free_fraction(parts, axes, (lower, upper), shift) for shift in range(SETS)]
+        return Measure(whole * float(np.mean(means)), whole * float(np.std(means, ddof=1)) / SETS**0.5)
+
+
+def _meets(body: Body, lower: np.ndarray, upper: np.ndarray) -> bool:
+    """Return True if the bounds of a body have points inside a box."""
+    low, high = body.bounds
+    return bool((high > lower).all() and (low < upper).all())
+
+
+def _apart(bodies: list[Body], lower: np.ndarray, upper: np.ndarray, scene: Scene) -> float | None:
+    """Return the volume of bodies that are inside a box, but for images beyond periodic faces, and apart
+    from each other; None for others."""
+    periodic, lengths = np.array(scene.container.periodic), np.array(scene.container.lengths)
+    total = 0.0
+    for n, body in enumerate(bodies):
+        low, high = body.bounds
+        if not (periodic | ((low >= lower) & (high <= upper))).all() or (high - low > lengths).any():
+            return None
+        if not all(body.is_apart(other) for other in bodies[:n]):
+            return None
+        middle = 0.5 * (low + high)
+        total += body.volume * bool((~periodic | ((middle >= 0.0) & (middle < lengths))).all())
+    return total
+
+
+def free_fraction(
+    parts: list[Ball | Slab], axes: list[int], ends: tuple[np.ndarray, np.ndarray], shift: int
+) -> float:
+    """Return the mean free fraction of `LINES` lines along the first of some axes, evenly spread over the
+    others and shifted at random, with this number of the shift."""
+    (lower, upper), across = ends, axes[1:]
+    steps = SPREADING[len(across)] ** -np.arange(1.0, len(across) + 1)
+    random = np.random.default_rng(shift).random(len(across))
+    points = np.tile(lower, (LINES, 1))
+    places = (np.multiply.outer(np.arange(LINES), steps) + random) % 1.0
+    points[:, across] += places * (upper - lower)[across]
+    return float(free_lengths(parts, points, axes[0], ends).mean() / (upper - lower)[axes[0]])
+
+
+def free_lengths(
+    parts: list[Ball | Slab], points: np.ndarray, axis: int, ends: tuple[np.ndarray, np.ndarray]
+) -> np.ndarray:
+    """Return the length of each line along an axis through points (M, d), between ends (d,), that parts of
+    bodies leave."""
+    low, high = (float(end[axis]) for end in ends)
+    lines, starts, stops = [], [], []
+    across = [k for k in range(points.shape[1]) if k != axis]
+    for body in parts:
+        least, most = body.bounds
+        near = np.flatnonzero(((points >= least) & (points <= most))[:, across].all(axis=1))
+        start, stop = (np.clip(end, low, high) for end in body.interval(points[near], axis))
+        hit = start < stop
+        lines.append(near[hit])
+        starts.append(start[hit])
+        stops.append(stop[hit])
+    line, start, stop = (np.concatenate(each) for each in (lines, starts, stops))
+    # One coordinate for all lines, in which each is a stretch of its own beyond those before it.
+    stretch = 2.0 * (high - low)
+    order = np.lexsort((start, line))
+    line, start, stop = line[order], (start + line * stretch)[order], (stop + line * stretch)[order]
+    reached = np.maximum.accumulate(stop) if len(stop) else stop
+    before = np.concatenate([[-np.inf], reached[:-1]])
+    covered = np.maximum(stop - np.maximum(start, before), 0.0)
+    return np.maximum((high - low) - np.bincount(line, covered, len(points)), 0.0)

@@ -1,0 +1,372 @@
+"""Facts of a scene: what follows from the keys of a `Scene`, each with one definition, computed once.
+
+Observables, theory, tallies, refusals and advice ask these properties by name and compute none of them. A
+`Scene` has them as its own attributes:
+
+- faces: `numbered_faces`, `faces_of(kind)`, `pistons`, `sliding_faces`, `partial_faces`, `ramps`,
+  `thermal_numbers`,
+  `drawing_numbers`, `face_temperatures`;
+- container: `dimension`, `is_periodic`, `walled_axes`, `image_axes`;
+- matter: `kinds`, `moving_kinds`, `count`, `moving_count`, `capacity`, `has_fixed`, `has_obstacles`, `alike`,
+  `has_unequal_areas`, `largest_radius`, `smallest_radius`, `largest_moving_radius`, `number_density`,
+  `packing_fraction`, `gas`, `mixture`;
+- motion: `is_open`, `open_axes`, `moving_axes`, `moving_wall`, `has_piston`, `load_axis`, `shear_rate`,
+  `driven_axes`, `flow_axes`, `flow_changes`, `frame_velocity`, `drags_faces`, `conserved_axes`, `dissipates`,
+  `vibrates`, `rough`;
+- `features`, the names of its features.
+
+The volume and the areas that centres of particles can reach are in `accessible`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeVar
+
+from gaspart.scene.container import Container
+from gaspart.scene.faces import (
+    FACES,
+    GRADIENT,
+    LeesEdwards,
+    Open,
+    Piston,
+    Sticky,
+    Surface,
+    Thermal,
+    Vibrating,
+)
+from gaspart.scene.features import FEATURES
+from gaspart.scene.gas import Gas, Mixture, mixture_of
+from gaspart.scene.geometry import ball_volume
+from gaspart.scene.moving_walls import MovingWall, moving_wall_among
+from gaspart.scene.open_faces import capacity
+from gaspart.scene.restitution import Restitution
+from gaspart.scene.species import Particle, Species
+from gaspart.scene.thermostat import Thermostat
+from gaspart.scene.walls import Plate, Wall
+
+if TYPE_CHECKING:
+    from gaspart.scene.scene import Scene
+
+S = TypeVar("S", bound=Surface)
+_CONTACT = 0.01
+"""Default duration of a contact, in units of sqrt(d/g)."""
+
+
+class Facts:
+    """Facts of a scene, in the dimension d, as attributes of a `Scene`."""
+
+    container: Container
+    species: Sequence[Species]
+    particles: Sequence[Particle]
+    centres_to_walls: bool
+    gravity: tuple[float, ...] | None
+    restitution: Restitution | None
+    walls: Sequence[Wall | Plate]
+    faces: dict[str, Surface]
+    thermostat: Thermostat | None
+
+    @cached_property
+    def features(self: Scene) -> frozenset[str]:  # type: ignore[misc]
+        """Names of the scene's features, keys of `features.FEATURES`."""
+        return frozenset(name for name, feature in FEATURES.items() if feature.value(self) is not None)
+
+    @cached_property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return self.container.dimension
+
+    @cached_property
+    def is_periodic(self) -> bool:
+        """True if all axes are periodic."""
+        return all(self.container.periodic)
+
+    @cached_property
+    def walled_axes(self) -> tuple[int, ...]:
+        """Axes that are not periodic: each has a face at both ends."""
+        return tuple(axis for axis, around in enumerate(self.container.periodic) if not around)
+
+    @cached_property
+    def image_axes(self) -> tuple[bool, ...]:
+        """(d,) True for axes with images of the particles at the container's length, always: the periodic
+        axes, without the gradient of a sheared gas, whose images slide."""
+        sheared = self.shear_rate is not None
+        return tuple(
+            around and not (sheared and axis == GRADIENT)
+            for axis, around in enumerate(self.container.periodic)
+        )
+
+    @cached_property
+    def numbered_faces(self) -> tuple[tuple[int, Surface], ...]:
+        """Faces with a kind, with their numbers, in the order of the numbers."""
+        names = enumerate(FACES[: 2 * self.dimension])
+        return tuple((n, self.faces[name]) for n, name in names if name in self.faces)
+
+    @cached_property
+    def _faces_by_kind(self) -> dict[type[Surface], list[tuple[int, Surface]]]:
+        """Faces of each kind, with their numbers."""
+        found: dict[type[Surface], list[tuple[int, Surface]]] = {}
+        for number, face in self.numbered_faces:
+            found.setdefault(type(face), []).append((number, face))
+        return found
+
+    def faces_of(self, kind: type[S]) -> list[tuple[int, S]]:
+        """Return the faces of a kind, with their numbers."""
+        return self._faces_by_kind.get(kind, [])  # type: ignore[return-value]
+
+    @cached_property
+    def pistons(self) -> list[tuple[int, Piston]]:
+        """Faces that are pistons, at most one, with their numbers."""
+        return self.faces_of(Piston)
+
+    @cached_property
+    def sliding_faces(self) -> list[tuple[int, Thermal]]:
+        """Faces that move along themselves, with their numbers."""
+        return [(n, face) for n, face in self.faces_of(Thermal) if face.slides]
+
+    @cached_property
+    def partial_faces(self) -> list[tuple[int, Thermal]]:
+        """Faces that do not draw velocities after every hit, with their numbers."""
+        return [(n, face) for n, face in self.faces_of(Thermal) if face.accommodation is not None]
+
+    @cached_property
+    def ramps(self) -> list[tuple[int, Thermal]]:
+        """Faces whose temperature varies along them, with their numbers."""
+        return [(n, face) for n, face in self.faces_of(Thermal) if face.varies_along is not None]
+
+    @cached_property
+    def thermal_numbers(self) -> list[int]:
+        """Numbers of the faces at a temperature, those behind a well included."""
+        return [n for n, face in self.numbered_faces if face.rule[0] in ("thermal", "thermal_normal")]
+
+    @cached_property
+    def drawing_numbers(self) -> list[int]:
+        """Numbers of the faces that draw all components of a velocity, and so act along themselves."""
+        return [n for n, face in self.numbered_faces if face.rule[0] == "thermal"]
+
+    @cached_property
+    def face_temperatures(self) -> frozenset[float]:
+        """Temperatures of all faces and interior walls that have one; of a face that varies, both ends."""
+        warm = {wall.temperature for wall in self.walls if wall.temperature is not None}
+        return frozenset(warm.union(*(face.temperatures for face in self.faces.values())))
+
+    @cached_property
+    def kinds(self) -> tuple[Species | Particle, ...]:
+        """Species followed by single particles: all that has a radius and a mass."""
+        return (*self.species, *self.particles)
+
+    @cached_property
+    def moving_kinds(self) -> tuple[Species | Particle, ...]:
+        """Those of `kinds` that have particles and are not fixed."""
+        return tuple(kind for kind in self.kinds if kind.count and not kind.fixed)
+
+    @cached_property
+    def count(self) -> int:
+        """Number of particles; with open faces, at the start."""
+        return sum(kind.count for kind in self.kinds)
+
+    @cached_property
+    def moving_count(self) -> int:
+        """Number of particles that are not fixed."""
+        return sum(kind.count for kind in self.moving_kinds)
+
+    @cached_property
+    def has_fixed(self) -> bool:
+        """True if any particle is fixed."""
+        return any(kind.fixed and kind.count for kind in self.kinds)
+
+    @cached_property
+    def has_obstacles(self) -> bool:
+        """True if anything but particles that move is inside the container: fixed particles or interior
+        walls."""
+        return self.has_fixed or bool(self.walls)
+
+    @cached_property
+    def capacity(self: Scene) -> int:  # type: ignore[misc]
+        """Greatest number of particles at any time: `count`, unless faces are open."""
+        return capacity(self)
+
+    @cached_property
+    def number_density(self) -> float:
+        """Particles per volume (area) of the container."""
+        return self.count / self.container.volume
+
+    @cached_property
+    def packing_fraction(self) -> float:
+        """Volume (3D) or area (2D) of all particles divided by the volume of the container."""
+        particles = sum(particle.radius**self.dimension for particle in self.particles)
+        species = sum(kind.total_power(self.dimension) for kind in self.species)
+        return ball_volume(self.dimension) * (particles + species) / self.container.volume
+
+    @cached_property
+    def largest_radius(self) -> float:
+        """Largest radius of any particle (0 in an empty scene)."""
+        return max((kind.largest_radius for kind in self.kinds if kind.count), default=0.0)
+
+    @cached_property
+    def smallest_radius(self) -> float:
+        """Smallest radius of any particle (0 in an empty scene)."""
+        return min((kind.smallest_radius for kind in self.kinds if kind.count), default=0.0)
+
+    @cached_property
+    def largest_moving_radius(self) -> float:
+        """Largest radius of any particle that is not fixed (0 if there is none)."""
+        return max((kind.largest_radius for kind in self.moving_kinds), default=0.0)
+
+    @cached_property
+    def has_unequal_areas(self) -> bool:
+        """True if particles that move have several sizes, which may reach other areas of a face."""
+        many = len({kind.radius for kind in self.moving_kinds}) > 1
+        sizes = many or not all(kind.alike for kind in self.moving_kinds)
+        beside = len(self.walled_axes) > 1 and not self.centres_to_walls
+        return sizes and (beside or (bool(self.walled_axes) and self.has_obstacles))
+
+    @cached_property
+    def alike(self) -> bool:
+        """True if all particles have one radius and one mass."""
+        kinds = [kind for kind in self.kinds if kind.count]
+        return len({(kind.radius, kind.mass) for kind in kinds}) < 2 and all(kind.alike for kind in kinds)
+
+    @cached_property
+    def gas(self: Scene) -> Gas | None:  # type: ignore[misc]
+        """The plain gas that the scene is, at the temperature of its initial velocities; None if it is
+        empty, has particles of several sizes or masses, or has any feature but `centres_to_walls`."""
+        kinds = [kind for kind in self.kinds if kind.count]
+        if not kinds or not self.alike or self.features - {"centres_to_walls"}:
+            return None
+        kind, dimension, count = kinds[0], self.dimension, self.count
+        temperature = kind.initial_temperature(dimension)
+        if len(kinds) > 1:
+            temperature = sum(each.count * each.initial_temperature(dimension) for each in kinds) / count
+        fraction = count * ball_volume(dimension, kind.radius) / self.container.volume
+        return Gas(dimension, fraction, count, 2.0 * kind.radius, temperature, kind.mass)
+
+    @cached_property
+    def mixture(self: Scene) -> Mixture | None:  # type: ignore[misc]
+        """The mixture of plain gases that the scene is; None if it is empty, or has any feature but
+        `polydispersity` and `centres_to_walls`."""
+        if self.features - {"polydispersity", "centres_to_walls"}:
+            return None
+        return mixture_of(self)
+
+    @cached_property
+    def contact_duration(self) -> float:
+        """Time after a contact of a particle within which its next contacts are elastic (`Restitution`), 0
+        if all dissipate. By default 0.01 sqrt(d/g), d the smallest diameter, if there is gravity g."""
+        law = self.restitution
+        if law is None or not law.dissipative:
+            return 0.0
+        if law.contact_duration is not None:
+            return law.contact_duration
+        if self.gravity is None:
+            return 0.0
+        return _CONTACT * math.sqrt(2.0 * self.smallest_radius / math.hypot(*self.gravity))
+
+    @cached_property
+    def rough(self) -> bool:
+        """True if contacts change spins."""
+        return self.restitution is not None and self.restitution.rough
+
+    @cached_property
+    def dissipates(self) -> bool:
+        """True if contacts lose energy."""
+        return self.restitution is not None and self.restitution.dissipative
+
+    @cached_property
+    def vibrates(self) -> bool:
+        """True if any particle may store energy in a vibration: a fixed one, or one that sticks to a
+        face."""
+        return bool(self.faces_of(Sticky)) or any(kind.vibrates for kind in self.kinds)
+
+    @cached_property
+    def is_open(self) -> bool:
+        """True if the number of particles varies, through open faces."""
+        return bool(self.faces_of(Open))
+
+    @cached_property
+    def open_axes(self) -> tuple[int, ...]:
+        """Axes with an open face."""
+        return tuple(sorted({number // 2 for number, _ in self.faces_of(Open)}))
+
+    @cached_property
+    def moving_wall(self) -> MovingWall | None:
+        """The interior wall that moves, None without one."""
+        return moving_wall_among(self.walls, self.container.lengths)
+
+    @cached_property
+    def has_piston(self) -> bool:
+        """True if a face or an interior wall moves as particles and its load push it."""
+        return bool(self.pistons) or self.moving_wall is not None
+
+    @cached_property
+    def load_axis(self) -> int | None:
+        """Axis along which a piston is loaded with a pressure, None without one."""
+        return next((number // 2 for number, face in self.pistons if face.pressure is not None), None)
+
+    @cached_property
+    def moving_axes(self) -> tuple[int, ...]:
+        """Axes along which a face or an interior wall moves, and the gas with it."""
+        faces = {number // 2 for kind in (Piston, Vibrating) for number, _ in self.faces_of(kind)}
+        return tuple(sorted(faces | ({self.moving_wall.axis} if self.moving_wall else set())))
+
+    @cached_property
+    def shear_rate(self) -> float | None:
+        """du_x / dy between sheared faces (`LeesEdwards`), None without any."""
+        return next((face.shear_rate for _, face in self.faces_of(LeesEdwards)), None)
+
+    @cached_property
+    def driven_axes(self) -> tuple[int, ...]:
+        """Periodic axes along which a force acts on all particles, and so drives a flow."""
+        pulls = zip(self.gravity or (), self.container.periodic, strict=False)
+        return tuple(axis for axis, (pull, around) in enumerate(pulls) if pull != 0.0 and around)
+
+    @cached_property
+    def drags_faces(self) -> bool:
+        """True if the momentum along faces is tallied, of faces that draw velocities along themselves:
+        where one of them slides, or a force drives the gas along them."""
+        rubs = any(not face.smooth for face in self.faces.values())
+        return bool(self.sliding_faces) or (rubs and bool(self.driven_axes))
+
+    @cached_property
+    def frame_velocity(self) -> tuple[float, ...]:
+        """(d,) mean velocity of the faces that drag particles along: 0 unless a face slides."""
+        dragging = [face.velocity for _, face in self.faces_of(Thermal) if not face.smooth]
+        if not any(any(velocity or ()) for velocity in dragging):
+            return (0.0,) * self.dimension
+        parts = [velocity or (0.0,) * self.dimension for velocity in dragging]
+        return tuple(math.fsum(component) / len(parts) for component in zip(*parts, strict=True))
+
+    @cached_property
+    def flow_changes(self) -> bool:
+        """True if the flow of the gas changes with time: where faces or walls move along their normal, and
+        between open faces."""
+        return bool(self.moving_axes) or self.is_open
+
+    @cached_property
+    def flow_axes(self) -> tuple[int, ...]:
+        """Axes along which the velocity of the gas may vary; none if it moves as a whole only. A wind,
+        which no key states but a run has, is added by `analysis.flow`."""
+        if self.flow_changes:
+            return self.moving_axes or self.open_axes
+        across = tuple(sorted({number // 2 for number, _ in self.sliding_faces}))
+        return self.resolved_axes(across) if across or self.driven_axes else ()
+
+    def resolved_axes(self, across: tuple[int, ...] = ()) -> tuple[int, ...]:
+        """Return the axes along which a steady flow may vary: `across` the faces that drive it, by default
+        all with walls, or the first without any; all axes around obstacles."""
+        if self.has_obstacles:
+            return tuple(range(self.dimension))
+        return across or self.walled_axes or (0,)
+
+    @cached_property
+    def conserved_axes(self) -> tuple[bool, ...]:
+        """(d,) True for axes along which the total momentum is conserved: a periodic axis, if no particle
+        is fixed and nothing but smooth faces or a wall that moves, which act along their normals, is in the
+        container; of a sheared gas the momentum about the flow."""
+        smooth = all(face.smooth for face in self.faces.values())
+        rubbed = not self.is_periodic and (self.rough or not smooth)
+        obstructed = self.has_fixed or (bool(self.walls) and self.moving_wall is None)
+        free = not (obstructed or rubbed)
+        return tuple(free and around for around in self.container.periodic)

@@ -1,0 +1,317 @@
+r"""Pairs of few particles in a periodic square or cube: closed form, table and expansion with its remainder.
+
+All quantities of N equal particles at fixed energy and zero total momentum that depend on pairs in contact
+follow from one number, the contact value g_N. It is the density of pairs at contact, averaged over all
+directions, divided by N (N - 1) / V^2. With k_B T = 2 E / (d (N - 1)), exactly,
+
+.. math:: Z_N = 1 + 2^{d-1} \eta \, \frac{N-1}{N} \, g_N, \qquad
+          \nu_N = \nu_1 \, \frac{N-1}{N} \, g_N \, f_{d (N-1)},
+
+where nu_1 is `collision_rate` for a contact value of 1, and f is `speeds.mean_speed_factor`. Z_N is the
+canonical compressibility factor, which `gaspart.analysis.compressibility_factor` measures.
+
+The expansion in 1/N (`state.finite_size_correction`) leaves out terms that fall exponentially with the side
+of the container: images of a particle order the fluid about it. These terms are the largest ones in dense or
+small systems. `finite_size_remainder` states their size as the table shows it.
+"""
+
+import math
+from functools import cache
+
+import numpy as np
+
+from gaspart.errors import SceneError
+from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
+from gaspart.theory.geometry import particle_volume
+from gaspart.theory.potential import (
+    chemical_potential_uncertainty,
+    excess_chemical_potential,
+    insertion_finite_size_correction,
+)
+from gaspart.theory.state import (
+    HIGHEST_PACKING_FRACTION,
+    compressibility_factor,
+    compressibility_uncertainty,
+    finite_size_correction,
+)
+from gaspart.theory.tables import small_systems
+
+_PAIR_HIGHEST = {2: math.pi / 4.0, 3: math.pi / (6.0 * math.sqrt(2.0))}
+"""Packing fraction of two particles in a container of side sqrt(2) diameters, where the spheres about the
+images of a particle begin to overlap three at a time."""
+_REMAINDER = {2: (19.649, -54.152, 39.606, 2.449, -4.035), 3: (15.999, -60.593, 61.817, 2.127, -4.214)}
+"""Coefficients a0, a1, a2, b0, b1 of `finite_size_remainder`, by maximum likelihood from the rows of
+`data/small_systems.csv` with 4 and more particles in 2.2 and more diameters (`benchmarks/small_systems.py
+fit`): 95 rows of discs, none further away than 3.3 standard deviations, and 66 rows of spheres, 3.3."""
+_SHORTEST = 2.2
+"""Side in diameters below which the expansion in 1/N states nothing: a particle feels its own images."""
+_NODES = 32  # of the integral over packing fractions
+LARGEST_REMAINDER = 0.1
+"""Relative uncertainty above which `finite_contact_value` and `insertion_potential` state nothing."""
+
+
+@checked
+def pair_contact_value(packing_fraction: Numbers, dimension: int) -> Values:
+    """Compute the contact value of two particles in a periodic square or cube.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta of both: up to pi/4 for discs, 0.3702 for spheres, where the side of the
+        container is sqrt(2) diameters.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Density of pairs at contact, averaged over all directions, divided by 2 / V^2.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Exact. The centre of the second particle is anywhere outside of the spheres of radius sigma about the
+    first particle and its images: g = V s / (V - v), with v the volume of these spheres in the container and
+    s the fraction of their surface that no image covers. At L >= 2 sigma they do not overlap, and
+    g = 1 / (1 - 2^(d-1) eta).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.pair_contact_value([0.1, 0.3], dimension=3).round(4)
+    array([1.6667, 3.072 ])
+    """
+    d = checked_dimension(dimension)
+    eta = checked_packing_fraction(packing_fraction, _PAIR_HIGHEST[d])
+    with np.errstate(divide="ignore"):
+        half = np.minimum(
+            0.5 * (2.0 * particle_volume(d) / eta) ** (1.0 / d), 1.0
+        )  # of the side, at most sigma
+    if d == 2:
+        angle = np.arccos(half)
+        covered = 4.0 * angle / math.pi
+        overlap = 2.0 * (2.0 * angle - np.sin(2.0 * angle)) / math.pi
+    else:
+        covered = 3.0 * (1.0 - half)
+        overlap = 3.0 * (1.0 - half) ** 2 * (2.0 + half) / 2.0
+    return (1.0 - covered) / (1.0 - 2.0 ** (d - 1) * eta * (1.0 - overlap))
+
+
+@checked
+def finite_size_remainder(packing_fraction: Numbers, dimension: int, side: Numbers) -> Values:
+    """Estimate the relative size of what the expansion in 1/N leaves out of a contact value.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta within the range of `compressibility_factor`.
+    dimension : {2, 3}
+        Discs or spheres.
+    side : array_like, [1]
+        Shortest side of the periodic container, in diameters.
+
+    Returns
+    -------
+    ndarray, [1]
+        Standard deviation of the remainder divided by the contact value.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    exp(a - b L), with a a polynomial of second order in eta and ln b one of first order: the amplitude and
+    the decay of correlations between images at a distance L. Their coefficients are those for which the
+    differences between the table (`small_systems`) and the expansion are most likely, normally distributed
+    with this deviation. The differences alternate in sign with the side. Infinite below 2.2 diameters.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.finite_size_remainder(0.45, 3, side=5.0).round(4))
+    0.0064
+    """
+    eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
+    a0, a1, a2, b0, b1 = _REMAINDER[dimension]
+    lengths = np.asarray(side, dtype=float)
+    remainder = np.exp(a0 + eta * (a1 + eta * a2) - np.exp(b0 + b1 * eta) * lengths)
+    return np.where(lengths < _SHORTEST, math.inf, remainder)
+
+
+@checked
+def finite_contact_value(
+    packing_fraction: float, dimension: int, count: int, side: float | None = None
+) -> tuple[float, float]:
+    """Compute the contact value of a number of particles in a periodic container, and its uncertainty.
+
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction eta within the range of `compressibility_factor`.
+    dimension : {2, 3}
+        Discs or spheres.
+    count : int
+        Number of particles, at least 2.
+    side : float, [1], optional
+        Shortest side of the container, in diameters. Default: the side of a square or cube.
+
+    Returns
+    -------
+    value : float, [1]
+        Density of pairs at contact divided by N (N - 1) / V^2.
+    uncertainty : float, [1]
+        Its standard uncertainty.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range, or if the uncertainty would be above a tenth of the value.
+
+    Notes
+    -----
+    In a square or cube, two particles have a closed form (`pair_contact_value`), and the numbers in the table
+    (`small_systems`) are interpolated in eta: linearly, as a factor of the expansion, uncertain by the
+    difference from a parabola. Otherwise, and if it is sharper, the expansion in 1/N holds
+    (`finite_size_correction`). Its uncertainty is that of the equation of state, `finite_size_remainder`, and
+    the square of the relative correction for the next order in 1/N.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> value, uncertainty = theory.finite_contact_value(0.3, 3, count=500)
+    >>> round(value, 3), uncertainty < 0.001
+    (2.49, True)
+    """
+    eta = float(
+        checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
+    )
+    if count < 2:
+        raise SceneError("count", count, "must be at least 2: a particle alone meets no other one")
+    cube = (count * particle_volume(dimension) / max(eta, 1e-12)) ** (1.0 / dimension)
+    side = cube if side is None else side
+    choices = [_expansion(eta, dimension, count, side)]
+    if abs(side - cube) < 1e-6 * cube:
+        if count == 2 and eta <= _PAIR_HIGHEST[dimension]:
+            return float(pair_contact_value(eta, dimension)), 0.0
+        choices += _interpolated(eta, dimension, count)
+    value, uncertainty = min(choices, key=lambda choice: choice[1] / choice[0])
+    _require_small(uncertainty, value, side)
+    return value, uncertainty
+
+
+@checked
+def insertion_potential(
+    packing_fraction: float, dimension: int, count: int, side: float
+) -> tuple[float, float]:
+    """Compute -ln P of the chance P that a random position is free for one more particle.
+
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction eta of the particles within the range of `compressibility_factor`.
+    dimension : {2, 3}
+        Discs or spheres.
+    count : int
+        Number of particles N that are there.
+    side : float, [1]
+        Shortest side of the periodic container, in diameters.
+
+    Returns
+    -------
+    value : float, [1]
+        Excess chemical potential of N particles by insertion, divided by k_B T.
+    uncertainty : float, [1]
+        Its standard uncertainty.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range, or if the uncertainty would be above a tenth of the value.
+
+    Notes
+    -----
+    `excess_chemical_potential` and `insertion_finite_size_correction`. With F_N the free energy of N
+    particles, the difference F_(N+1) - F_N has the remainder R + (integral of R / eta over eta), where R is
+    the remainder of Z, `finite_size_remainder` times Z - 1. Both, the uncertainty of the equation of state
+    and the square of the relative correction make up the uncertainty. A particle alone excludes 2^d eta of
+    the container, exactly.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> value, uncertainty = theory.insertion_potential(0.2, 3, count=100, side=6.4)
+    >>> round(value, 2), uncertainty < 0.01
+    (2.48, True)
+    """
+    d = checked_dimension(dimension)
+    eta = float(checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[d]))
+    if count == 1 and side >= 2.0:
+        return -math.log1p(-(2.0**d) * eta), 0.0
+    value = float(excess_chemical_potential(eta, d))
+    shift = float(insertion_finite_size_correction(eta, d, count))
+    fractions = eta * np.linspace(0.0, 1.0, _NODES + 1)[1:]
+    sides = side * (eta / fractions) ** (1.0 / d)
+    remainders = finite_size_remainder(fractions, d, sides) * (compressibility_factor(fractions, d) - 1.0)
+    remainder = float(remainders[-1] + (remainders / fractions).sum() * eta / _NODES)
+    known = float(chemical_potential_uncertainty(eta, d))
+    uncertainty = math.hypot(known, remainder, shift**2 / value if value else 0.0)
+    _require_small(uncertainty, value + shift, side)
+    return value + shift, uncertainty
+
+
+def _require_small(uncertainty: float, value: float, side: float) -> None:
+    """Raise SceneError for an uncertainty above `LARGEST_REMAINDER` times the value."""
+    if not uncertainty <= LARGEST_REMAINDER * value:
+        rule = (
+            f"in a container of {side:.3g} diameters the expansion in 1/N is uncertain by "
+            f"{100.0 * uncertainty / value:.2g} %: nothing is stated above {100.0 * LARGEST_REMAINDER:g} %"
+        )
+        raise SceneError("side", side, rule)
+
+
+def _expansion(eta: float, dimension: int, count: int, side: float) -> tuple[float, float]:
+    """Return the contact value to first order in 1/N, and its uncertainty."""
+    eta = max(eta, 1e-6)  # the limit of the ratios, where the excess itself vanishes
+    excess = float(compressibility_factor(eta, dimension)) - 1.0
+    shift = float(finite_size_correction(eta, dimension, count))
+    value = (excess + shift) / (2.0 ** (dimension - 1) * eta)
+    relative = (
+        float(compressibility_uncertainty(eta, dimension)) / excess,
+        float(finite_size_remainder(eta, dimension, side)),
+        (shift / excess) ** 2,
+    )
+    return value, value * math.hypot(*relative)
+
+
+def _interpolated(eta: float, dimension: int, count: int) -> list[tuple[float, float]]:
+    """Return the contact value between rows of the table, and its uncertainty; [] outside of the rows."""
+    fractions, factors, errors = _factors(dimension, count)
+    if len(fractions) < 3 or eta > fractions[-1]:
+        return []
+    nearest = np.sort(np.argsort(np.abs(fractions - eta))[:3])
+    factor = float(np.interp(eta, fractions, factors))
+    parabola = float(np.polyval(np.polyfit(fractions[nearest], factors[nearest], 2), eta))
+    error = math.hypot(float(np.interp(eta, fractions, errors)), parabola - factor)
+    value = _expansion(eta, dimension, count, 1.0)[0]
+    return [(value * factor, abs(value) * error)]
+
+
+@cache
+def _factors(dimension: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return packing fractions, and contact values of the table divided by the expansion with their errors.
+
+    The first row is the limit 1 at zero density.
+    """
+    rows = small_systems("contact_value", dimension)
+    rows = np.sort(rows[rows.count == count], order="packing_fraction")
+    expansion = np.array(
+        [_expansion(float(eta), dimension, count, 1.0)[0] for eta in rows["packing_fraction"]]
+    )
+    fractions = np.append(0.0, rows["packing_fraction"])
+    return fractions, np.append(1.0, rows["value"] / expansion), np.append(0.0, rows["error"] / expansion)

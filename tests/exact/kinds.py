@@ -1,0 +1,153 @@
+"""The kinds of scenes of the table of exact values: what each contains, found without gaspart."""
+
+from functools import cache, cached_property
+from pathlib import Path
+
+import yaml
+from exact.bodies import Case
+
+FILE = Path(__file__).with_name("scenes.yaml")
+FREE = 1e-3
+"""Largest radius of points, which never meet during a run."""
+
+
+class Kind:
+    """A kind of scene and its run."""
+
+    def __init__(self, name, scene, run):
+        self.name, self.scene, self.run = name, scene, run
+        self.faces = scene.get("faces") or {}
+
+    @cached_property
+    def case(self):
+        """The scene as the sampler reads it, without radii that are drawn."""
+        return Case(self.scene)
+
+    @property
+    def dimension(self):
+        """Dimension of space."""
+        return self.case.dimension
+
+    @property
+    def species(self):
+        """Species of the scene file."""
+        return self.scene.get("species") or []
+
+    @property
+    def law(self):
+        """Restitution of the scene file."""
+        return self.scene.get("restitution") or {}
+
+    @property
+    def temperature(self):
+        """k_B T, of the faces if they have one; of a single body of fixed speed that of its energy."""
+        first = self.species[0]
+        if "speed" in first:
+            return first["speed"] ** 2 / self.dimension
+        return self.case.box.temperature
+
+    @property
+    def thermal_faces(self):
+        """Names of faces that have a temperature, without open ones."""
+        return [n for n, face in self.faces.items() if "temperature" in face and face["kind"] != "open"]
+
+    @property
+    def sliding(self):
+        """True if a thermal face slides."""
+        return any(any(face.get("velocity") or ()) for face in self.faces.values())
+
+    @property
+    def opened(self):
+        """True if a face is open."""
+        return any(face["kind"] == "open" for face in self.faces.values())
+
+    @property
+    def sheared(self):
+        """True if images slide (Lees and Edwards)."""
+        return any(face["kind"] == "lees_edwards" for face in self.faces.values())
+
+    @property
+    def dissipates(self):
+        """True if contacts lose energy."""
+        return self.law.get("normal", 1.0) < 1.0 or -1.0 < self.law.get("tangential", -1.0) < 1.0
+
+    @property
+    def rough(self):
+        """True if bodies have spins."""
+        return self.law.get("tangential", -1.0) > -1.0
+
+    @property
+    def singles(self):
+        """True if there are bodies of no species."""
+        return bool(self.scene.get("particles"))
+
+    @property
+    def many_sizes(self):
+        """True if radii are drawn."""
+        return any("polydispersity" in one for one in self.species)
+
+    @property
+    def driven(self):
+        """True if a force acts along the walls."""
+        pulls = zip(self.scene.get("gravity") or (), self.case.periodic, strict=False)
+        return any(pull and around for pull, around in pulls)
+
+    @property
+    def falls(self):
+        """True if gravity or a well acts."""
+        return any(self.scene.get("gravity") or ()) or bool(self.case.box.wells.any())
+
+    @property
+    def moving_face(self):
+        """True if a face or an interior wall moves."""
+        return self.case.load > 0.0 or self.case.box.plane[0] >= 0.0
+
+    @property
+    def points(self):
+        """True if bodies never meet: points, or a single body with nothing inside."""
+        small = all(group.radius < FREE for group in self.case.groups)
+        return small or (self.case.count == 1 and self.case.empty)
+
+    @property
+    def integrable(self):
+        """True if each body keeps its speed for ever, so that means over time are those of its start."""
+        return self.points and not self.thermal_faces and not self.opened
+
+    @property
+    def equilibrium(self):
+        """True if the scene has a static distribution: nothing flows, heats or loses energy."""
+        ends = {(f.get("temperature"), tuple(f.get("velocity") or ()), f.get("activity"))
+                for f in self.faces.values() if "temperature" in f}  # fmt: skip
+        return not (self.sheared or self.dissipates or self.driven or len(ends) > 1)
+
+    @property
+    def conserved(self):
+        """Number of components of the total momentum that are conserved."""
+        if not self.case.empty:
+            return 0
+        if self.thermal_faces or self.opened or (self.rough and not self.case.periodic.all()):
+            return 0
+        return int(self.case.periodic.sum())
+
+    @property
+    def freedoms(self):
+        """Degrees of freedom of fixed energy, None if faces exchange it."""
+        if self.thermal_faces or self.opened:
+            return None
+        return self.dimension * self.case.count - self.conserved
+
+    @property
+    def stress(self):
+        """True if a run keeps correlations of the stress: periodic, with nothing inside."""
+        return bool(self.case.periodic.all()) and self.case.empty and not self.falls
+
+    def with_radii(self, radii):
+        """Return the case with radii that are drawn."""
+        return Case(self.scene, radii)
+
+
+@cache
+def kinds():
+    """Return all kinds of scenes, by name."""
+    with FILE.open(encoding="utf-8") as file:
+        return {name: Kind(name, **entry) for name, entry in yaml.safe_load(file).items()}

@@ -1,0 +1,82 @@
+"""Planted errors are caught, each by the cell that it names: all in the thorough tests, or a tenth."""
+
+import datetime
+import random
+from collections import Counter
+
+import pytest
+from battery import symmetries
+from battery import table as battery_table
+from exact import table
+from exact.kinds import kinds
+from exact.planting import NotPlanted, Plant, planted
+from exact.plants import PLANTS
+
+from gaspart.analysis.observables import OBSERVABLES
+
+SHARE = 10
+"""One of so many errors is planted in the usual tests, by the date."""
+
+
+def battery_state(symmetry, scene, observable):
+    """Return the state of a cell of the battery, under the event-driven engine."""
+    symmetries.plain.cache_clear()
+    try:
+        for part in (symmetries.of_views, symmetries.in_units, symmetries.of_parts, symmetries.of_simulation):
+            for cell in part("event", scene, [observable]):
+                if cell.symmetry == symmetry:
+                    return cell.state
+    finally:
+        symmetries.plain.cache_clear()
+    raise AssertionError(f"{symmetry} is no symmetry of views, units, parts or simulations")
+
+
+def state(plant):
+    """Return the state of the cell that a plant names."""
+    if plant.battery:
+        return battery_state(*plant.cell)
+    scene, observable, *engine = plant.cell
+    return table.cell_of(observable, kinds()[scene], *engine).state
+
+
+def check(plant):
+    """Raise AssertionError unless the named cell is right without a planted error and wrong with it."""
+    assert state(plant) in ("value", "tested"), f"{plant.name}: its cell is not right without it"
+    with planted(plant):
+        assert state(plant) in ("wrong", "broken"), f"{plant.name} is not caught by {plant.cell}"
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("plant", PLANTS, ids=[plant.name for plant in PLANTS])
+def test_planted_errors_are_caught(plant):
+    check(plant)
+
+
+def test_a_random_tenth_of_the_planted_errors_is_caught():
+    today = datetime.date.today().isoformat()
+    chosen = random.Random(today).sample(PLANTS, len(PLANTS) // SHARE)
+    print(f"seed {today}: {[plant.name for plant in chosen]}")
+    for plant in chosen:
+        check(plant)
+
+
+def test_all_pieces_of_source_are_there():
+    for plant in PLANTS:
+        with planted(plant):
+            pass
+
+
+def test_each_observable_has_two_planted_errors():
+    found = Counter(plant.cell[2 if plant.battery else 1] for plant in PLANTS)
+    assert len(PLANTS) >= 60
+    assert {name for name in OBSERVABLES if found[name] < 2} == set()
+    assert all(cell[0] in (*kinds(), *battery_table.SYMMETRIES) for cell in (plant.cell for plant in PLANTS))
+
+
+def test_a_piece_that_is_gone_or_changes_nothing_is_an_error():
+    for old, new in (
+        ("no such piece", "x"),
+        ('"""The container of the moment', '"""A container of the moment'),
+    ):
+        with pytest.raises(NotPlanted), planted(Plant("none", "analysis.room", old, new, ("periodic", "Z"))):
+            pass
