@@ -1,15 +1,15 @@
 r"""Long-time tails of discs' viscosity and conductivity: pairs of hydrodynamic modes in a periodic container.
 
-Of long waves the stress is m rho u_x u_y, and the heat flux, less the enthalpy that the momentum carries,
-rho T s u + p u, with the velocity u, the entropy s of a particle and the pressure p relative to their means
-(k_B = 1). So they correlate as pairs of modes of the wave vectors k and -k do: shear with the
-kinematic viscosity nu, heat with D_T = lambda / (rho c_p), and sound with the speed c and the attenuation
-Gamma (`modes.sound_attenuation`). In an infinite fluid they grow with the logarithm of time, by
+Of long waves the stress is m rho u_x u_y, and the heat flux, less the enthalpy that the momentum carries, rho
+T s u + p u, with the velocity u, the entropy s of a particle and the pressure p relative to their means (k_B
+= 1). So these fluxes correlate as pairs of modes of the wave vectors k and -k do: shear with the kinematic
+viscosity nu, heat with D_T = lambda / (rho c_p), and sound with the speed c and the attenuation Gamma
+(`modes.sound_attenuation`). In an infinite fluid they grow with the logarithm of time, by
 
 .. math:: \frac{1}{32\pi}\left(\frac1\nu + \frac1\Gamma\right) k_BT \quad\text{and}\quad
           \frac{1}{8\pi}\left(\frac{k_BT c_p}{m(\nu+D_T)} + \frac{c^2}{\Gamma}\right)
 
-for each factor e. The method is that of Ernst, Hauge and van Leeuwen, Phys. Rev. A 4, 2055 (1971), and J.
+for each factor e. The method is due to Ernst, Hauge and van Leeuwen, Phys. Rev. A 4, 2055 (1971), and J.
 Stat. Phys. 15, 7 (1976); the amplitudes were derived again and not compared with the papers (tested against
 the linearised equations of the fluid). The term of c^2 is energy which travels with the sound.
 
@@ -22,9 +22,8 @@ psi(1) + psi(2) and phi(1) + phi(2), from which follows, for the part i of a flu
 
 so that each of the two vertices is <j|psi phi> times F(p) = sum a_i r_i / (r_i + p), the Laplace transform of
 a delay of mean sum a_i / r_i: 2.06 collisions of a particle for the heat flux, 1.02 for the stress. (c) The
-modes are those of a gas whose fluxes relax (`relaxing_modes`). What remains are waves as short as the mean
-free path, Burnett's terms, and corrections of Enskog's coefficients. Everything is in diameters, masses and
-k_B T.
+modes belong to a gas whose fluxes relax (`relaxing_modes`). What remains are waves as short as the mean free
+path, Burnett's terms, and corrections of Enskog's coefficients. Everything is in diameters, masses and k_B T.
 """
 
 from __future__ import annotations

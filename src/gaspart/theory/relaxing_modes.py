@@ -1,17 +1,17 @@
 r"""Hydrodynamic modes of discs whose stress and heat flux relax, beyond the limit of long waves.
 
-Fourier's law and Newton's law hold if nothing changes within a time between collisions. For sound in a simulated
-container it does: c k times the relaxation time of the heat flux is 0.6 for the longest wave of 256 discs of
-packing fraction 0.3. So the fluxes are variables here. Density, temperature and velocity, each over its root
-mean square, obey the linearised equations of continuity, momentum and energy; the kinetic part of each flux
-consists of parts i that relax with the rates r_i of the linearised Boltzmann operator
+Fourier's law and Newton's law hold if nothing changes within a time between collisions. For sound in a
+simulated container it does: c k times the relaxation time of the heat flux is 0.6 for the longest wave of 256
+discs of packing fraction 0.3. So the fluxes are variables here. Density, temperature and velocity, each over
+its root mean square, obey the linearised equations of continuity, momentum and energy; the kinetic part of
+each flux consists of parts i that relax with the rates r_i of the linearised Boltzmann operator
 (`boltzmann.flux_relaxation`),
 
 .. math:: \dot q_i = -r_i q_i - i k \sqrt{\kappa_i r_i / (\rho c_v)}\, T , \qquad \sum_i \kappa_i = \kappa ,
 
-and the parts of the stress relax in the same way. What collisions transfer at once, the rest of Enskog's coefficients, stays a
-coefficient. Static correlations are exact: the matrices are symmetric. Burnett's coupling of the fluxes with
-each other is left out. Units: diameters, masses and k_B T.
+and the parts of the stress relax in the same way. What collisions transfer at once, the rest of Enskog's
+coefficients, stays a coefficient. Static correlations are exact: the matrices are symmetric. Burnett's
+coupling of the fluxes with each other is left out. Units: diameters, masses and k_B T.
 """
 
 from __future__ import annotations

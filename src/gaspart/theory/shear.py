@@ -21,12 +21,13 @@ the viscosity mu. There particles arrive with the distribution of the gas far fr
 must distinguish both.
 """
 NORMAL_STRESSES = (-1.2, 1.6, -0.4)
-"""(P_xx / p - 1) / a^2, and those of yy and zz, of a flow u along y that changes along x; a = -P_xy / p.
+"""(P_xx / p - 1) / a^2, and the same for yy and zz, of a flow u along y that changes along x; a = -P_xy / p.
 
 Moments of the steady Boltzmann equation: (p / mu) (P_ij - p delta_ij) = -dM_ij/dx, for yy less 2 P_xy du/dx,
-with the viscosity mu; the transport of P_ij along x is M = 2/5 q (3, 1, 1) for xx, yy, zz, with Fourier's
-heat flux q, and dq/dx = mu (du/dx)^2. To second order in a; exact for Maxwell molecules. For spheres the
-products of stresses are neglected, and Sonine polynomials beyond the first."""
+with the viscosity mu. The transport of P_ij along x is M = 2/5 q (3, 1, 1) for xx, yy, zz, with Fourier's
+heat flux q, and dq/dx = mu (du/dx)^2. To the second order in a; exact for Maxwell molecules. For spheres the
+products of stresses are neglected, and Sonine polynomials beyond the first.
+"""
 
 
 @checked

@@ -1,4 +1,4 @@
-"""Shock in front of a piston in a gas at rest: jump of density, temperature and pressure."""
+"""Shock before a piston in a gas at rest: jump of density, temperature and pressure."""
 
 from typing import NamedTuple
 
