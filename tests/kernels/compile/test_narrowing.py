@@ -6,7 +6,7 @@ import numba
 import numpy as np
 import pytest
 
-from gaspart.kernels.compile.narrowing import narrowed
+from gaspart.kernels.compile.narrowing import Narrowed, narrowed
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 
 NONE, VECTOR = numba.types.none, numba.typeof(np.zeros(2))
@@ -32,6 +32,18 @@ def outer(inner=None, rest=VECTOR, more=VECTOR):
 
 
 INNER = inner()
+
+
+def whole(given):
+    """The type for a function that uses a tuple in another way than by its entries."""
+    return Narrowed(list(given.types), given.instance_class)
+
+
+def by_entries(given):
+    """The type for a function that uses these entries."""
+    if not isinstance(given, numba.types.NamedTuple):
+        return given
+    return Narrowed([by_entries(kind) for kind in given.types], given.instance_class)
 
 
 @inner_helper
@@ -85,14 +97,14 @@ def called_by_python(outer):
 @pytest.mark.parametrize(
     ("function", "given", "kept"),
     [
-        (entry, outer(), outer(inner(other=NONE), NONE, NONE)),
-        (hands_on, outer(), outer(inner(other=NONE))),
-        (hands_on, outer(rest=NONE), outer(inner(other=NONE), NONE, NONE)),
-        (hands_on_by_name, outer(), outer()),
-        (renames, outer(), outer()),
-        (assigns, outer(), outer()),
-        (asks, outer(), outer(NONE, VECTOR, NONE)),
-        (asks, outer(rest=NONE), outer(NONE, NONE, NONE)),
+        (entry, outer(), by_entries(outer(inner(other=NONE), NONE, NONE))),
+        (hands_on, outer(), by_entries(outer(inner(other=NONE)))),
+        (hands_on, outer(rest=NONE), by_entries(outer(inner(other=NONE), NONE, NONE))),
+        (hands_on_by_name, outer(), whole(outer())),
+        (renames, outer(), whole(outer())),
+        (assigns, outer(), whole(outer())),
+        (asks, outer(), by_entries(outer(NONE, VECTOR, NONE))),
+        (asks, outer(rest=NONE), by_entries(outer(NONE, NONE, NONE))),
     ],
     ids=lambda value: getattr(value, "__name__", ""),
 )
@@ -103,8 +115,8 @@ def test_a_function_is_compiled_for_the_entries_that_it_uses(function, given, ke
 
 def test_what_is_absent_stays_absent_and_functions_of_no_module_get_all():
     nothing = outer(NONE, NONE, NONE)
-    assert narrowed(if_there.py_func, (nothing, NONE, NONE)) == (nothing, NONE, NONE)
-    assert narrowed(lambda outer: outer.rest[0], (outer(),)) == (outer(),)
+    assert narrowed(if_there.py_func, (nothing, NONE, NONE)) == (by_entries(nothing), NONE, NONE)
+    assert narrowed(lambda outer: outer.rest[0], (outer(),)) == (whole(outer()),)
 
 
 def test_a_call_passes_these_entries_with_their_values():
@@ -112,4 +124,21 @@ def test_a_call_passes_these_entries_with_their_values():
     assert called_by_python(given) == (2.0 + 5.0 + 11.0, 2.0, 2.0, 11.0, 2.0)
     assert called_by_python(given._replace(rest=None))[0] == 2.0 + 5.0
     _, _, types, _ = entry.get_call_template((numba.typeof(given),), {})
-    assert types == (outer(inner(other=NONE), NONE, NONE),)
+    assert types == (by_entries(outer(inner(other=NONE), NONE, NONE)),)
+
+
+@inner_kernel
+def first_or_new(outer, anew):
+    if anew:
+        outer = Outer(Inner(outer.rest, 1.0), outer.rest, outer.more)
+    return entry(outer)
+
+
+@kernel
+def takes_first_or_new(outer, anew):
+    return first_or_new(outer, anew)
+
+
+def test_a_variable_may_hold_an_argument_or_a_new_tuple():
+    given = Outer(Inner(np.array([2.0]), 0.0), np.array([7.0]), np.array([11.0]))
+    assert [takes_first_or_new(given, anew) for anew in (False, True)] == [2.0, 7.0]

@@ -91,12 +91,15 @@ def damage(folder, how):
         file.unlink()
     elif how == "not listed":
         (folder / shipped.LIST).write_text("{}")
-    elif how == "a damaged list":
-        (folder / shipped.LIST).write_text("{")
+    else:
+        (folder / shipped.LIST).write_text(how)
+
+
+NO_LISTS = "{", "[1]", "null", "3", '"text"', "[" * 100_000, '{"sources": [1]}'
 
 
 @pytest.mark.parametrize(
-    "how", ["a flipped bit", "a file of this user's", "missing", "not listed", "a damaged list"]
+    "how", ["a flipped bit", "a file of this user's", "missing", "not listed", *NO_LISTS]
 )
 def test_nothing_but_what_was_shipped_is_read_as_code(folder, tmp_path, how):
     damage(folder, how)

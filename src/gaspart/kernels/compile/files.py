@@ -10,10 +10,13 @@ What this user has not compiled may have come with the package (`shipped`).
 from __future__ import annotations
 
 import hashlib
+import inspect
 import os
 import pickle
+import sys
 import zlib
 from collections.abc import Callable
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -55,15 +58,20 @@ _KERNELS = Path(__file__).parents[1]
 
 
 class KernelLocator(caching.UserProvidedCacheLocator):
-    """Where the files of a function are: a folder for each package, wherever that is installed.
+    """The folder of the files of a function, one for each package, wherever that is installed.
 
     The digest of the sources, which names the cache, is all that functions of `kernels` need. numba also uses
     the digest of the file, the number of the line and the bytecode: comments and docstrings change these.
     """
 
-    def __init__(self, function: Callable, file: str) -> None:
-        super().__init__(function, file)
-        self.digested = Path(file).is_relative_to(_KERNELS)
+    def __init__(self, folder: Path, function: Callable) -> None:
+        self._py_file = inspect.getfile(function)
+        self._lineno = function.__code__.co_firstlineno
+        self._cache_path = str(folder / Path(self._py_file).parent.name)
+        self.digested = Path(self._py_file).is_relative_to(_KERNELS)
+        if not os.path.exists(self._py_file):
+            raise OSError(0, f"{function.__qualname__} is not from a file")
+        _make_folder(self._cache_path)
 
     def get_source_stamp(self) -> Any:
         """Return what the file states beyond the digest of the sources."""
@@ -73,10 +81,11 @@ class KernelLocator(caching.UserProvidedCacheLocator):
         """Return what tells functions of one name in a file apart: there are none in `kernels`."""
         return "" if self.digested else super().get_disambiguator()
 
-    @classmethod
-    def get_suitable_cache_subpath(cls, py_file: str) -> str:
-        """The folder for the functions of a module."""
-        return Path(py_file).parent.name
+
+@cache
+def _make_folder(path: str) -> None:
+    """Make a folder if it is missing. May raise OSError."""
+    os.makedirs(path, exist_ok=True)
 
 
 class KernelFiles(caching.IndexDataCacheFile):
@@ -117,22 +126,30 @@ class KernelFiles(caching.IndexDataCacheFile):
 
 
 class KernelContents(caching.CompileResultCacheImpl):
-    """What is in the file of a kernel: machine code."""
+    """The contents of the file of a kernel: machine code."""
 
-    _locator_classes: ClassVar = [KernelLocator]
     suffix = "nbc"
+
+    def __init__(self, folder: Path, function: Callable) -> None:
+        self._lineno = function.__code__.co_firstlineno
+        self._locator = KernelLocator(folder, function)
+        name = f"{Path(inspect.getfile(function)).stem}.{function.__qualname__}"
+        self._filename_base = self.get_filename_base(name, getattr(sys, "abiflags", ""))
 
 
 class KernelCache(caching.FunctionCache):
-    """numba's cache of a function that is compiled with these `options`, with these files."""
+    """numba's cache of a function that is compiled with these `options`, with these files.
 
-    _impl_class: ClassVar = KernelContents
+    May raise OSError.
+    """
 
-    def __init__(self, function: Callable, options: dict[str, Any]) -> None:
+    contents: ClassVar = KernelContents
+
+    def __init__(self, folder: Path, function: Callable, options: dict[str, Any]) -> None:
+        self._impl_class = partial(self.contents, folder)
         super().__init__(function)
-        contents = self._impl
-        stamp = contents.locator.get_source_stamp(), repr(sorted(options.items()))
-        self._cache_file = KernelFiles(self.cache_path, contents.filename_base, stamp, contents.suffix)
+        stamp = self._impl.locator.get_source_stamp(), repr(sorted(options.items()))
+        self._cache_file = KernelFiles(self.cache_path, self._impl.filename_base, stamp, self._impl.suffix)
 
     def _index_key(self, sig: Any, codegen: Any) -> tuple:
         types, system, (code, variables) = super()._index_key(sig, codegen)

@@ -41,41 +41,6 @@ def _own_numbers() -> Iterator[None]:
         identity._unique_ids = before
 
 
-@core.datamodel.registry.register_default(numba.types.NamedTuple)
-class _WholeTuple(core.datamodel.models.TupleModel):
-    """A named tuple of gaspart is one argument of a function in machine code; one of others is as many as
-    there are words in its arrays, as numba has it. For a `Model` these are some two hundred, which each call
-    takes from it and each function puts together again: 40 % of all instructions to be translated."""
-
-    @property
-    def _whole(self) -> bool:
-        return self._fe_type.instance_class.__module__.startswith("gaspart.")
-
-    def get_argument_type(self) -> Any:
-        """The type of the argument, in LLVM."""
-        return self.get_value_type() if self._whole else super().get_argument_type()
-
-    def as_argument(self, builder: Any, value: Any) -> Any:
-        """What a caller passes."""
-        return value if self._whole else super().as_argument(builder, value)
-
-    def from_argument(self, builder: Any, value: Any) -> Any:
-        """The value of what was passed."""
-        return value if self._whole else super().from_argument(builder, value)
-
-
-@numba.extending.lower_cast(numba.types.NamedTuple, numba.types.NamedTuple)
-def _leave_out(context: Any, builder: Any, given: Any, narrow: Any, value: Any) -> Any:
-    """The entries of a named tuple that a function uses, see `narrowing`."""
-    none = context.get_dummy_value()
-    entries = core.cgutils.unpack_tuple(builder, value, len(given))
-    kept = [
-        none if kind == numba.types.none else context.cast(builder, entry, whole, kind)
-        for entry, whole, kind in zip(entries, given, narrow, strict=True)
-    ]
-    return context.make_tuple(builder, narrow, kept)
-
-
 def narrow_calls(part: Any) -> None:
     """Let the callers of a function compile it for what it uses of their arguments."""
 
@@ -219,4 +184,4 @@ class _PartContents(KernelContents):
 class PartCache(KernelCache):
     """numba's cache of a part."""
 
-    _impl_class: ClassVar = _PartContents
+    contents: ClassVar = _PartContents

@@ -20,19 +20,16 @@ from gaspart.kernels.compile.loading import load_numba
 from gaspart.kernels.compile.sources import file_digests
 
 numba = load_numba()
-KNOWN = "0.68"
-"""The release of numba whose internals `files` and `parts` use. Another one compiles in its usual way, to the
-same bits: several times as long, and in every process again."""
-_known = numba.__version__.startswith(f"{KNOWN}.")
-if _known:
-    from gaspart.kernels.compile import shortcuts
+TESTED = "0.67", "0.68"
+"""Releases of numba whose internals `files`, `parts` and `narrowing` use. Another one compiles and keeps
+kernels in its own way, to the same bits and in several times as long."""
+_tested = numba.__version__.startswith(tuple(f"{release}." for release in TESTED))
+if _tested:
     from gaspart.kernels.compile.files import KernelCache
     from gaspart.kernels.compile.parts import KernelCompiler, PartCache, PartCompiler, narrow_calls
-
-    shortcuts.take()
 else:
     warnings.warn(
-        f"gaspart: numba {numba.__version__} is not {KNOWN}: kernels compile more slowly, and are not kept",
+        f"gaspart: numba {numba.__version__} is neither {' nor '.join(TESTED)}: kernels compile more slowly",
         stacklevel=2,
     )
 F = TypeVar("F", bound=Callable)
@@ -54,30 +51,40 @@ def source_digest() -> str:
 
 
 _UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-_CACHE = usable_cache(source_digest()) if _known else None
+_CACHE = usable_cache(source_digest())
 
 
 def _compile(function: F, part: bool = False, **options: Any) -> F:
     """part: whether only kernels call the function."""
     if part:
         options |= _UNWRAPPED
-    if _known:
+    if _tested:
         options["pipeline_class"] = PartCompiler if part else KernelCompiler
     compiled = numba.njit(nogil=True, error_model="numpy", **options)(function)
+    if numba.config.DISABLE_JIT:
+        return compiled
     if _CACHE:
-        before = numba.config.CACHE_DIR
-        numba.config.CACHE_DIR = str(_CACHE)
         try:
-            compiled._cache = (PartCache if part else KernelCache)(function, options)
-        except RuntimeError:  # no folder can be made, as on a full disk; or the function is not from a file
-            report_unwritable(_CACHE, OSError(0, f"there is no place for {function.__qualname__}"))
-        finally:
-            numba.config.CACHE_DIR = before
-    if _known and not numba.config.DISABLE_JIT:
-        if part:
-            narrow_calls(compiled)
-        compiled._compiler.compile = _without_interruption(compiled._compiler.compile)
+            if _tested:
+                compiled._cache = (PartCache if part else KernelCache)(_CACHE, function, options)
+            else:
+                _use_own_files(compiled)
+        except (OSError, RuntimeError) as error:  # as on a full disk; or the function is not from a file
+            report_unwritable(_CACHE, OSError(0, str(error)))
+    if _tested and part:
+        narrow_calls(compiled)
+    compiled._compiler.compile = _without_interruption(compiled._compiler.compile)
     return compiled
+
+
+def _use_own_files(compiled: Any) -> None:
+    """Let numba keep a function in files of its own. Raises RuntimeError if it finds no folder for them."""
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(_CACHE)
+    try:
+        compiled.enable_caching()
+    finally:
+        numba.config.CACHE_DIR = before
 
 
 def _without_interruption(compile_: F) -> F:

@@ -48,6 +48,7 @@ def shipped_content(path: str) -> bytes | None:
 def _digests() -> dict[str, str]:
     """The sha256 of each file, by its path; none in a copy of the repository, which has no kernels."""
     try:
-        return dict(json.loads((FOLDER / LIST).read_bytes()))
-    except (OSError, ValueError):
+        listed = json.loads((FOLDER / LIST).read_bytes())
+    except (OSError, ValueError, RecursionError):
         return {}
+    return listed if isinstance(listed, dict) else {}

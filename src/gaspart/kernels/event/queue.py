@@ -3,6 +3,12 @@
 A bucket spans about the mean time between events, so finding the soonest event means looking at one or
 two particles, whatever their number. Events beyond the calendar's horizon wait in an overflow list. The
 order is strict and does not depend on the buckets: by time, then by the tie key that the caller gives.
+
+Many events may be simultaneous, as on a lattice whose planes are edges of boxes, or close to each other
+beside the mean time. If the current bucket is long, it is sorted: its list begins with particles in any
+order, at most MOST_UNSORTED of them, and goes on with sorted runs, each more than twice as long as the one
+before it. So k events of one bucket cost of the order of k log(k)^2 comparisons at most, and k log(k) if no
+new ones come.
 """
 
 from typing import NamedTuple
@@ -11,23 +17,33 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 
-BUCKET, FILLED, EVENT_COUNT = range(3)  # of Queue.cursor
+BUCKET, FILLED, RUNS, EVENT_COUNT = range(4)  # of Queue.cursor
+MOST_UNSORTED = 32
+"""Largest number of particles of a bucket that are searched one by one."""
+MOST_RUNS = 32
+FIRST, LENGTH = range(2)  # of Queue.runs
 
 
 class Queue(NamedTuple):
-    """head: first particle of each bucket, the last of which is the overflow; rate (1,): buckets per unit of
-    time; cursor (3,): the current bucket, how many particles are in buckets that are not the overflow, and
-    the number of events processed."""
+    """Calendar of the next events of all particles.
+
+    head: first particle of each bucket, the last of which is the overflow; rate (1,): buckets per unit of
+    time; cursor (4,): the current bucket, the number of particles in buckets that are not the overflow, the
+    number of sorted runs in the current bucket, and the number of events processed; runs (2, MOST_RUNS): the
+    first particle of each run, and its length when it was made, from the last run in the list to the first.
+    """
 
     head: np.ndarray
     rate: np.ndarray
     cursor: np.ndarray
+    runs: np.ndarray
 
 
 def empty_queue(count: int) -> Queue:
     """A queue for `count` particles with nothing in it."""
     buckets = 1 << max(4, (4 * count - 1).bit_length())
-    return Queue(np.full(buckets + 1, -1, dtype=np.int32), np.ones(1), np.zeros(3, dtype=np.int64))
+    head, runs = np.full(buckets + 1, -1, dtype=np.int32), np.zeros((2, MOST_RUNS), dtype=np.int64)
+    return Queue(head, np.ones(1), np.zeros(4, dtype=np.int64), runs)
 
 
 @inner_helper
@@ -99,6 +115,25 @@ def _unlink(queue, predictions, i):
     predictions[before if before >= 0 else i].after = after
     predictions[after if after >= 0 else i].before = before
     queue.cursor[FILLED] -= bucket < len(queue.head) - 1
+    if queue.cursor[RUNS] > 0:
+        _take_from_runs(queue, i, after)
+
+
+@inner_kernel
+def _take_from_runs(queue, i, after):
+    """Let a run that begins with a particle begin with the one after it, or end with the run."""
+    next_run = np.int64(-1)
+    for r in range(queue.cursor[RUNS]):
+        first = queue.runs[FIRST, r]
+        if first == i:
+            queue.runs[FIRST, r] = after
+            if after == next_run:
+                queue.cursor[RUNS] -= 1
+                for s in range(r, queue.cursor[RUNS]):
+                    queue.runs[FIRST, s] = queue.runs[FIRST, s + 1]
+                    queue.runs[LENGTH, s] = queue.runs[LENGTH, s + 1]
+            return
+        next_run = first
 
 
 @inner_helper
@@ -122,7 +157,7 @@ def fill(queue, predictions, now):
     if not queue.rate[0] * abs(now) < 2.0**52:  # times too short to number: one bucket for all
         queue.rate[0] = 0.0
     queue.cursor[BUCKET] = int(max(now, 0.0) * queue.rate[0])
-    queue.cursor[FILLED] = 0
+    queue.cursor[FILLED] = queue.cursor[RUNS] = 0
     for i in range(len(predictions)):
         _link(queue, predictions, i)
 
@@ -155,6 +190,118 @@ def _leap(queue, predictions):
 
 
 @inner_helper
+def _is_before(predictions, i, j):
+    """Return True if the event of particle i comes before that of particle j."""
+    time, other = time_of(predictions, i), time_of(predictions, j)
+    return time < other or (time == other and tie(predictions, i) < tie(predictions, j))
+
+
+@inner_kernel
+def _merge(predictions, one, other):
+    """Merge two sorted lists of particles, linked by `after` and ended by -1. Returns the first particle."""
+    first = last = np.int64(-1)
+    while one >= 0 or other >= 0:
+        if other < 0 or (one >= 0 and _is_before(predictions, one, other)):
+            particle, one = one, np.int64(predictions[one].after)
+        else:
+            particle, other = other, np.int64(predictions[other].after)
+        if last >= 0:
+            predictions[last].after = particle
+        else:
+            first = particle
+        last = particle
+    return first
+
+
+@inner_kernel
+def _cut(predictions, first, count):
+    """End a list after `count` particles. Returns the first particle of the rest, or -1."""
+    last = first
+    for _ in range(count - 1):
+        if last >= 0:
+            last = np.int64(predictions[last].after)
+    if last < 0:
+        return last
+    rest = np.int64(predictions[last].after)
+    predictions[last].after = -1
+    return rest
+
+
+@inner_kernel
+def _sort(predictions, first, count):
+    """Sort a list of `count` particles, linked by `after` and ended by -1. Returns the first particle."""
+    length = 1
+    while length < count:
+        rest, last, first = first, np.int64(-1), np.int64(-1)
+        while rest >= 0:
+            one = rest
+            other = _cut(predictions, one, length)
+            rest = _cut(predictions, other, length) if other >= 0 else np.int64(-1)
+            merged = _merge(predictions, one, other)
+            if last >= 0:
+                predictions[last].after = merged
+            else:
+                first = merged
+            last = merged
+            while predictions[last].after >= 0:
+                last = np.int64(predictions[last].after)
+        length *= 2
+    return first
+
+
+@inner_kernel
+def _add_run(queue, predictions, count):
+    """Sort the first `count` particles of the current bucket, with the runs after them that are not more than
+    twice as long, into one run."""
+    bucket = queue.cursor[BUCKET] & (len(queue.head) - 2)
+    runs, found, end = queue.cursor[RUNS], np.int64(-1), np.int64(-1)
+    first = np.int64(queue.head[bucket])
+    rest = _cut(predictions, first, count)
+    found = _sort(predictions, first, count)
+    while runs > 0 and queue.runs[LENGTH, runs - 1] <= 2 * count:
+        runs -= 1
+        end = queue.runs[FIRST, runs - 1] if runs > 0 else np.int64(-1)
+        if end >= 0:
+            predictions[predictions[end].before].after = -1
+        found = _merge(predictions, found, rest)
+        count += queue.runs[LENGTH, runs]
+        rest = end
+    queue.head[bucket] = found
+    before, i = np.int64(-1), found
+    while i >= 0:
+        predictions[i].before = before
+        before, i = i, np.int64(predictions[i].after)
+    predictions[before].after = rest
+    if rest >= 0:
+        predictions[rest].before = before
+    queue.runs[FIRST, runs], queue.runs[LENGTH, runs] = found, count
+    queue.cursor[RUNS] = runs + 1
+
+
+@inner_kernel
+def _soonest_of_many(queue, predictions):
+    """Return the particle of the current bucket whose event comes first, where there are many."""
+    runs, count = queue.cursor[RUNS], 0
+    i = np.int64(queue.head[queue.cursor[BUCKET] & (len(queue.head) - 2)])
+    end = queue.runs[FIRST, runs - 1] if runs > 0 else np.int64(-1)
+    while i != end:
+        i = np.int64(predictions[i].after)
+        count += 1
+    if count > MOST_UNSORTED:
+        _add_run(queue, predictions, count)
+    runs = queue.cursor[RUNS]
+    best, i = queue.runs[FIRST, 0], np.int64(queue.head[queue.cursor[BUCKET] & (len(queue.head) - 2)])
+    while i != queue.runs[FIRST, runs - 1]:
+        if _is_before(predictions, i, best):
+            best = i
+        i = np.int64(predictions[i].after)
+    for r in range(1, runs):
+        if _is_before(predictions, queue.runs[FIRST, r], best):
+            best = queue.runs[FIRST, r]
+    return best
+
+
+@inner_helper
 def soonest(queue, predictions):
     """The particle whose event comes first, or -1 if there are no more events."""
     buckets = len(queue.head) - 1
@@ -163,13 +310,16 @@ def soonest(queue, predictions):
             return -1
         best = np.int64(queue.head[queue.cursor[BUCKET] & (buckets - 1)])
         if best >= 0:
-            soon = time_of(predictions, best)
+            soon, count = time_of(predictions, best), 1
             i = np.int64(predictions[best].after)
             while i >= 0:
+                if count == MOST_UNSORTED:
+                    return _soonest_of_many(queue, predictions)
                 time = time_of(predictions, i)
                 if time < soon or (time == soon and tie(predictions, i) < tie(predictions, best)):
                     best, soon = i, time
                 i = np.int64(predictions[i].after)
+                count += 1
             return best
         queue.cursor[BUCKET] += 1
         if queue.cursor[BUCKET] & (buckets - 1) == 0:
