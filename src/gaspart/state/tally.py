@@ -98,8 +98,8 @@ class Tally:
         the container at the start. It is 0 for interior walls and for faces that an engine does not tally.
         None unless particles of several sizes reach different areas of faces.
     heat_per_area : ndarray, shape (F,), optional, [mass length^(3-d)/time^2]
-        Energy of `wall_energy`, divided in the same way, and with the same zeros. None if `momentum_per_area`
-        is None.
+        Energy of `wall_energy`, divided in the same way, and with the same zeros. Absent without
+        `momentum_per_area`.
     stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
         Time integral of the stress tensor times the volume: of m v v and, at a collision, of r dp. Here r is
         the vector from the second particle to the first, and dp the momentum that the first gains. None
@@ -117,7 +117,7 @@ class Tally:
         It is the mean over the planes of each bin. Under gravity the momentum that gravity has given to the
         particles below is subtracted (`analysis.impulses`). None unless requested.
     contact_impulse_sum : ndarray, shape (shells,), optional, [mass length^2/time]
-        k_B T g(r) times the time, the mean over each shell, from the pairs that collide
+        Mean over each shell of k_B T g(r) times the time, from the pairs that collide
         (`analysis.pair_impulses`). None unless requested.
     other_impulse_sum : ndarray, shape (shells,), optional, [mass length^2/time]
         Contribution of all other pairs to the same quantity.
