@@ -15,9 +15,9 @@ wall:
           F / A = P - 2 (w-1) \gamma / l - 2 (w-1)(w-2) \tau / l^2 ,
 
 the latter for equal lengths. Gamma = - rho (d gamma / d rho) / (dP / d rho), the others follow by the same
-rule, and rho is the density of a bulk fluid of the same chemical potential. Between two walls (w = 1) there are
-no edges and the walls feel just P. gamma, tau and kappa are exact to fifth order in the density, by cluster
-integrals (`clusters`). Everything here is in diameters and k_B T.
+rule, and rho is the density of a bulk fluid of the same chemical potential. Between two walls (w = 1) there
+are no edges and the walls feel just P. gamma, tau and kappa are exact to fifth order in the density, by
+cluster integrals (`clusters`). Everything here is in diameters and k_B T.
 """
 
 import math
