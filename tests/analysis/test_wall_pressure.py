@@ -45,7 +45,7 @@ def test_a_fixed_disc_covers_part_of_the_face_that_it_is_near(tmp_path):
     gas = gp.Species(1, 0.1, speed=1.0)
     post = gp.Particle((2.2, 0.9), STILL, 0.8, fixed=True)
     scene = gp.Scene(gp.Container((5.0, 4.0)), [gas], particles=[post])
-    path = run(scene, 40000.0, 20.0, tmp_path / "a.nc")
+    path = run(scene, 60000.0, 20.0, tmp_path / "a.nc")
     covered = 2.0 * math.sqrt(0.9**2 - 0.8**2)
     found = gp.analysis.wall_pressure(path)
     force = gp.analysis.wall_force(path).estimate.values

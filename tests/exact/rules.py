@@ -108,12 +108,6 @@ def _walled_axis(kind):
     return None if not kind.case.periodic.all() else "images pass a plane across a periodic axis"
 
 
-def _open_across(kind):
-    axis = max((k for k in range(kind.dimension) if not kind.case.periodic[k]), default=None)
-    beside = any(face["kind"] == "open" and "xyz".index(name[0]) != axis for name, face in kind.faces.items())
-    return "bodies come and go beside the plane" if beside else None
-
-
 def _steady_flow(kind):
     return "motion about a flow that changes with a moving face" if kind.moving_face else None
 
@@ -139,7 +133,7 @@ UNDEFINED = {
     "chemical_potential": (*_STATIC, _smooth, _elastic, _one_size),
     "density": (_unsheared,),
     "velocity": (),
-    "flux": (_unsheared, _walled_axis, _open_across),
+    "flux": (_unsheared, _walled_axis),
     "number": (_opened,),
     "temperature": (_unsheared, _thermal),
     "shear_viscosity": (_closed, _stress),

@@ -35,7 +35,7 @@ def test_a_loaded_piston_on_points_has_their_mean_length():
     loaded = case(text + "faces: {x_high: {kind: piston, mass: 1, pressure: 0.5}}}")
     kept = sample(loaded, 20_000)
     close(*block_mean(kept.places), 4.0, relative=0.06)  # (N + 1) / load
-    value, error = static.contacts(loaded, 8000)
+    value, error = static.contacts(loaded, 24_000)
     close(value[0, 2], error[0, 2], 1.0)
 
 

@@ -9,7 +9,7 @@ from gaspart.cli.arguments import Parser, add_output, add_trajectory, integer, p
 _EXAMPLES = """examples:
   gaspart export run.nc -o state.gsd              # last frame, for HOOMD
   gaspart export run.nc -o start.data --frame 0   # first frame, for LAMMPS
-  gaspart export run.nc -o run.xyz --frame all    # a number of particles for each frame"""
+  gaspart export run.nc -o run.xyz --frame all   # each frame with its number"""
 
 
 def add_export(parser: Parser) -> None:

@@ -128,7 +128,7 @@ def table(
     rows = [_spread(row(point, *rest)) for point in points]
     named = ["\n".join(made_of(one)) for one in (points if of is None else of)]
     data = from_rows(over, rows, inner, units)
-    return data.assign({f"{over}{MADE_OF}": (over, named)}) if all(named) else data
+    return data.assign({f"{over}{MADE_OF}": (over, named)}) if named and all(named) else data
 
 
 def made_of(value: Any) -> list[str]:
