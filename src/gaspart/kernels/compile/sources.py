@@ -95,7 +95,7 @@ def _stored() -> dict[str, str]:
     is_whole = isinstance(content, dict) and all(
         isinstance(value, str) and _DIGEST.fullmatch(value) for value in content.values()
     )
-    return content if is_whole else {}
+    return content if is_whole else {}  # type: ignore[return-value]
 
 
 def _store(added: dict[str, str]) -> None:
