@@ -99,7 +99,7 @@ def _after_window(gas: Gas, window: np.ndarray | tuple[float, float]) -> float:
     """What D(t) at the collisions of a particle between which its slope is taken lacks of its limit, by the
     hydrodynamic modes of the container (`theory.diffusion_modes`)."""
     unit = gas.diameter / gas.thermal_speed
-    times = np.linspace(*window, 9) / bulk.collision_rate(gas, EXACT) / unit
+    times = np.linspace(float(window[0]), float(window[1]), 9) / bulk.collision_rate(gas, EXACT) / unit
     lacking = theory.diffusion_modes(times, gas.packing_fraction, 3, gas.count) - times / gas.count
     return float(lacking.mean()) * gas.diameter**2 / unit
 

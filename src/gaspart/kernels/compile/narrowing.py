@@ -42,7 +42,7 @@ class Narrowed(types.NamedTuple):
 
     def __init__(self, kinds: list, instance_class: type) -> None:
         super().__init__(kinds, instance_class)
-        self.name = f"Narrowed({self.name})"  # type: ignore[has-type]
+        self.name = f"Narrowed({self.name})"
 
     def unify(self, context: Any, other: Any) -> Any:
         """Return the type of a variable that holds either this tuple or one that the function has made."""

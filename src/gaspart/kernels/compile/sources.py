@@ -92,10 +92,10 @@ def _stored() -> dict[str, str]:
             content = json.load(file) if is_own(os.fstat(file.fileno())) else None
     except (OSError, ValueError, RuntimeError):  # RecursionError is a RuntimeError
         return {}
-    is_whole = isinstance(content, dict) and all(
-        isinstance(value, str) and _DIGEST.fullmatch(value) for value in content.values()
-    )
-    return content if is_whole else {}  # type: ignore[return-value]
+    if not isinstance(content, dict):
+        return {}
+    is_whole = all(isinstance(value, str) and _DIGEST.fullmatch(value) for value in content.values())
+    return content if is_whole else {}
 
 
 def _store(added: dict[str, str]) -> None:
