@@ -12,7 +12,7 @@ from gaspart.theory.geometry import particle_volume
 from gaspart.theory.potential import packing_fraction_at
 
 _EXACT = np.sqrt(0.75)
-"""Height above a layer of spheres of diameter 1 from which on a point is near one of them at most."""
+"""Height above a layer of spheres of diameter 1 above which a point is near one sphere at most."""
 
 
 @checked

@@ -19,7 +19,7 @@ from gaspart.theory.geometry import unit_sphere_surface
 _FLUXES = {"viscosity": (2, 0), "conductivity": (1, 1)}
 """Rank of the harmonic tensor and order of the Sonine polynomial of the stress and of the heat flux."""
 _ORDERS = 5
-"""Polynomials of a flux: a sixth changes the integral of its correlation by 3e-5."""
+"""Number of polynomials of a flux: a sixth changes the integral of its correlation by 3e-5."""
 
 
 def collisions(

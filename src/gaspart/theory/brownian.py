@@ -10,7 +10,7 @@ import numpy as np
 from gaspart.theory._arguments import Numbers, Values, checked
 
 SONINE_EQUAL_MASSES = 1.01895
-"""D of a particle as heavy as the gas's, over the first Sonine approximation k_B T / (M rate) (derived
+"""D of a particle as heavy as the gas's, divided by the first Sonine approximation k_B T / (M rate) (derived
 again, as in `enskog`)."""
 
 

@@ -238,9 +238,9 @@ def diffusion_in_cube(
     Notes
     -----
     `erpenbeck_wood_diffusion` minus `yeh_hummer`, of modes that decay with nu + D, with the viscosity of
-    `viscosity_ratio`. The shift is uncertain by 5 % of itself plus two mean free paths divided by the side,
-    which matters in containers that are not much longer than a mean free path; this fraction is a half at
-    most (49 values of 1372 to 530604 spheres by another program, tested).
+    `viscosity_ratio`. The shift is uncertain by a fraction of 5 % plus two mean free paths divided by the
+    side, but at most by a half. The second term counts in containers that are not much longer than a mean
+    free path. (Tested with 49 values of 1372 to 530604 spheres by another program.)
 
     Examples
     --------

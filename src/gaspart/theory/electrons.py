@@ -18,10 +18,10 @@ import numpy as np
 _CELLS = 100
 """Number of cells of the gap: within one of them electrons hit the same modes."""
 _PER_CELL = 1.0
-"""Modes over electrons: a steady state does not depend on it."""
+"""Number of modes divided by the number of electrons: a steady state does not depend on it."""
 _STEP = 0.2
-"""Time in which all electrons are moved at once, mean free paths over sqrt(cold): flights are exact, but hits
-of different electrons in it have no order."""
+"""Time step of all electrons, in mean free paths divided by sqrt(cold): flights are exact, but hits of
+different electrons in a step have no order."""
 
 
 class MetalSlab:

@@ -12,11 +12,11 @@ from gaspart.theory.geometry import packing_fraction
 
 _RADIUS = 0.5
 _MIXING = 0.015
-"""Part of a change that is made far from the solution: more oscillates without end in slits of less than two
-diameters."""
+"""Fraction of a change that is made far from the solution: a larger one oscillates without end in slits of
+less than two diameters."""
 _NEAR, _NEAR_MIXING, _REMEMBERED = 0.3, 0.05, 5
-"""Largest change, in bulk densities, near the solution; the part that is made there, and how many changes are
-remembered."""
+"""Largest change, in bulk densities, near the solution; the fraction that is made there, and the number of
+changes that are remembered."""
 
 
 @checked

@@ -18,9 +18,9 @@ from gaspart.theory.enskog import collision_rate
 from gaspart.theory.speeds import maxwell_pdf, mean_speed
 
 _SPEEDS = 160
-"""Points of the quadrature over speeds."""
+"""Number of points of the quadrature over speeds."""
 _FASTEST = 8.0
-"""In thermal speeds: faster are fewer than exp(-32) of all particles."""
+"""Highest speed of the quadrature, in thermal speeds: fewer than exp(-32) of all particles are faster."""
 
 
 @checked

@@ -14,8 +14,8 @@ from gaspart.theory._arguments import Numbers, Values, checked, checked_dimensio
 from gaspart.theory.enskog import collision_rate
 
 DISCHARGE_EXPONENT = 1.5
-"""Exponent of the width of an orifice, less some diameters of the grains, in the rate of their flow through
-it in two dimensions: the width times the speed of a free fall from an arch as wide. In three it is 5/2
+"""Exponent of the width of an orifice, minus some diameters of the grains, in the flow rate of grains in two
+dimensions: the width times the speed of a free fall from an arch as wide. In three dimensions it is 5/2
 (Beverloo, Leniger & van de Velde, Chem. Eng. Sci. 15, 260 (1961))."""
 
 
@@ -503,7 +503,7 @@ def rough_cooling() -> np.ndarray:
 
 
 ROUGH_START_UNCERTAINTY = 0.002
-"""Standard uncertainty of `rough_start_excess`, statistical: of two gases of 100 000 discs."""
+"""Standard uncertainty of `rough_start_excess` (statistical, from two gases of 100 000 discs)."""
 
 
 @checked

@@ -14,9 +14,9 @@ from gaspart.theory.geometry import number_density, packing_fraction
 from gaspart.theory.state import compressibility_factor
 
 TEMPERATURE_JUMP = 2.127
-"""T_gas - T_wall over l_0 dT/dn at a diffuse wall, hard spheres, l_0 = 1 / (sqrt 2 pi n sigma^2): 2.4001
-sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989). Moments of the linearised Boltzmann
-equation, derived again, come within 0.5 % of it and converge (tested)."""
+"""T_gas - T_wall divided by l_0 dT/dn at a diffuse wall, hard spheres, l_0 = 1 / (sqrt 2 pi n sigma^2):
+2.4001 sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989). Moments of the linearised Boltzmann
+equation, derived again, come within 0.5 % of this value and converge (tested)."""
 ELEMENTARY_JUMP = 15.0 / 8.0
 """`TEMPERATURE_JUMP` by Maxwell's elementary argument, 2 gamma / (gamma + 1) / Pr with gamma = 5/3 and
 Pr = 2/3: particles arrive with the distribution of the gas far from the wall. A measurement must distinguish

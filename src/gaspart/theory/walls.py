@@ -1,7 +1,7 @@
 r"""Hard particles between hard walls: what a container shifts in the pressure that its walls feel.
 
-Centres can touch a container that has walls on w of its d axes only within l_k = L_k - sigma on each of
-these, so that is the volume V to which the fluid's thermodynamics applies. With the surface tension gamma
+The container has walls on w of its d axes. Centres move only within l_k = L_k - sigma on each of these axes:
+this is the volume V to which the fluid's thermodynamics applies. With the surface tension gamma
 of the fluid at the plane of the centres, the free energy tau of an edge (3D; a corner in 2D) and kappa of a
 corner (3D), the grand potential is
 
@@ -14,10 +14,10 @@ wall:
 .. math:: N / V = \rho + \Gamma s_1 + \Gamma_\tau s_2 + \Gamma_\kappa s_3, \qquad
           F / A = P - 2 (w-1) \gamma / l - 2 (w-1)(w-2) \tau / l^2 ,
 
-the latter for equal lengths, with Gamma = - rho (d gamma / d rho) / (dP / d rho), the others by the same
-rule, and rho the density of a bulk fluid of the same chemical potential. Between two walls (w = 1) there are
-no edges and the walls feel just P. gamma, tau and kappa are exact to fifth order in the density, by cluster
-integrals (`clusters`). Everything here is in diameters and k_B T.
+the latter for equal lengths. Gamma = - rho (d gamma / d rho) / (dP / d rho), the others follow by the same
+rule, and rho is the density of a bulk fluid of the same chemical potential. Between two walls (w = 1) there
+are no edges and the walls feel just P. gamma, tau and kappa are exact to fifth order in the density, by
+cluster integrals (`clusters`). Everything here is in diameters and k_B T.
 """
 
 import math
@@ -43,9 +43,9 @@ _SHAPES: dict[int, tuple[tuple[float, ...], ...]] = {
     ),
 }
 """Polynomials in eta: gamma, tau and kappa times (1 - eta)^d divided by their second order. From the cluster
-integrals of three to five centres (`clusters.cluster_integrals`, 6 to 12 million samples of each, with that
-of the bulk, which is known, as a control variate) and the virial coefficients; good to one or two of the
-last digit, the last of each row to 0.1, 0.6 and 4 in 3D."""
+integrals of three to five centres (`clusters.cluster_integrals`, 6 to 12 million samples of each, with the
+integral of the bulk, which is known, as a control variate) and the virial coefficients; good to one or two of
+the last digit, the last of each row to 0.1, 0.6 and 4 in 3D."""
 _OPPOSITE = np.array(
     [[0.1, 0.2, 0.3, 0.4, 0.49], [-6.7, -5.05, -3.15, -2.6, -2.2], [3.0, 1.9, 1.75, 1.35, 1.0]]
 )
