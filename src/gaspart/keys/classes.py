@@ -167,7 +167,7 @@ def refuse_unknown(cls: Any, mapping: dict, where: str) -> None:
     Raises
     ------
     SceneError
-        If a key is unknown; the message names the most similar field.
+        If a key is unknown, with the rule of `unknown_word`.
     """
     known = [item.name for item in fields(cls)]
     for key, value in mapping.items():
