@@ -88,12 +88,12 @@ def forge(path, name):
     attributes = {}
     with netCDF4.Dataset(path) as file:
         attributes = {key: file.getncattr(key) for key in file.ncattrs()}
-        radii, types = file["radius"][:].data, file["type"][:].data
+        particles = {key: file[key][:].data for key in ("radius", "mass", "type")}
     for key in ("header_bytes", "header_crc32", "frame_bytes"):
         del attributes[key]
     old = str(attributes.get(name, ""))
     attributes[name] = old + FAKE.replace("\0", "").encode("utf-8", "replace").decode()
-    header = layout.header(attributes, radii, types)
+    header = layout.header(attributes, particles)
     from gaspart.trajectory.frames import Frames, frames_of
     from gaspart.trajectory.opening import checked
 
