@@ -261,9 +261,10 @@ def write(folder):
 
 
 def describe_keys(app, what, name, thing, options, lines):
-    """Prepare a docstring: bars are those of absolute values, and a dataclass has its declared keys."""
+    """Prepare a docstring: escape bars, and append the keys of a dataclass without Parameters."""
     lines[:] = [line.replace("|", "\\|") for line in lines]
-    if what == "class" and is_dataclass(thing):
+    documented = any(line.strip(": ") == "Parameters" for line in lines)
+    if what == "class" and is_dataclass(thing) and not documented:
         keys = [field for field in fields(thing) if "meaning" in field.metadata]
         lines += [""] + [f":param {field.name}: {field.metadata['meaning']}" for field in keys]
 

@@ -44,15 +44,45 @@ _ABOUT = {
 def collision_data(
     scene: Scene, collisions: int, seed: int | tuple[int, ...] = 0, equilibration: float = 0.0
 ) -> xr.Dataset:
-    """At least `collisions` collisions of a scene under the event-driven engine, after a time `equilibration`
-    that is not recorded.
+    """Record the collisions of a scene under the event-driven engine.
 
-    Dimensions collision, of (the two particles), axis; `free_time` and `free_path` are NaN for a particle
-    that had no event before. Memory is bounded by the data themselves. Attributes: scene, seed, versions,
-    revision.
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    collisions : int
+        Minimum number of collisions.
+    seed : int or tuple of int, default 0
+        Seed of the run.
+    equilibration : float, default 0.0, [time]
+        Time before the record.
 
-    Raises SceneError for gravity, under which paths are not straight, for fewer than two particles, and for a
-    count below 1 or beyond this machine's memory; SimulationError if no collision occurs.
+    Returns
+    -------
+    Dataset
+        Dimensions collision, of (the two particles) and axis. `free_time` and `free_path` are NaN for a
+        particle that had no event before. Attributes: scene, seed, versions, revision.
+
+    Raises
+    ------
+    SceneError
+        For gravity, under which paths are not straight, fewer than two particles, and a count below 1 or
+        beyond this machine's memory.
+    SimulationError
+        If no collision occurs.
+
+    Notes
+    -----
+    Memory is bounded by the data themselves.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> data = gp.collision_data(scene, collisions=500, seed=1)
+    >>> bool((data["approach"] > 0.0).all())
+    True
     """
     _check_memory(count_of("collisions", collisions, least=1), scene)
     number("equilibration", equilibration, "must not be negative", least=0.0)
@@ -97,10 +127,34 @@ def record_collisions(
     equilibration: float = 0.0,
     overwrite: bool = False,
 ) -> xr.Dataset:
-    """Write `collision_data` to a netCDF-3 file; returns the data. A data set of collisions that is there is
-    replaced only with `overwrite`, any other file never.
+    """Write `collision_data` to a netCDF-3 file.
 
-    Raises SceneError for such a file, and if it cannot be written; and what `collision_data` raises.
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    path : str or Path
+        The file.
+    collisions : int
+        Minimum number of collisions.
+    seed : int or tuple of int, default 0
+        Seed of the run.
+    equilibration : float, default 0.0, [time]
+        Time before the record.
+    overwrite : bool, default False
+        Replace a data set of collisions. Files of other kinds are never replaced.
+
+    Returns
+    -------
+    Dataset
+        The data.
+
+    Raises
+    ------
+    SceneError
+        For a file that is not replaced, or cannot be written, and as `collision_data`.
+    SimulationError
+        As `collision_data`.
     """
     with writing(path, COLLISIONS, overwrite) as scratch:
         data = collision_data(scene, collisions, seed, equilibration)
@@ -111,7 +165,7 @@ def record_collisions(
 
 
 def _is_collision_data(path: Path) -> bool:
-    """Whether a file was written by `record_collisions`."""
+    """Return True if a file was written by `record_collisions`."""
     import netCDF4
 
     if not begins_with(b"CDF\x02", b"\x89HDF")(path):  # older versions wrote netCDF-4
@@ -136,11 +190,43 @@ def _check_memory(collisions: int, scene: Scene) -> None:
 
 
 def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
-    """g at contact of equal particles, from their collision rate: chi = 2 M / (N t S rho sigma^(d-1)
-    sqrt(kT / (pi m))), S = 2 pi (2D), 4 pi (3D), exact in equilibrium (Chapman & Cowling 1970). The
-    temperature is that of the mean approach, sqrt(pi kT / m); the error that of `blocks` stretches.
+    """Measure g at contact of equal particles from their collision rate.
 
-    Raises SceneError for a scene of several kinds of particles.
+    Parameters
+    ----------
+    data : Dataset
+        Collisions, as of `collision_data`.
+    blocks : int, default 20
+        Number of blocks whose scatter is the error.
+
+    Returns
+    -------
+    Estimate
+        The contact value chi, dimensionless, with its standard error.
+
+    Raises
+    ------
+    SceneError
+        If the scene has several kinds of particles.
+
+    Notes
+    -----
+    chi = 2 M / (N t S rho sigma^(d-1) sqrt(kT / (pi m))), with S = 2 pi (2D) or 4 pi (3D), exact in
+    equilibrium [1]_. The temperature is that of the mean approach, sqrt(pi kT / m).
+
+    References
+    ----------
+    .. [1] S. Chapman and T. G. Cowling (1970).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> data = gp.collision_data(scene, collisions=500, seed=1)
+    >>> estimate = gp.contact_value(data)
+    >>> abs(estimate.value - 1.5) < 10.0 * estimate.error
+    True
     """
     scene = Scene.from_dict(json.loads(data.attrs["scene"]))
     if not scene.alike:
@@ -157,8 +243,24 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
 
 
 def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tuple]:
-    """The collisions of two particles among `events`, as rows of `collision_data`, and each particle's time
-    and velocity after its last one; `last`: those before them."""
+    """Return the collisions of two particles among events, as rows of `collision_data`.
+
+    Parameters
+    ----------
+    events : dict of str to ndarray
+        The events, as of `Simulation.events`.
+    last : tuple of ndarray
+        Time and velocity of each particle after its last event before these.
+    scene : Scene
+        The scene.
+
+    Returns
+    -------
+    rows : Dataset
+        The collisions.
+    last : tuple of ndarray
+        Time and velocity of each particle after its last event.
+    """
     particles, times, after = events["particles"], events["time"], events["velocities"]
     number_of_particles = len(last[0])
     # each particle's history in order: its state before, then its part in every event

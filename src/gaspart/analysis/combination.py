@@ -37,18 +37,51 @@ def replicas(
     end: float | None = None,
     **selection: Any,
 ) -> Observable:
-    """An observable, by its name as of `gaspart measure`, as the mean over independent runs of one scene.
+    """Measure an observable, by its name, as the mean over independent runs of one scene.
 
-    sources: at least two trajectories, by their paths or open, or simulations, of different seeds or initial
-    states; start and `selection` as of the observable's function; end: the time until which frames count, by
-    default all. The uncertainty is that of the mean by the scatter of the runs, which needs no assumption
-    about correlations within a run, with one degree of freedom less than there are runs (`freedom`). The
-    variable with the suffix _replicas has the value of each (replica, ...). Theory is the mean of theirs.
+    Parameters
+    ----------
+    name : str
+        Name of the observable as of `gaspart measure`.
+    sources : sequence of str, Path, Dataset or Simulation
+        At least two runs of different seeds or initial states: trajectories, by their paths or open, or
+        simulations.
+    start : float, [time], optional
+        Frames before this time are discarded, as of the observable's function.
+    end : float, [time], optional
+        Frames after this time are discarded. Default: none.
+    **selection
+        Selections of the observable's function.
 
-    Raises SceneError for fewer than two runs, runs of different scenes or engines, with the first difference,
-    two that are the same bit for bit (of one initial state and one seed, or of one initial state in a scene
-    that draws nothing afterwards), curves at different places, as densities in the bins of different
-    impulses that runs have kept, and as the observable's function does.
+    Returns
+    -------
+    Observable
+        The mean with its uncertainty. The variable with the suffix _replicas has the value of each run,
+        (replica, ...). Theory is the mean of the runs' theories.
+
+    Raises
+    ------
+    SceneError
+        If there are fewer than two runs; if scenes or engines differ (with the first difference); if two runs
+        are the same bit for bit (of one initial state and one seed, or of one initial state in a scene that
+        draws nothing afterwards); if curves are at different positions, as densities in the bins of different
+        impulses that runs have stored; and as the observable's function does.
+
+    Notes
+    -----
+    The uncertainty is the standard error of the mean from the scatter of the runs. It needs no assumption
+    about correlations within a run. It has one degree of freedom less than there are runs (`freedom`).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> runs = [gp.Simulation(scene, seed=seed) for seed in (1, 2)]
+    >>> for run in runs:
+    ...     run.advance(10.0)
+    >>> gp.analysis.replicas("Z", runs)["compressibility_factor_replicas"].sizes["replica"]
+    2
     """
     if isinstance(sources, str | Path | Simulation | xr.Dataset) or len(sources) < 2:
         raise SceneError("sources", sources, "must be a list of two runs or more")

@@ -28,14 +28,40 @@ _SLIGHT = 1e-6  # of the weight: rounding of the momentum of single-precision ve
 
 
 def compressibility_factor(source: Source, start: float | None = None) -> Observable:
-    """Z = P V / (N k_B T) of a periodic scene, dimensionless, by the virial theorem:
+    """Measure the compressibility factor Z = P V / (N k_B T) of a periodic scene by the virial theorem.
 
-    Z = 1 + sum |dr . dp| / (d N k_B T t), with k_B T = 2 E / (d (N - 1)) about the centre of mass. source: a
-    trajectory, by its path or open, or a simulation; start: the time from which frames count (by default a
-    quarter of the run). Theory is that of the fluid, with the correction of first order in 1/N; of mixtures
-    an approximation, without an uncertainty.
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
 
-    Raises SceneError for walls, fixed particles, contacts that lose energy, too few frames, and no collision.
+    Returns
+    -------
+    Observable
+        Z, dimensionless. Theory is that of the fluid, with the correction of first order in 1/N; of mixtures
+        an approximation, without an uncertainty.
+
+    Raises
+    ------
+    SceneError
+        If the scene has walls, fixed particles or contacts that lose energy, there are too few frames, or no
+        collision occurs.
+
+    Notes
+    -----
+    Z = 1 + sum |dr . dp| / (d N k_B T t), with k_B T = 2 E / (d (N - 1)) about the centre of mass.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> round(float(gp.analysis.compressibility_factor(simulation).theory), 2)
+    1.78
     """
     with open_run(source, start) as run:
         require_defined("Z", run.scene)
@@ -165,8 +191,21 @@ def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) 
 
 
 def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.ndarray]]:
-    """The pressures or forces on the walls of which the run has kept enough, by their place among all walls:
-    the name of each, the number of controls, and the value in each interval (T - 1,)."""
+    """Compute the pressures or forces on the walls of which the run has stored enough.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    name : {"pressure", "force"}
+        The quantity.
+
+    Returns
+    -------
+    dict of int to tuple
+        By the position among all walls: the name of the wall, the number of controls, and the value in each
+        interval, shape (T - 1,).
+    """
     faces, each = on_walls(run, np.arange(len(run.time)), name)
     groups, found = group_count(run) if run.has_states else 0, {}
     for place, face in enumerate(map(str, faces)) if groups else ():
@@ -178,8 +217,29 @@ def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.nda
 
 
 def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Names (W,) of the faces that are walls, and the "pressure" or the "force" on them (K, W) between the
-    frames `ends` (K + 1,). Raises SceneError as `wall_pressure`."""
+    """Compute the pressure or the force on each wall between frames.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ends : ndarray of int, shape (K + 1,)
+        Numbers of the frames.
+    name : {"pressure", "force"}
+        The quantity.
+
+    Returns
+    -------
+    names : ndarray of str, shape (W,)
+        Names of the faces that are walls.
+    values : ndarray, shape (K, W)
+        The quantity.
+
+    Raises
+    ------
+    SceneError
+        As `wall_pressure`.
+    """
     require_defined(name, run.scene)
     time, walls = np.diff(run.time)[:, None], np.repeat(~run.periodic, 2)
     impulses, resting = series.over(series.face_impulses(run), ends), _rest_on_floors(run, ends)
@@ -225,7 +285,20 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
 
 
 def refuse_rest(run: Run, rule: str) -> None:
-    """Raise SceneError, with a rule, if a particle rests under gravity in a frame after the first."""
+    """Raise SceneError if a particle rests under gravity in a frame after the first.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    rule : str
+        Rule of the message.
+
+    Raises
+    ------
+    SceneError
+        If a particle rests.
+    """
     if run.has_gravity:
         along = np.flatnonzero(run.scene.gravity or ())
         resting = (run.velocities[1:, run.moving][..., along] == 0.0).any(axis=2).any(axis=0).sum()
@@ -234,12 +307,40 @@ def refuse_rest(run: Run, rule: str) -> None:
 
 
 def collision_rate(source: Source, start: float | None = None) -> Observable:
-    """Collisions of a particle that moves per time, (2 M + F) / (N t) for M collisions of pairs of the N
-    particles that move, and F collisions with fixed ones: its own count, on average.
+    """Measure the number of collisions of a moving particle per time.
 
-    source, start: as in `compressibility_factor`. Theory: exact in equilibrium, with the contact value of
-    the fluid's equation of state, corrected for the number of particles. Raises SceneError for too few
-    frames, without a collision, and if particles come to rest.
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        The rate, in [1/time]. Theory: exact in equilibrium, with the contact value of the fluid's equation of
+        state, corrected for the number of particles.
+
+    Raises
+    ------
+    SceneError
+        If there are too few frames, no collision occurs, or particles come to rest.
+
+    Notes
+    -----
+    The rate is (2 M + F) / (N t) for M collisions of pairs of the N particles that move, and F collisions
+    with fixed particles: the mean of a particle's own count.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.collision_rate(simulation).estimate.attrs["units"]
+    '1 / time'
     """
     with open_run(source, start, sheared=True) as run:
         require_defined("collision_rate", run.scene)

@@ -1,7 +1,7 @@
 """The diffusion coefficient, from the paths of particles.
 
 Its uncertainty is the scatter of groups of particles, which are taken as independent, or, of fewer particles
-than groups, that of as many stretches of the run.
+than groups, the scatter of as many blocks of the run.
 """
 
 from __future__ import annotations
@@ -42,26 +42,62 @@ def diffusion_coefficient(
     lag: float | None = None,
     about: str = FLOW,
 ) -> Observable:
-    """D in length^2 / time, by the slope of the mean-squared displacement where it no longer changes.
+    """Measure the diffusion coefficient D from the slope of the mean-squared displacement.
 
-    Slopes are taken between 6, 12, 24, 48 ... collisions of a particle, as far as the run allows. The first
-    one that equals the one before within two standard errors of their difference is D; `lags` are its ends.
-    If the last one has changed by less than 6 %, a slow tail is missing, whose size is added to the error.
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+    species : int, optional
+        Only this species, as in `mean_squared_displacement`.
+    particles : sequence of int, optional
+        Only these particles, as in `mean_squared_displacement`. Of fewer than 16 particles, such as one
+        tracer, each of 16 blocks of the run must be long enough.
+    per_axis : bool, default False
+        D along each periodic axis instead of the mean over axes.
+    lag : float, [time], optional
+        Take half of the slope of the mean-squared displacement along an axis at this time, from the frames
+        before and after it.
+    about : {"flow", "rest"}, default "flow"
+        Frame of reference, as in `mean_squared_displacement`, also for the condition of zero momentum.
 
-    Of a periodic container the mean over axes, a scalar; of one with walls, or `per_axis`, that along each
-    periodic axis, (axis,): across walls displacements are bounded, and there is none. species, particles,
-    about, and the condition of zero momentum: as in `mean_squared_displacement`; of fewer than 16 particles,
-    such as one tracer, each of 16 stretches of the run must be long enough.
+    Returns
+    -------
+    Observable
+        D in [length^2/time]. Of a periodic container a scalar; of a container with walls, or `per_axis`,
+        along each periodic axis, (axis,): across walls displacements are bounded, and D does not exist. The
+        variable `lags` has the ends of the lags of the slope.
 
-    lag: the time at which half of the slope of the mean-squared displacement along an axis is taken instead,
-    from the frames before and after it. That is the integral of the velocity autocorrelation until then,
-    which exists where D does not: of discs, and between walls.
+    Raises
+    ------
+    SceneError
+        If there is no periodic axis, or the run is too short or has too few frames. Without a lag also for
+        discs whose momentum lasts longer than 12 collisions, so that their squared displacement grows like
+        t ln t, and if the slope still changes at the longest lags.
+
+    Notes
+    -----
+    Slopes are taken between 6, 12, 24, 48 ... collisions of a particle, as far as the run allows. D is the
+    first slope that equals the one before within two standard errors of their difference. If the last slope
+    has changed by less than 6 %, a slow tail is missing, whose size is added to the error.
+
+    D at a `lag` is the integral of the velocity autocorrelation until then, which exists where D does not: of
+    discs, and between walls.
 
     Theory: of spheres in a periodic cube, Erpenbeck and Wood's with the shift of Yeh and Hummer, half of
-    which is its uncertainty; at a lag that of the mean-squared displacement. Raises SceneError without a
-    periodic axis; for runs that are too short, or have too few frames; and, without a lag, for discs whose
-    momentum lasts longer than 12 collisions, so that their squared displacement grows like t ln t, and
-    where the slope still changes at the longest lags.
+    which is its uncertainty; at a lag the theory of the mean-squared displacement.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.diffusion_coefficient(simulation, lag=1.0).estimate.attrs["units"]
+    'length^2 / time'
     """
     with open_run(source, start, about=about) as run:
         require_defined("D", run.scene, species=species, particles=particles, lag=lag, about=about)
@@ -128,21 +164,67 @@ def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, ...
 
 
 def require_spheres(run: Run, lasting: np.ndarray) -> None:
-    """Raise SceneError for discs whose total momentum lasts along an axis."""
+    """Raise SceneError for discs whose total momentum lasts along an axis.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    lasting : ndarray of bool, shape (d,)
+        True for axes along which momentum lasts.
+
+    Raises
+    ------
+    SceneError
+        If the particles are discs.
+    """
     if run.dimension == 2 and lasting.any():
         raise SceneError("container.lengths", run.scene.container.lengths, DISCS)
 
 
 def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
-    """After how many frames, `interval` apart, a particle has had 6, 12 and 24 collisions: before the window
-    of D, at its start and at its end. rate: its collisions per time."""
+    """Return the lags, in frames, after which a particle has had 6, 12 and 24 collisions.
+
+    These are before the window of D, at its start and at its end.
+
+    Parameters
+    ----------
+    rate : float, [1/time]
+        Collisions of a particle per time.
+    interval : float, [time]
+        Time between frames.
+
+    Returns
+    -------
+    tuple of int
+        The three lags.
+    """
     first, middle, last = (math.ceil(k * LINEAR_FROM / rate / interval) for k in (0.5, 1.0, 2.0))
     return first, middle, last
 
 
 def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]:
-    """The `linear_lags` of a run, of which every so many frames are taken, no two of them equal; parts: that
-    a run has, in each of which they must be. Raises SceneError for too few frames."""
+    """Return the `linear_lags` of a run, no two of them equal.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    stride : int, default 1
+        One of this number of frames is taken.
+    parts : int, default 1
+        Number of parts of the run, in each of which the lags must be.
+
+    Returns
+    -------
+    tuple of int
+        The lags.
+
+    Raises
+    ------
+    SceneError
+        If there are too few frames.
+    """
     interval = run.interval * stride
     duration, rate = float(run.time[-1] - run.time[0]), _rate(run)
     if rate * (duration / parts + interval) < 4.0 * LINEAR_FROM:

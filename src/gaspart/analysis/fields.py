@@ -25,19 +25,50 @@ def field(
     start: float | None = None,
     species: int | None = None,
 ) -> Observable:
-    """A property of the moving particles in equal cells along axes, ("x", "y"), mean over all frames.
+    """Measure a property of the moving particles in equal cells along axes.
 
-    of: "density", particles per volume of the cell within the container of the moment (faces may move);
-    "velocity", their mean velocity, ("component", "x", "y"); "temperature", twice their kinetic energy per
-    degree of freedom about the local flow of mass: in these cells, and across faces that slide; before faces
-    that move along their normal in layers of each frame (see `gaspart.analysis.flow`). NaN in cells that were
-    always empty. Errors are as of `profile`, and so is the density along one axis of a run that has kept its
-    impulses. axes: such as "xy", by default the first two;
-    cells: their number, of each axis; along the other axes a cell is as long as the container. start: the
-    time from which frames count (by default a quarter of the run); species: of one alone, by its number in
-    the scene.
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    of : {"density", "velocity", "temperature"}, default "density"
+        "density": particles per volume of the cell within the container of the moment (faces may move).
+        "velocity": mean velocity. "temperature": twice the kinetic energy per degree of freedom about the
+        local flow of mass.
+    axes : str, optional
+        Axes, such as "xy". Default: the first two.
+    cells : int or sequence of int, default 20
+        Number of cells, of each axis. Along the other axes a cell is as long as the container.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+    species : int, optional
+        Only this species, by its number in the scene.
 
-    Raises SceneError for an unknown property or axis, a file without all particles, and too few frames.
+    Returns
+    -------
+    Observable
+        Mean over all frames, ("x", "y"), of the velocity ("component", "x", "y"). NaN in cells that were
+        always empty.
+
+    Raises
+    ------
+    SceneError
+        If the property or an axis is unknown, the file lacks particles, or there are too few frames.
+
+    Notes
+    -----
+    The flow of a temperature is taken in these cells, and across faces that slide; before faces that move
+    along their normal in layers of each frame (see `gaspart.analysis.flow`). Errors are as of `profile`, and
+    so is the density along one axis of a run that has stored its impulses.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.field(simulation, axes="xy", cells=3).estimate.dims
+    ('x', 'y')
     """
     one_of("of", of, QUANTITIES)
     with open_run(source, start, sheared=True, varying=True) as run:

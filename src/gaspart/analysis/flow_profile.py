@@ -17,19 +17,49 @@ def velocity_profile(
     bins: int = 40,
     start: float | None = None,
 ) -> Observable:
-    """Mean velocity of the moving particles along an axis, (component, position), in units length / time.
+    """Measure the mean velocity of the moving particles along an axis.
 
-    That of the particles, not of their mass; NaN in bins that stay empty. Of sheared gases and between
-    sliding walls it is that of the scene's frame of reference. source: a trajectory, by its path or open, or
-    a simulation; axis: "x", "y" or "z", by default the last one; species: of one alone, by its number in the
-    scene; bins: their number; start: the time from which frames count (by default a quarter of the run).
-    Uncertainties are as of `field`.
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    axis : {"x", "y", "z"}, optional
+        The axis. Default: the last one.
+    species : int, optional
+        Only this species, by its number in the scene.
+    bins : int, default 40
+        Number of bins.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        Mean velocity (component, position) in [length/time]. NaN in bins that stay empty.
+
+    Raises
+    ------
+    SceneError
+        If the axis is unknown, the species does not move, the file lacks particles, or there are too few
+        frames.
+
+    Notes
+    -----
+    It is the mean velocity of the particles, not of their mass. Of sheared gases and between sliding walls it
+    is in the scene's frame of reference. Uncertainties are as of `field`.
 
     Theory: the flow of sheared images; between sliding plates free flight above a Knudsen number of 100, and
-    a linear flow with slip below 0.1, and likewise the parabola of dilute spheres that a force drives along
-    plates; otherwise, in equilibrium, that of the centre of mass everywhere.
-    Raises SceneError for an unknown axis, a species that does not move, a file without all particles, and too
-    few frames.
+    a linear flow with slip below 0.1, and in the same range the parabola of dilute spheres that a force
+    drives along plates; otherwise, in equilibrium, the velocity of the centre of mass everywhere.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.velocity_profile(simulation, axis="x", bins=4).estimate.shape
+    (2, 4)
     """
     with open_run(source, start, sheared=True, varying=True) as run:
         require_defined("velocity", run.scene, axis=axis, species=species)

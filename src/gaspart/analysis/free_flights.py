@@ -27,17 +27,43 @@ _LONGEST = 5.0  # mean free times that the bins cover
 
 
 def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
-    """Probability density of the time between two collisions of a particle, (free_time,), in 1 / time, in
-    bins up to five times the mean.
+    """Measure the probability density of the time between two collisions of a particle.
 
-    simulation: event-driven and periodic, `record_events` was True while it advanced, for 32 collisions of a
-    particle or more. Uncertainties: the scatter of 16 groups of particles. The mean time and path of a flight
-    are the variables `mean_free_time` and `mean_free_path`, each with _error and, where there is a
-    theory, _theory. Theory, for equal particles: `theory.free_time_pdf`, for independent collisions; means
-    exact in equilibrium, to the accuracy of the contact value, and corrected for the number of particles.
+    Parameters
+    ----------
+    simulation : Simulation
+        Event-driven and periodic; `record_events` was True while it advanced, for at least 32 collisions of a
+        particle.
+    bins : int, default 40
+        Number of bins, up to five times the mean time.
 
-    Raises SceneError without a record or for a shorter one, and for gravity, walls, and fewer than 16 moving
-    particles.
+    Returns
+    -------
+    Observable
+        Density (free_time,) in [1/time]. The mean time and path of a flight are the variables
+        `mean_free_time` and `mean_free_path`, each with _error and, if there is a theory, _theory.
+
+    Raises
+    ------
+    SceneError
+        If there is no record or it is too short, and for gravity, walls, and fewer than 16 moving particles.
+
+    Notes
+    -----
+    Uncertainties are the scatter of 16 groups of particles. Theory, for equal particles:
+    `theory.free_time_pdf`, for independent collisions; means exact in equilibrium, to the accuracy of the
+    contact value, and corrected for the number of particles.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.record_events = True
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.free_flight_times(simulation).sizes["free_time"]
+    40
     """
     scene, state = simulation.scene, simulation.state
     refuse_sheared(scene, "free flights are those of a gas at rest")

@@ -45,8 +45,17 @@ _WORTH = 0.6
 
 @dataclass(frozen=True)
 class Insertions:
-    """Places tried in T frames. share (T,): the part of the container in which they were drawn; successes
-    (T,): those that were free; places: how many were tried in each frame whose share is not 0."""
+    """Trials of positions in T frames.
+
+    Attributes
+    ----------
+    share : ndarray, shape (T,), [1]
+        Fraction of the container in which positions were drawn.
+    successes : ndarray of int, shape (T,)
+        Number of free positions.
+    places : int
+        Number of positions in each frame whose fraction is not 0.
+    """
 
     share: np.ndarray
     successes: np.ndarray
@@ -75,7 +84,26 @@ def insertions(
     places: int,
     seed: int | Sequence[int] = 0,
 ) -> Insertions:
-    """Try `places` random places in each of the frames (T, N, d) of a periodic container of lengths (d,)."""
+    """Try random positions in each frame of a periodic container.
+
+    Parameters
+    ----------
+    frames : ndarray, shape (T, N, d), [length]
+        Positions.
+    lengths : sequence of float, shape (d,), [length]
+        Side lengths of the container.
+    hosts : Hosts
+        The particles inside and the particle to insert.
+    places : int
+        Number of positions in each frame.
+    seed : int or sequence of int, default 0
+        Seed of the positions.
+
+    Returns
+    -------
+    Insertions
+        The result of the trials.
+    """
     generator = np.random.default_rng(seed)
     size = np.asarray(lengths, dtype=float)
     share, successes = np.zeros(len(frames)), np.zeros(len(frames), dtype=int)
@@ -165,17 +193,45 @@ def _covered(groups: list[tuple[np.ndarray, float]], sides: np.ndarray, number: 
 
 
 def chemical_potential(source: Source, places: int = PLACES, start: float | None = None) -> Observable:
-    """Chemical potential of a periodic fluid beyond that of an ideal gas, over k_B T, by insertion: a scalar,
-    of a mixture that of each species, (species,).
+    """Measure the excess chemical potential of a periodic fluid, divided by k_B T, by insertion.
 
-    source: a trajectory, by its path or open, or a simulation; places: random places that are tried in each
-    of up to 2048 frames, drawn where a particle may fit; start: the time from which frames count. Also the
-    `probability` that a random place is free, with its error; `successes`, the number of places that were,
-    and `frames_with_success`, the number of frames that have any; `resolution`, the probability that one
-    success would have been. The error is that of the mean over frames, to first order: it is not to be
-    trusted if few frames have a success. Theory: by the equation of state, for these numbers of particles.
-    Raises SceneError for anything but smooth elastic particles in a periodic container, for mixtures with
-    single particles or a polydisperse species, for too few frames, and if no place was free.
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    places : int, default 512
+        Number of random positions that are tried in each of up to 2048 frames, where a particle may fit.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        Chemical potential beyond that of an ideal gas, dimensionless: a scalar, of a mixture (species,).
+        Variables: `probability`, that a random position is free, with its error; `successes`, the number of
+        free positions; `frames_with_success`, the number of frames that have any; `resolution`, the
+        probability that corresponds to a single success.
+
+    Raises
+    ------
+    SceneError
+        For anything but smooth elastic particles in a periodic container, mixtures with single particles or a
+        polydisperse species, too few frames, and if no position was free.
+
+    Notes
+    -----
+    The error is that of the mean over frames, to first order: it is not to be trusted if few frames have a
+    success. Theory: by the equation of state, for these numbers of particles.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.chemical_potential(simulation, places=50).estimate.attrs["units"]
+    '1'
     """
     places = count_of("places", places, least=1)
     with open_run(source, start) as run:

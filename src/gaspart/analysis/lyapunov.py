@@ -2,7 +2,7 @@
 
 A small deviation of the initial state is carried along by the linearised dynamics (tangent space), so that it
 never saturates and no second run is needed. Free flight adds the deviation of the velocity times the time to
-that of the position; a contact maps both (Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996)).
+the deviation of the position; a contact maps both (Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996)).
 """
 
 from __future__ import annotations
@@ -23,8 +23,11 @@ ALIGNMENT = 0.25
 
 
 class Deviation:
-    """An infinitesimal deviation of a state: of positions and velocities, lists of N vectors, and the time of
-    each particle's, since a particle is brought up to date only at its own events."""
+    """An infinitesimal deviation of a state.
+
+    It has the deviations of positions and velocities, lists of N vectors, and the time of each particle's,
+    since a particle is brought up to date only at its own events.
+    """
 
     def __init__(self, positions: np.ndarray, velocities: np.ndarray, time: float) -> None:
         self.positions, self.velocities = positions.tolist(), velocities.tolist()
@@ -81,7 +84,21 @@ class Deviation:
 def follow(deviation: Deviation, scene: Scene, masses: np.ndarray, events: Mapping[str, np.ndarray]) -> None:
     """Carry a deviation along a run's events, in their order (see `Simulation.events`).
 
-    masses (N,) of the particles. Raises SceneError for a scene with more than smooth elastic contacts.
+    Parameters
+    ----------
+    deviation : Deviation
+        The deviation.
+    scene : Scene
+        The scene.
+    masses : ndarray, shape (N,), [mass]
+        Masses of the particles.
+    events : mapping of str to ndarray
+        The events.
+
+    Raises
+    ------
+    SceneError
+        If the scene has more than smooth elastic contacts.
     """
     _require_plain(scene)
     lengths, weights = np.array(scene.container.lengths), masses.tolist()
@@ -99,15 +116,44 @@ def follow(deviation: Deviation, scene: Scene, masses: np.ndarray, events: Mappi
 
 
 def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: int = 0) -> Observable:
-    """The largest Lyapunov exponent in 1 / time, from the recorded events of an event-driven run.
+    """Measure the largest Lyapunov exponent from the recorded events of an event-driven run.
 
-    simulation: `record_events` was True while it advanced; start: the time from which growth is measured (by
-    default a quarter of the recorded part is left out, in which the deviation turns to the direction of
-    fastest growth); seed: of the deviation at first, which is random. Uncertainty: that of the mean of a
-    correlated series, the growth in equal intervals. Takes some 10 microseconds for each event.
+    Parameters
+    ----------
+    simulation : Simulation
+        `record_events` was True while it advanced.
+    start : float, [time], optional
+        Time from which growth is measured. Default: a quarter of the recorded part is discarded, in which the
+        deviation turns to the direction of fastest growth.
+    seed : int, default 0
+        Seed of the initial deviation, which is random.
 
-    Raises SceneError without a record or with too few events, and for a scene with more than smooth elastic
-    contacts of moving particles and hard faces.
+    Returns
+    -------
+    Observable
+        The exponent, in [1/time].
+
+    Raises
+    ------
+    SceneError
+        If there is no record or it has too few events, or the scene has more than smooth elastic contacts of
+        moving particles and hard faces.
+
+    Notes
+    -----
+    The uncertainty is that of the mean of a correlated series, the growth in equal intervals. It takes some
+    10 microseconds for each event.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.record_events = True
+    >>> simulation.advance(20.0)
+    >>> gp.analysis.lyapunov_exponent(simulation).estimate.attrs["units"]
+    '1 / time'
     """
     _require_plain(simulation.scene)
     events, state = simulation.events, simulation.state

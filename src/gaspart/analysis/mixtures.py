@@ -19,13 +19,41 @@ from gaspart.trajectory.pairs import pair_names, pairs_of
 
 
 def pair_collision_rates(source: Source, start: float | None = None) -> Observable:
-    """Collisions per time of one particle of the first species of each pair with all of the second, (pair,).
+    """Measure the collision rate of a particle of one species with all particles of another one.
 
-    source: a trajectory of a run with `pairs`, by its path or open, or a simulation, which is run again;
-    start: the time from which frames count (by default a quarter of the run). Theory: exact but for the
-    contact values, which are those of an infinite mixture; a particle of N_i has N_i - 1 partners of its own
-    species, and the mean speed is that of a finite number at fixed energy. Raises SceneError for single
-    particles, too few frames, and a run without `pairs`.
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory of a run with `pairs`, by its path or open, or a simulation, which is run again.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        Collisions per time of one particle of the first species of each pair with all of the second, (pair,),
+        in [1/time].
+
+    Raises
+    ------
+    SceneError
+        For single particles, too few frames, and a run without `pairs`.
+
+    Notes
+    -----
+    Theory: exact except for the contact values, which are those of an infinite mixture. A particle of N_i has
+    N_i - 1 partners of its own species, and the mean speed is that of a finite number at fixed energy.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> gases = [gp.Species(20, radius, temperature=1.0) for radius in (0.3, 0.5)]
+    >>> scene = gp.Scene(box, gases)
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.pair_collision_rates(simulation).sizes["pair"]
+    3
     """
     with open_run(source, start, pairs=True) as run:
         require_defined("pair_rates", run.scene)
@@ -33,17 +61,50 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
 
 
 def contact_values(source: Source, start: float | None = None) -> Observable:
-    """The pair distribution at contact of each pair of species, g_ij (pair,), dimensionless, from its
-    collision rate: a number N_ij of collisions in the time t is
+    """Measure the pair distribution at contact, g_ij, of each pair of species from its collision rate.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory of a run with `pairs`, by its path or open, or a simulation, which is run again.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        The contact values (pair,), dimensionless.
+
+    Raises
+    ------
+    SceneError
+        As `pair_collision_rates`, for a scene with walls or contacts that lose energy, and for a polydisperse
+        species.
+
+    Notes
+    -----
+    A number N_ij of collisions in the time t is
 
         n_ij S sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)) t / V,
 
-    n_ij = N_i N_j or N_i (N_i - 1) / 2 pairs of particles, S = 2 pi (2D) or 4 pi (3D), mu_ij the reduced
-    mass; exact in equilibrium (Chapman and Cowling 1970), with the mean speed of a finite number of particles
-    at fixed energy. Arguments as in `pair_collision_rates`.
+    with n_ij = N_i N_j or N_i (N_i - 1) / 2 pairs of particles, S = 2 pi (2D) or 4 pi (3D), and mu_ij the
+    reduced mass. This is exact in equilibrium [1]_, with the mean speed of a finite number of particles at
+    fixed energy.
 
-    Raises SceneError as that, for a scene with walls or contacts that lose energy, and for a polydisperse
-    species.
+    References
+    ----------
+    .. [1] S. Chapman and T. G. Cowling (1970).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> gases = [gp.Species(20, radius, temperature=1.0) for radius in (0.3, 0.5)]
+    >>> scene = gp.Scene(box, gases)
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.contact_values(simulation).sizes["pair"]
+    3
     """
     with open_run(source, start, pairs=True) as run:
         found = estimates_of(run, contact_scales(run))
@@ -51,14 +112,41 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
 
 
 def rate_scales(run: Run) -> np.ndarray:
-    """(pairs,) collisions per time of a pair of species over that of a particle of the first one."""
+    """Compute the collision rate of a pair of species divided by that of a particle of the first.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    ndarray, shape (pairs,)
+        The ratios.
+    """
     counts = [kind.count for kind in run.scene.species]
     pairs = pairs_of(run.scene)
     return np.array([counts[i] / (2.0 if i == j else 1.0) for i, j in pairs])
 
 
 def contact_scales(run: Run) -> np.ndarray:
-    """(pairs,) collisions per time over the contact value. Raises SceneError; see `contact_values`."""
+    """Compute the collisions per time of each pair divided by its contact value.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    ndarray, shape (pairs,)
+        The ratios.
+
+    Raises
+    ------
+    SceneError
+        As `contact_values`.
+    """
     require_defined("contact_values", run.scene)
     scene, d = run.scene, run.dimension
     scales = []
@@ -72,8 +160,25 @@ def contact_scales(run: Run) -> np.ndarray:
 
 
 def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
-    """The collisions of each pair per time, over its scale. Raises SceneError for too few frames, a run
-    without counts, and one without collisions."""
+    """Estimate the collisions of each pair per time, divided by its scale.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    scales : ndarray, shape (pairs,)
+        The scales.
+
+    Returns
+    -------
+    list of Estimate
+        The estimates.
+
+    Raises
+    ------
+    SceneError
+        If there are too few frames, or the run has no counts or no collisions.
+    """
     if "pair_collisions" not in run.data:
         raise SceneError(*KEPT["pairs"])
     if len(run.time) <= LEAST_INTERVALS:

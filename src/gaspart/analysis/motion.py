@@ -53,21 +53,53 @@ def mean_squared_displacement(
     per_axis: bool = False,
     about: str = FLOW,
 ) -> Observable:
-    """<|r(t) - r(0)|^2> over moving particles and time origins, (lag,), in length^2.
+    """Measure the mean-squared displacement <|r(t) - r(0)|^2> over moving particles and time origins.
 
-    source: a trajectory, by its path or open, or a simulation; lags: their number, in frames (by default half
-    of them); start: the time from which frames count (by default a quarter of the run). It is about the local
-    flow where the gas flows, otherwise, along axes on which the total momentum is conserved, about the centre
-    of mass, times N / (N - 1); with about="rest" about the container (`gaspart.analysis.flow`). species,
-    particles: of one species, by its number in the scene (single particles have the number after the last),
-    or of these particles only; of fewer than 16 the error is the scatter of as many stretches of the run.
-    per_axis: that along each axis instead of their sum, (axis, lag).
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    lags : int, optional
+        Number of lags, in frames. Default: half of the frames.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+    species : int, optional
+        Only this species, by its number in the scene. Single particles have the number after the last.
+    particles : sequence of int, optional
+        Only these particles. Of fewer than 16 the error is the scatter of as many blocks of the run.
+    per_axis : bool, default False
+        Along each axis, (axis, lag), instead of the sum.
+    about : {"flow", "rest"}, default "flow"
+        Frame of reference. "flow": about the local flow where the gas flows; otherwise, along axes on which
+        the total momentum is conserved, about the centre of mass, times N / (N - 1). "rest": about the
+        container.
 
+    Returns
+    -------
+    Observable
+        The displacement (lag,) in [length^2].
+
+    Raises
+    ------
+    SceneError
+        If there are fewer than 16 moving particles, unless they are selected, the flow changes with time,
+        frames are at uneven times, or frames are too far apart to follow particles across periodic faces.
+
+    Notes
+    -----
     Of a run with correlations and displacements the lags are those of the correlations, and all samples
-    count, unless lags, species, particles or per_axis are given. Theory: that of Enskog's diffusion
-    coefficient and the linear Boltzmann equation. Raises SceneError for fewer than 16 moving particles,
-    unless they are selected, a flow that changes with time, frames at uneven times, and frames too far apart
-    to follow particles across periodic faces.
+    count, unless lags, species, particles or per_axis are given. About the flow: see `gaspart.analysis.flow`.
+    Theory: Enskog's diffusion coefficient and the linear Boltzmann equation.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.mean_squared_displacement(simulation, lags=5).estimate.dims
+    ('lag',)
     """
     with open_run(source, start, about=about) as run:
         require_defined("msd", run.scene, species=species, particles=particles, about=about)
@@ -96,11 +128,48 @@ def velocity_autocorrelation(
     particles: Sequence[int] | None = None,
     about: str = FLOW,
 ) -> Observable:
-    """<v(0) . v(t)> / d over moving particles and time origins, (lag,), in length^2 / time^2.
+    """Measure the velocity autocorrelation <v(0) . v(t)> / d over moving particles and time origins.
 
-    Arguments as of `mean_squared_displacement`; correlations suffice, without displacements. Theory: (k_B T /
-    m) exp(-2 nu t / d), nu the collision rate: exact at short times, without the long-time tail. Raises
-    SceneError for fewer than 16 moving particles, and frames at uneven times.
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    lags : int, optional
+        Number of lags, in frames. Default: half of the frames.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+    species : int, optional
+        Only this species, as in `mean_squared_displacement`.
+    particles : sequence of int, optional
+        Only these particles, as in `mean_squared_displacement`.
+    about : {"flow", "rest"}, default "flow"
+        Frame of reference, as in `mean_squared_displacement`.
+
+    Returns
+    -------
+    Observable
+        The correlation (lag,) in [length^2/time^2].
+
+    Raises
+    ------
+    SceneError
+        If there are fewer than 16 moving particles, or frames are at uneven times.
+
+    Notes
+    -----
+    Of a run with correlations, which needs no displacements, all samples count, as in
+    `mean_squared_displacement`. Theory: (k_B T / m) exp(-2 nu t / d), with the collision rate nu: exact at
+    short times, without the long-time tail.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.velocity_autocorrelation(simulation, lags=5).estimate.dims
+    ('lag',)
     """
     with open_run(source, start, about=about) as run:
         require_defined("vacf", run.scene, species=species, particles=particles, about=about)
@@ -138,7 +207,20 @@ def _autocorrelation(run: Run, time: np.ndarray, values: np.ndarray, errors: np.
 
 
 def axes_of(run: Run, chosen: np.ndarray | slice = slice(None)) -> dict[str, Any]:
-    """The dimension of an observable along the chosen axes."""
+    """Return the dimension of an observable along the chosen axes.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    chosen : ndarray or slice, optional
+        The axes. Default: all.
+
+    Returns
+    -------
+    dict of str to object
+        The dimension with its coordinate.
+    """
     return {"axis": (np.array(list("xyz"[: run.dimension]))[chosen], {"long_name": "axis"})}
 
 
@@ -161,12 +243,30 @@ def groups_of(
     chosen: np.ndarray | None = None,
     stride: int | None = None,
 ) -> Groups:
-    """The chosen ones of the moving particles in groups, or, of fewer than `GROUPS`, as many stretches of the
-    run, of every so many frames (by default `stride_of`), about the centre of mass along the axes `about`
-    (d,), by default those along which its velocity is conserved.
+    """Return the moving particles in groups, about the centre of mass or the local flow.
 
-    There its square for a particle of mass m is 1 - m / M of that without this condition, M the mass of all.
-    Where the gas flows it is about the local flow (`analysis.flow`).
+    Of fewer than `GROUPS` particles the groups are as many blocks of the run. About the centre of mass, the
+    square of a velocity of a particle of mass m is 1 - m / M of its value without this condition, M the mass
+    of all. Where the gas flows it is about the local flow (`analysis.flow`).
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    paths : bool, default True
+        Include paths.
+    about : ndarray of bool, shape (d,), optional
+        Axes along which values are about the centre of mass. Default: those along which its velocity is
+        conserved.
+    chosen : ndarray, optional
+        The chosen ones of the moving particles.
+    stride : int, optional
+        One of this number of frames is taken. Default: `stride_of`.
+
+    Returns
+    -------
+    Groups
+        The groups.
     """
     moving = run.moving
     steps = np.diff(run.time)
@@ -209,7 +309,20 @@ def groups_of(
 
 
 def paths_of(run: Run, carried: np.ndarray | None) -> np.ndarray:
-    """(T, M, d) the paths of the moving particles, less those by which the flow has carried them."""
+    """Return the paths of the moving particles, without the displacements by the flow.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    carried : ndarray, optional
+        Displacements by the flow.
+
+    Returns
+    -------
+    ndarray, shape (T, M, d)
+        The paths.
+    """
     paths = unwrapped(run)[:, run.moving]
     return paths if carried is None else paths - carried
 
@@ -224,13 +337,38 @@ def _alike(species: np.ndarray) -> list[np.ndarray]:
 
 
 def stride_of(run: Run, count: int = GROUPS) -> int:
-    """The number of frames of which one is taken, of so many particles: of fewer than `GROUPS` each stretch
-    of the run is a group."""
+    """Return the number of frames of which one is taken, for a number of particles.
+
+    Of fewer than `GROUPS` particles each block of the run is a group.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    count : int, optional
+        Number of particles.
+
+    Returns
+    -------
+    int
+        The number of frames.
+    """
     return -(-len(run.time) // (MOST_FRAMES * (GROUPS if count < GROUPS else 1)))
 
 
 def unwrapped(run: Run) -> np.ndarray:
-    """(T, N, d) positions continued across periodic faces: those of the file, or by the nearest image."""
+    """Return positions continued across periodic faces: those of the file, or by the nearest image.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    ndarray, shape (T, N, d)
+        The positions.
+    """
     if "displacements" in run.data:
         return run.data["displacements"].values
     steps = np.diff(run.positions, axis=0)

@@ -38,7 +38,20 @@ class ByFace(xr.Dataset):
     __slots__ = ()
 
     def sel(self, *given: Any, **named: Any) -> Self:
-        """As of a Dataset; a face by either of its names, `x_low` or `x low`."""
+        """Select as of a Dataset, a face by either of its names, `x_low` or `x low`.
+
+        Parameters
+        ----------
+        *given
+            Arguments of `xarray.Dataset.sel`.
+        **named
+            Keyword arguments of `xarray.Dataset.sel`.
+
+        Returns
+        -------
+        ByFace
+            The selection.
+        """
         for places in (*(one for one in given if isinstance(one, dict)), named):
             if "face" in places:
                 places["face"] = wall_of(places["face"])
@@ -46,36 +59,104 @@ class ByFace(xr.Dataset):
 
 
 class Observable(ByFace):
-    """The result of a function of `gaspart.analysis`.
+    """The result of a function of `gaspart.analysis`, a Dataset.
 
+    Parameters
+    ----------
+    data_vars : mapping, optional
+        Variables, as of `xarray.Dataset`.
+    coords : mapping, optional
+        Coordinates, as of `xarray.Dataset`.
+    attrs : mapping, optional
+        Attributes, as of `xarray.Dataset`.
+
+    Notes
+    -----
     Variables: the quantity, by the name in the attribute `quantity`; the same with the suffix _error, one
     standard deviation; where theory exists, with the suffixes _theory and _theory_error (NaN if the
     uncertainty is not known, as of an approximation). A scalar also has `stretches` (time), its means over
-    consecutive parts of the run, and the degrees of freedom of its error as the attribute `freedom`. Every
+    consecutive blocks of the run, and the degrees of freedom of its error as the attribute `freedom`. Every
     variable has `units`.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> measured = gp.measure(simulation, "Z")
+    >>> sorted(name for name in measured if name.startswith("comp"))[:2]
+    ['compressibility_factor', 'compressibility_factor_error']
     """
 
     __slots__ = ()
 
     @property
     def estimate(self) -> xr.DataArray:
-        """The measured values."""
+        """Measured values.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(40.0)
+        >>> gp.measure(simulation, "collision_rate").estimate.attrs["units"]
+        '1 / time'
+        """
         return self[self.attrs["quantity"]]
 
     @property
     def error(self) -> xr.DataArray:
-        """Their standard uncertainties."""
+        """Standard uncertainties of the measured values.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(40.0)
+        >>> bool(gp.measure(simulation, "Z").error > 0.0)
+        True
+        """
         return self[f"{self.attrs['quantity']}_error"]
 
     @property
     def theory(self) -> xr.DataArray | None:
-        """The values of theory; None where there is none for this scene."""
+        """Values of theory; None if there is no theory for this scene.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(40.0)
+        >>> round(float(gp.measure(simulation, "Z").theory), 2)
+        1.78
+        """
         return self.get(f"{self.attrs['quantity']}_theory")
 
     @property
     def deviation(self) -> xr.DataArray | None:
-        """Measured minus theory, in standard deviations of the difference; None without theory. NaN where
-        that is 0, as of a quantity that does not change: nothing states how likely a difference is."""
+        """Measured minus theory, in standard deviations of the difference; None without theory.
+
+        NaN where the standard deviation is 0, as of a quantity that does not change: nothing states how
+        likely a difference is.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(40.0)
+        >>> bool(abs(gp.measure(simulation, "Z").deviation) < 5.0)
+        True
+        """
         if self.theory is None:
             return None
         unsure = self[f"{self.attrs['quantity']}_theory_error"]
@@ -84,8 +165,21 @@ class Observable(ByFace):
 
     @property
     def summary(self) -> str:
-        """A number as `Z = 1.242(20), theory 1.227`, by its short name if it has one; of several values,
-        each; of a curve, how many values along what."""
+        """The result in words: a number as `Z = 1.242(20), theory 1.227`.
+
+        It has the short name of the quantity, if there is one. Of several values it has each; of a curve, the
+        number of values and the axis.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(40.0)
+        >>> gp.analysis.rdf(simulation, bins=20).summary
+        'rdf: 20 values along distance (length)'
+        """
         quantity, estimate = self.attrs["quantity"], self.estimate
         name = name_of(quantity)
         if estimate.size > _FEW:
@@ -98,17 +192,44 @@ class Observable(ByFace):
         return self.summary if self.estimate.size <= _FEW else f"{self.summary}\n{super().__repr__()}"
 
     def _repr_html_(self) -> str:
-        """The `summary`, a plot of a curve, and the data set, folded."""
+        """Return the `summary`, a plot of a curve, and the data set, folded."""
         text = html.escape(self.summary).replace("\n", "<br>")
         shown = self.estimate.size > _FEW and len(_cells(self)) <= _PLANE
         drawn = f'<br><img src="{_plotted(self)}" alt="{text}">' if shown else ""
         return f"<b>{text}</b>{drawn}<details><summary>data set</summary>{super()._repr_html_()}</details>"
 
     def plot(self, theory: bool = False, axis: Axes | None = None) -> Axes:  # type: ignore[override]
-        """Draw the values with bars of one standard deviation, a scalar as the means of consecutive stretches
-        of the run; with `theory`, the curve of theory too, or a line of the legend that there is none for
-        this scene; a field as a map of colours, or as arrows. axis: an Axes of matplotlib; by default a new
-        one. Returns the Axes. Raises SceneError for a field along three axes.
+        """Draw the values with bars of one standard deviation.
+
+        A scalar is drawn as the means of consecutive blocks of the run, a field as a map of colours or as
+        arrows.
+
+        Parameters
+        ----------
+        theory : bool, default False
+            Also draw the curve of theory; if there is none for this scene, the legend says so.
+        axis : matplotlib Axes, optional
+            Axes to draw in. Default: a new one.
+
+        Returns
+        -------
+        matplotlib Axes
+            The Axes.
+
+        Raises
+        ------
+        SceneError
+            For a field along three axes.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(40.0)
+        >>> gp.analysis.rdf(simulation, bins=20).plot().get_ylabel()
+        'radial distribution g(r)'
         """
         import matplotlib.pyplot as plt
 
@@ -131,7 +252,7 @@ class Observable(ByFace):
 
 
 def _values(found: Observable, name: str) -> list[str]:
-    """Each value with its uncertainty and, where it is known, theory."""
+    """Return each value with its uncertainty and, where it is known, theory."""
     estimate, lines = found.estimate, []
     errors = np.broadcast_to(found.error.values, estimate.shape)
     theory = np.full(estimate.shape, np.nan) if found.theory is None else found.theory.values
@@ -145,7 +266,7 @@ def _values(found: Observable, name: str) -> list[str]:
 
 
 def _plotted(found: Observable) -> str:
-    """A plot of a curve as the address of a picture that contains it."""
+    """Return a plot of a curve as the address of a picture that contains it."""
     from matplotlib.figure import Figure
 
     figure, content = Figure(figsize=(4.8, 3.0), layout="constrained"), io.BytesIO()
@@ -187,12 +308,12 @@ def _plot_curve(found: Observable, axis: Axes, theory: bool) -> None:
 
 
 def _cells(found: Observable) -> list[str]:
-    """The axes of a field."""
+    """Return the axes of a field."""
     return [name for name in found.estimate.dims if name in ("x", "y", "z")]
 
 
 def _plot_field(found: Observable, axis: Axes, cells: list[str]) -> None:
-    """A scalar field as a map of colours; of a flow the components along both axes, as arrows."""
+    """Draw a scalar field as a map of colours; of a flow the components along both axes, as arrows."""
     if len(cells) > _PLANE:
         raise SceneError("axes", "".join(cells), "a plot has two; choose a layer: .isel(z=0)")
     x, y = (found[name] for name in cells)
@@ -207,7 +328,18 @@ def _plot_field(found: Observable, axis: Axes, cells: list[str]) -> None:
 
 
 def label_of(values: xr.DataArray) -> str:
-    """The label of an axis: the meaning of a variable, with its unit, if it has one."""
+    """Return the label of an axis: the meaning of a variable, with its unit, if it has one.
+
+    Parameters
+    ----------
+    values : DataArray
+        The variable.
+
+    Returns
+    -------
+    str
+        The label.
+    """
     text = values.attrs.get("long_name", str(values.name))
     units = values.attrs.get("units", "1")
     between = "\n" if len(text) + len(units) > _LONG else " "

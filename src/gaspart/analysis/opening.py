@@ -22,21 +22,51 @@ def particle_flux(
     species: int | None = None,
     start: float | None = None,
 ) -> Observable:
-    """Net number of particles that pass a plane across an axis per time, (component,) of the one axis, in
-    units 1 / time: positive towards larger coordinates.
+    """Measure the net number of particles that pass a plane across an axis per time.
 
-    It is the change of the number of particles beyond the plane, exactly, however often each of them has
-    passed between frames: those that come back do not count, nor those that come and go through an open face
-    beyond. The plane is that of the whole container; where interior walls lie in it, all pass their openings.
-    source: a trajectory, by its path or open, or a simulation; axis: "x", "y" or "z", by default the last one
-    with open faces, or else with walls; at: the place of the plane along it, by default the middle; species:
-    of one alone, by its number in the scene; start: the time from which frames count (by default a quarter of
-    the run; 0 of a gas that streams out from the start).
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    axis : {"x", "y", "z"}, optional
+        The axis. Default: the last one with open faces, or else with walls.
+    at : float, [length], optional
+        Position of the plane along the axis. Default: the middle.
+    species : int, optional
+        Only this species, by its number in the scene.
+    start : float, [time], optional
+        Frames before this time are discarded; 0 for a gas that streams out from the start. Default: a quarter
+        of the run.
+
+    Returns
+    -------
+    Observable
+        The flux (component,) along the axis, in [1/time], positive towards larger coordinates.
+
+    Raises
+    ------
+    SceneError
+        If the axis is periodic, which images pass, or another one than that of open faces, the plane is
+        outside the container, the file lacks particles, or there are too few frames.
+
+    Notes
+    -----
+    The flux is the change of the number of particles beyond the plane, exactly, however often each particle
+    has passed between frames: particles that come back do not count, nor do those that come and go through an
+    open face beyond. The plane is that of the whole container; where interior walls lie in it, all pass their
+    openings.
 
     Theory: 0 in a steady state without interior walls; of free flight through openings of walls in the plane
-    n sqrt(k_B T / 2 pi m) times their area, with the density on both sides. Raises SceneError for a periodic
-    axis, which images pass, or another one than that of open faces, a plane outside the container, a file
-    without all particles, and too few frames.
+    n sqrt(k_B T / 2 pi m) times their area, with the density on both sides.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.particle_flux(simulation, axis="x", at=3.0).estimate.attrs["units"]
+    '1 / time'
     """
     with open_run(source, start, varying=True) as run:
         require_defined("flux", run.scene, axis=axis, at=at, species=species)

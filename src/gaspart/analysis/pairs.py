@@ -1,6 +1,6 @@
 """Pairs of particles: the radial distribution function.
 
-Uncertainties are the scatter of consecutive stretches of the run.
+Uncertainties are the scatter of consecutive blocks of the run.
 """
 
 from __future__ import annotations
@@ -28,17 +28,53 @@ MOST_FRAMES = 320
 def rdf(
     source: Source, bins: int | None = None, furthest: float | None = None, start: float | None = None
 ) -> Observable:
-    """Radial distribution function g(r) of all particles of a periodic scene, (distance,), dimensionless.
+    """Measure the radial distribution function g(r) of all particles of a periodic scene.
 
-    Pairs per those of N particles that are independent of one another, N (N - 1) / 2 pairs in the volume: 1
-    at every distance in an ideal gas of any number. Of a fluid it tends to 1 + (1 - S(0)) / N at large
-    distances, S(0) its reduced compressibility (Lebowitz and Percus, Phys. Rev. 122, 1675 (1961)). Mean
-    over up to 320 frames. furthest: the largest distance (five of the largest diameters, or just below half
-    of the shortest side); bins: 100; both by default those of the impulses of pairs that the run has kept.
-    These, in shells of which each bin has as many, make g(r) more accurate than counts
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    bins : int, optional
+        Number of bins. Default: 100, or as the impulses of pairs that the run has stored.
+    furthest : float, [length], optional
+        Largest distance. Default: five of the largest diameters, or just below half of the shortest side; or
+        as the impulses of pairs that the run has stored.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        The function (distance,), dimensionless, mean over up to 320 frames.
+
+    Raises
+    ------
+    SceneError
+        For walls, fewer than two particles, too few frames and too large a distance.
+
+    Notes
+    -----
+    g(r) is the number of pairs divided by the number for N particles that are independent of one another, N
+    (N - 1) / 2 pairs in the volume: 1 at every distance in an ideal gas of any number. Of a fluid it tends to
+    1 + (1 - S(0)) / N at large distances, S(0) its reduced compressibility [1]_.
+
+    Impulses of pairs, in shells of which each bin has as many, make g(r) more accurate than counts
     (`gaspart.analysis.pair_impulses`); the attribute `estimator` says so. Theory: the value at contact that
-    belongs to the pressure of N particles, at the first bins beyond the diameter only. Raises SceneError for
-    walls, fewer than two particles, too few frames and too large a distance.
+    belongs to the pressure of N particles, at the first bins beyond the diameter only.
+
+    References
+    ----------
+    .. [1] J. L. Lebowitz and J. K. Percus, Phys. Rev. 122, 1675 (1961).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.rdf(simulation, bins=20).sizes["distance"]
+    20
     """
     from gaspart.analysis.bond_order import radial_distribution
 
@@ -71,7 +107,25 @@ def rdf(
 
 
 def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:
-    """The values of up to `MOST_FRAMES` frames, evenly spaced. Raises SceneError for too few."""
+    """Return the values of up to `MOST_FRAMES` frames, evenly spaced.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    values : ndarray, shape (T, ...)
+        Values of all frames.
+
+    Returns
+    -------
+    ndarray
+        The values of the chosen frames.
+
+    Raises
+    ------
+    SceneError
+        If there are too few frames.
+    """
     if len(run.time) < STRETCHES:
         raise SceneError("frames", len(run.time), f"an error needs {STRETCHES} or more")
     return values[:: -(-len(run.time) // MOST_FRAMES)]

@@ -1,4 +1,4 @@
-"""A table of what can be measured of each species of a run."""
+"""A table of the properties of each species of a run."""
 
 from __future__ import annotations
 
@@ -19,27 +19,51 @@ from gaspart.trajectory.reading import open_trajectory
 
 
 def by_species(source: Source, start: float | None = None, about: str = FLOW) -> xr.Dataset:
-    """What can be measured of each species that moves, (species,), with standard uncertainties (`_error`).
+    """Measure the properties of each species that moves.
 
-    source: a trajectory, by its path or open, or a simulation; start: the time from which frames count (by
-    default a quarter of the run). The coordinate `species` has the numbers of the scene (single particles
-    have the number after the last). Variables:
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+    about : {"flow", "rest"}, default "flow"
+        Frame of reference. "flow": velocities and paths are about the local flow where the gas flows,
+        otherwise about the centre of mass along axes on which the total momentum is conserved (see
+        `gaspart.analysis.flow`). "rest": in the frame of the container, without a correction.
 
-    - `count`, moving particles;
-    - `temperature` (energy), twice the mean kinetic energy of flight per degree of freedom;
-    - `mean_speed` (length / time);
-    - `D` (length^2 / time), and the curves `msd` and `vacf` (species, lag), as of `gaspart measure` with a
-      species. NaN where a species cannot have one, such as a D between walls, for the reason in the attribute
-      `not_measured`, and where it has fewer lags than others.
+    Returns
+    -------
+    Dataset
+        Properties (species,) with standard uncertainties (suffix _error). The coordinate `species` has the
+        numbers of the scene; single particles have the number after the last. Variables:
 
-    With about="rest" velocities and paths are those in the frame of the container, and no correction is made.
-    By default they are about the local flow where the gas flows, otherwise about the centre of mass along
-    axes on which the total momentum is conserved (see `gaspart.analysis.flow`). There the mean square of a
-    particle of mass m is 1 - m / M of that without this condition, M the mass of all whose mean is taken off
-    (exact in equilibrium), for which temperatures and speeds are corrected. `to_dataframe` of the variables
-    without lags is a table with a row for each species.
+        - `count`, number of moving particles;
+        - `temperature` [energy], twice the mean kinetic energy of flight per degree of freedom;
+        - `mean_speed` [length/time];
+        - `D` [length^2/time], and the curves `msd` and `vacf` (species, lag), as of `gaspart measure` with a
+          species. NaN where a species cannot have one, such as a D between walls, for the reason in the
+          attribute `not_measured`, and where it has fewer lags than others.
 
-    Raises SceneError where nothing moves, and for too few frames.
+    Raises
+    ------
+    SceneError
+        If nothing moves, or there are too few frames.
+
+    Notes
+    -----
+    About the centre of mass the mean square of a particle of mass m is 1 - m / M of its value without this
+    condition, M the mass of all whose mean is subtracted (exact in equilibrium). Temperatures and speeds are
+    corrected for this. `to_dataframe` of the variables without lags is a table with a row for each species.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.by_species(simulation)["count"].values.tolist()
+    [20]
     """
     opened = open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source)
     with opened as run_of_all:

@@ -1,6 +1,6 @@
 """Observables from positions and speeds: distributions, profiles and order.
 
-Uncertainties are the scatter of consecutive stretches of the run, or of groups of particles.
+Uncertainties are the scatter of consecutive blocks of the run, or of groups of particles.
 """
 
 from __future__ import annotations
@@ -35,16 +35,47 @@ def speed_distribution(
     fastest: float | None = None,
     about: str = FLOW,
 ) -> Observable:
-    """Density of the speeds of moving particles, (speed,), in time / length, of all frames together.
+    """Measure the probability density of the speeds of moving particles, of all frames together.
 
-    source: a trajectory, by its path or open, or a simulation; bins: up to the speed `fastest`, by default
-    four thermal speeds; start: the time from which frames count (by default a quarter of the run).
-    Velocities are those about the local flow where the gas flows, otherwise about the centre of mass where
-    that is conserved (see `gaspart.analysis.flow`), times sqrt(M / (M - m)), M the mass of those whose mean
-    is taken off; with about="rest" those of the container's frame. The error is the scatter of groups of
-    particles. Theory: Maxwell's, of the run's own temperature; of one species at a constant kinetic energy
-    the exact one for their number; none where the gas flows, whose temperature is not one. Raises SceneError
-    for fewer than 16 moving particles, and for particles at rest.
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    bins : int, default 40
+        Number of bins.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+    fastest : float, [length/time], optional
+        Upper end of the bins. Default: four thermal speeds.
+    about : {"flow", "rest"}, default "flow"
+        Frame of reference. "flow": about the local flow where the gas flows, otherwise about the centre of
+        mass where its velocity is conserved. "rest": the container.
+
+    Returns
+    -------
+    Observable
+        The density (speed,) in [time/length].
+
+    Raises
+    ------
+    SceneError
+        If there are fewer than 16 moving particles, or particles are at rest.
+
+    Notes
+    -----
+    Velocities about the flow (see `gaspart.analysis.flow`) are multiplied by sqrt(M / (M - m)), M the mass of
+    the particles whose mean is subtracted. The error is the scatter of groups of particles. Theory:
+    Maxwell's, of the run's own temperature; of one species at a constant kinetic energy the exact
+    distribution for their number; no theory where the gas flows and has no single temperature.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.speed_distribution(simulation, bins=10).sizes["speed"]
+    10
     """
     bins = count_of("bins", bins, least=2)
     with open_run(source, start, about=about) as run:
@@ -86,23 +117,60 @@ def profile(
     species: int | None = None,
     about: str = FLOW,
 ) -> Observable:
-    """Profile of a property along an axis, (position,), mean over all frames.
+    """Measure the profile of a property along an axis, averaged over all frames.
 
-    of: "density", moving particles per volume within the container of the moment (faces may move), without
-    that from which fixed particles keep their centres (NaN where nothing is left); or "temperature" of the
-    moving particles (NaN where there are none): about the local flow between faces that slide, under a force
-    along a periodic axis, in a wind and before faces that move, otherwise about the velocity of the centre
-    of mass where that is conserved (see `gaspart.analysis.flow`), or with about="rest" about the container.
-    axis: "x", "y" or "z", by default the last one; bins: by default 40, of a density those of the impulses
-    that the run has kept along the axis; species: of one alone, by its number in the scene. Errors are those
-    of correlated series, of each bin for itself; the variable with the suffix _freedom has their degrees of
-    freedom. They are NaN where these are fewer than two, of a run that is too short for the correlation
-    there, and where the value of a bin does not change (0 if nothing moves, or all bins have one value).
-    Impulses that the run has kept along the axis, in bins of which each of these has as many, make the
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    of : {"density", "temperature"}, default "density"
+        "density": moving particles per volume within the container of the moment (faces may move), without
+        the volume from which fixed particles keep their centres (NaN if no volume is left). "temperature" of
+        the moving particles (NaN where there are no particles).
+    axis : {"x", "y", "z"}, optional
+        The axis. Default: the last one.
+    bins : int, optional
+        Number of bins. Default: 40; of a density that of the impulses that the run has stored along the axis.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+    species : int, optional
+        Only this species, by its number in the scene.
+    about : {"flow", "rest"}, default "flow"
+        Frame of reference of a temperature. "flow": about the local flow between faces that slide, under a
+        force along a periodic axis, in a wind and before faces that move, otherwise about the velocity of the
+        centre of mass where that is conserved (see `gaspart.analysis.flow`). "rest": the container.
+
+    Returns
+    -------
+    Observable
+        The profile (position,). The variable with the suffix _freedom has the degrees of freedom of the
+        errors.
+
+    Raises
+    ------
+    SceneError
+        If the property or the axis is unknown, the species does not move, or there are too few frames.
+
+    Notes
+    -----
+    Errors are those of correlated series, of each bin for itself. They are NaN where their degrees of freedom
+    are fewer than two, of a run that is too short for the correlation there, and where the value of a bin
+    does not change (0 if nothing moves, or all bins have one value).
+
+    Impulses that the run has stored along the axis, in bins of which each of these has as many, make the
     density more accurate than counts (`gaspart.analysis.impulses`); the attribute `estimator` says so.
+
     Theory: the density of equal particles under gravity along this axis, by hydrostatics with the fluid's
-    equation of state; a uniform temperature in equilibrium. Raises SceneError for an unknown property or
-    axis, a species that does not move, and for too few frames.
+    equation of state; a uniform temperature in equilibrium.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.profile(simulation, of="density", axis="x", bins=4).sizes["position"]
+    4
     """
     one_of("of", of, having(function="profile"))
     with open_run(source, start, varying=True, about=about) as run:
@@ -128,7 +196,21 @@ def profile(
 
 
 def density(source: Source, start: float | None = None, **selection: Any) -> Observable:
-    """Measure the density along an axis: `profile` of "density", with the same arguments.
+    """Measure the density along an axis: `profile` of "density".
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+    **selection
+        Other arguments as of `profile`.
+
+    Returns
+    -------
+    Observable
+        The profile (position,) in [1/length^d].
 
     Examples
     --------
@@ -146,7 +228,21 @@ def density(source: Source, start: float | None = None, **selection: Any) -> Obs
 
 
 def temperature(source: Source, start: float | None = None, **selection: Any) -> Observable:
-    """Measure the temperature along an axis: `profile` of "temperature", with the same arguments.
+    """Measure the temperature along an axis: `profile` of "temperature".
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+    **selection
+        Other arguments as of `profile`.
+
+    Returns
+    -------
+    Observable
+        The profile (position,) in [energy].
 
     Examples
     --------
@@ -164,10 +260,39 @@ def temperature(source: Source, start: float | None = None, **selection: Any) ->
 
 
 def order_parameter(source: Source, start: float | None = None) -> Observable:
-    """Global bond order of a periodic scene, dimensionless: |<psi_6>| of discs, Q_6 of spheres.
+    """Measure the global bond order of a periodic scene: |<psi_6>| of discs, Q_6 of spheres.
 
-    1 in a triangular lattice of discs, 0.5745 in a face-centred cubic one, small in a fluid (about
-    1 / sqrt(12 N) for spheres). Raises SceneError for walls and for too few frames.
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        The bond order, dimensionless.
+
+    Raises
+    ------
+    SceneError
+        If the scene has walls, or there are too few frames.
+
+    Notes
+    -----
+    It is 1 in a triangular lattice of discs, 0.5745 in a face-centred cubic lattice, and small in a fluid
+    (about 1 / sqrt(12 N) for spheres).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.order_parameter(simulation).estimate.attrs["units"]
+    '1'
     """
     from gaspart.analysis.bond_order import global_steinhardt, hexatic
 

@@ -1,6 +1,6 @@
 """Static structure factors, of all particles and of each pair of species.
 
-Uncertainties are the scatter of consecutive stretches of the run.
+Uncertainties are the scatter of consecutive blocks of the run.
 """
 
 from __future__ import annotations
@@ -31,15 +31,46 @@ _WORK = 2**31
 def structure_factor(
     source: Source, bins: int = 60, highest: float | None = None, start: float | None = None
 ) -> Observable:
-    """Static structure factor S(k) = <|sum exp(i k.r)|^2> / N of a periodic scene, (wave_number,).
+    """Measure the static structure factor S(k) = <|sum exp(i k.r)|^2> / N of a periodic scene.
 
-    Exact sums, at wave vectors that the container admits: k = 2 pi (n_x / L_x, ...), without 0, where S is
-    N, of any number. They are averaged in `bins` equal intervals of |k| up to `highest` (by default 20 over
-    the largest diameter), with up to 24 of the vectors of each; an interval without any is left out, and the
-    coordinate is their mean |k|. S(k) of a fluid tends to its reduced compressibility k_B T d rho / dP at
-    small k, and to 1 at large ones. Mean over up to 320 frames, fewer of many particles. Theory: of equal
-    spheres Verlet and Weis's, an approximation. Raises SceneError for walls, followed
-    particles, too few frames, and a wave number below that of the longest wave.
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    bins : int, default 60
+        Number of equal intervals of |k|.
+    highest : float, [1/length], optional
+        Upper end of the intervals. Default: 20 divided by the largest diameter.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        S (wave_number,), dimensionless, mean over up to 320 frames, fewer of many particles. The coordinate
+        is the mean |k| of an interval.
+
+    Raises
+    ------
+    SceneError
+        For walls, followed particles, too few frames, and a wave number below that of the longest wave.
+
+    Notes
+    -----
+    Exact sums, at wave vectors that the container admits: k = 2 pi (n_x / L_x, ...), without 0, where S is N,
+    of any number. They are averaged in the intervals, with up to 24 vectors of each; an interval without any
+    is left out. S(k) of a fluid tends to its reduced compressibility k_B T d rho / dP at small k, and to 1 at
+    large k. Theory: of equal spheres Verlet and Weis's, an approximation.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.structure_factor(simulation, highest=6.0).estimate.dims
+    ('wave_number',)
     """
     with open_run(source, start) as run:
         require_defined("structure_factor", run.scene)
@@ -52,15 +83,54 @@ def structure_factor(
 def partial_structure_factors(
     source: Source, bins: int = 60, highest: float | None = None, start: float | None = None
 ) -> Observable:
-    """Partial structure factors of a periodic mixture, (pair, wave_number), by Ashcroft and Langreth (Phys.
-    Rev. 156, 685 (1967)):
+    """Measure the partial structure factors of a periodic mixture by Ashcroft and Langreth.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    bins : int, default 60
+        Number of equal intervals of |k|, as in `structure_factor`.
+    highest : float, [1/length], optional
+        Upper end of the intervals, as in `structure_factor`.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        The factors (pair, wave_number), dimensionless.
+
+    Raises
+    ------
+    SceneError
+        As `structure_factor`, and for single particles, which are of no species.
+
+    Notes
+    -----
+    The definition is [1]_
 
         S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b),    rho_a(k) = sum over species a of exp(i k.r).
 
-    1 of equal and 0 of other species at large k, and of an ideal mixture; with the fractions x the sum over
-    all a and b of sqrt(x_a x_b) S_ab is the `structure_factor`, exactly. Arguments, wave vectors, errors and
-    what is refused as there; also SceneError for single particles, which are of no species. Theory: of
-    spheres of one size Verlet and Weis's, of a mixture Percus and Yevick's, both approximations.
+    They are 1 of equal and 0 of other species at large k, and of an ideal mixture. With the fractions x the
+    sum over all a and b of sqrt(x_a x_b) S_ab is the `structure_factor`, exactly. Wave vectors and errors are
+    as there. Theory: of spheres of one size Verlet and Weis's, of a mixture Percus and Yevick's, both
+    approximations.
+
+    References
+    ----------
+    .. [1] N. W. Ashcroft and D. C. Langreth, Phys. Rev. 156, 685 (1967).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> gases = [gp.Species(20, radius, temperature=1.0) for radius in (0.3, 0.5)]
+    >>> scene = gp.Scene(box, gases)
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.partial_structure_factors(simulation, highest=6.0).sizes["pair"]
+    3
     """
     with open_run(source, start) as run:
         require_defined("partial_structure_factors", run.scene)

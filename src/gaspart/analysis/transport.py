@@ -39,15 +39,43 @@ _SLIGHT = 1e-6  # of k_B T: an energy of the motion as a whole that changes no c
 
 
 def shear_viscosity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
-    """The shear viscosity, mass length^(2-d) / time.
+    """Measure the shear viscosity.
 
-    source: a trajectory with correlations of the stress; lag: the time until which correlations count, by
-    default the longest; start: the time from which frames count. The result has `green_kubo` and `helfand`
-    (lag,) beside the value. Between sheared faces (`LeesEdwards`) it is the response -P_yx / shear_rate
-    instead, without a lag and without these curves. The antisymmetric part of the stress is included, which
-    is zero unless collisions do not conserve angular momentum, as in the cells of DSMC. Theory: Enskog's.
-    Raises SceneError for a run without correlations of the stress, a lag that is longer than theirs, fewer
-    than 17 frames, and a shear rate of 0.
+    Parameters
+    ----------
+    source : str, Path or Dataset
+        A trajectory with correlations of the stress, by its path or open.
+    lag : float, [time], optional
+        Time until which correlations count. Default: the longest lag.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        The viscosity, in [mass length^(2-d)/time], with the curves `green_kubo` and `helfand` (lag,).
+
+    Raises
+    ------
+    SceneError
+        For a run without correlations of the stress, a lag that is longer than theirs, fewer than 17 frames,
+        and a shear rate of 0.
+
+    Notes
+    -----
+    Between sheared faces (`LeesEdwards`) it is the response -P_yx / shear_rate instead, without a lag and
+    without these curves. The antisymmetric part of the stress is included, which is zero unless collisions do
+    not conserve angular momentum, as in the cells of DSMC. Theory: Enskog's.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> stress = gp.Correlations(interval=0.1, lags=10, stress=True)
+    >>> path = gp.run(scene, "event", 1, 40.0, 1.0, "gas.nc", correlations=stress)
+    >>> gp.analysis.shear_viscosity(path, lag=0.5).green_kubo.dims
+    ('lag',)
     """
     with open_run(source, start, sheared=True) as run:
         require_defined("shear_viscosity", run.scene)
@@ -57,21 +85,82 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
 
 
 def bulk_viscosity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
-    """The bulk viscosity, mass length^(2-d) / time, from the fluctuations of the pressure about its mean.
+    """Measure the bulk viscosity from the fluctuations of the pressure about its mean.
 
-    Arguments, theory and errors as of `shear_viscosity`. The mean is that of the run, of duration T, which
-    makes the value too low by about 2 lag / T of it.
+    Parameters
+    ----------
+    source : str, Path or Dataset
+        A trajectory with correlations of the stress, by its path or open.
+    lag : float, [time], optional
+        Time until which correlations count. Default: the longest lag.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        The viscosity, in [mass length^(2-d)/time], with the curves `green_kubo` and `helfand` (lag,).
+
+    Raises
+    ------
+    SceneError
+        As `shear_viscosity`.
+
+    Notes
+    -----
+    The mean is that of the run, of duration T, which makes the value too low by about 2 lag / T of it. Theory
+    as of `shear_viscosity`.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> stress = gp.Correlations(interval=0.1, lags=10, stress=True)
+    >>> path = gp.run(scene, "event", 1, 40.0, 1.0, "gas.nc", correlations=stress)
+    >>> gp.analysis.bulk_viscosity(path, lag=0.5).green_kubo.dims
+    ('lag',)
     """
     with open_run(source, start) as run:
         return _coefficient(run, "bulk_viscosity", "bulk", lag)
 
 
 def thermal_conductivity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
-    """The conductivity of heat, 1 / (length^(d-2) time), with k_B = 1.
+    """Measure the thermal conductivity.
 
-    Arguments, theory and errors as of `shear_viscosity`. Of a mixture it is that without diffusion (see
-    `conduction`), from the fluxes between frames, whose interval may not be longer than the lag, without
-    the curves; SceneError also for particles of many sizes, and single ones in a mixture.
+    Parameters
+    ----------
+    source : str, Path or Dataset
+        A trajectory with correlations of the stress, by its path or open.
+    lag : float, [time], optional
+        Time until which correlations count. Default: the longest lag.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        The conductivity, in [1/(length^(d-2) time)] with k_B = 1, and the curves as of `shear_viscosity`.
+
+    Raises
+    ------
+    SceneError
+        As `shear_viscosity`, and for particles of many sizes and single particles in a mixture.
+
+    Notes
+    -----
+    Of a mixture it is the conductivity without diffusion (see `conduction`), from the fluxes between frames,
+    whose interval may not be longer than the lag, without the curves. Theory as of `shear_viscosity`.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> stress = gp.Correlations(interval=0.1, lags=10, stress=True)
+    >>> path = gp.run(scene, "event", 1, 40.0, 1.0, "gas.nc", correlations=stress)
+    >>> gp.analysis.thermal_conductivity(path, lag=0.5).helfand.dims
+    ('lag',)
     """
     with open_run(source, start) as run:
         if run.scene.alike:
@@ -84,11 +173,38 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
 
 
 def pressure_tensor(source: Source, start: float | None = None) -> Observable:
-    """The components of the pressure tensor (component,), mass / (length^(d-2) time^2), xx, xy ...
+    """Measure the components of the pressure tensor.
 
-    source: a trajectory with correlations of the stress. Of a sheared gas it is that of velocities about the
-    flow. Theory: the equation of state, of a gas at rest. Raises SceneError for other trajectories, and fewer
-    than 17 frames.
+    Parameters
+    ----------
+    source : str, Path or Dataset
+        A trajectory with correlations of the stress, by its path or open.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        The components xx, xy ... (component,), in [mass/(length^(d-2) time^2)].
+
+    Raises
+    ------
+    SceneError
+        For other trajectories, and fewer than 17 frames.
+
+    Notes
+    -----
+    Of a sheared gas it is that of velocities about the flow. Theory: the equation of state, of a gas at rest.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> stress = gp.Correlations(interval=0.1, lags=10, stress=True)
+    >>> path = gp.run(scene, "event", 1, 40.0, 1.0, "gas.nc", correlations=stress)
+    >>> gp.analysis.pressure_tensor(path).component.values.tolist()
+    ['xx', 'xy', 'yx', 'yy']
     """
     with open_run(source, start, sheared=True) as run:
         require_defined("pressure_tensor", run.scene)
@@ -190,16 +306,47 @@ def _lags_until(settings: Correlations, lag: float | None) -> int:
 
 
 def green_kubo(run: Run, name: str) -> np.ndarray:
-    """(B, lags) a coefficient from the correlation until each lag, by blocks: the intervals between frames in
-    which samples end pairs of all lags. name: of `trajectory.correlator.STRESS`. Raises SceneError for a run
-    without correlations of the stress."""
+    """Compute a coefficient from the correlation until each lag, by blocks.
+
+    Blocks are the intervals between frames in which samples end pairs of all lags.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    name : str
+        Name of the flux, of `trajectory.correlator.STRESS`.
+
+    Returns
+    -------
+    ndarray, shape (B, lags)
+        The coefficient.
+
+    Raises
+    ------
+    SceneError
+        If the run has no correlations of the stress.
+    """
     interval = _stored(run).interval
     products, _ = _blocks(run, name)
     return _scale(run, name) * interval * (np.cumsum(products, axis=1) - 0.5 * products[:, :1])
 
 
 def helfand(run: Run, name: str) -> np.ndarray:
-    """(B, lags) the same from the squared change of G over each lag; NaN for none."""
+    """Compute a coefficient from the squared change of G over each lag, by blocks as `green_kubo`.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    name : str
+        Name of the flux, of `trajectory.correlator.STRESS`.
+
+    Returns
+    -------
+    ndarray, shape (B, lags)
+        The coefficient; NaN at the lag 0.
+    """
     interval = _stored(run).interval
     _, squares = _blocks(run, name)
     time = interval * np.arange(squares.shape[1])

@@ -1,4 +1,4 @@
-"""What a gas gives to the thermal walls of its container: heat, and momentum along them."""
+"""Heat and tangential momentum that a gas gives to the thermal walls of its container."""
 
 from __future__ import annotations
 
@@ -19,21 +19,48 @@ _BLOCKS = 256
 
 
 def heat_flux(source: Source, start: float | None = None) -> Observable:
-    """Heat that each face at a temperature takes per time and per area that centres can reach, (face,), in
-    units energy / (length^(d-1) time): positive where the gas warms the wall. Areas are those of
-    `wall_pressure`.
+    """Measure the heat flux into each face at a temperature.
 
-    It is the energy that particles lose there in the frame of the wall: of one that slides, what it is given
-    without the work that it does. The mean is that of the steady state: without what the change of the energy
-    of the gas and of its first moment across the walls adds, which are bounded (`_corrected`). source: a
-    trajectory, by its path or open, or a simulation; start: the time from which frames count (by default a
-    quarter of the run).
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        Heat that the face takes per time and per area that centres can reach, (face,), in
+        [energy/(length^(d-1) time)]: positive where the gas warms the wall. Areas are those of
+        `wall_pressure`.
+
+    Raises
+    ------
+    SceneError
+        If no face has a temperature, there are too few frames, or nothing hit these faces.
+
+    Notes
+    -----
+    It is the energy that particles lose there in the frame of the wall: of a wall that slides, the energy
+    that it is given without the work that it does. The mean is that of the steady state: the contributions of
+    the changes of the energy of the gas and of its first moment across the walls, which are bounded, are
+    subtracted (`_corrected`).
 
     Theory: 0 in equilibrium; between two plates free flight above a Knudsen number of 100, Fourier's law with
     Enskog's conductivity and temperature jumps below 0.1, and between these an interpolation, good to 8 %
     (`gaspart.theory.interpolated_flux`); between sliding plates half the work of their stress. With partial
     accommodation free flight alone.
-    Raises SceneError without a face at a temperature, for too few frames, and if nothing hit these faces.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> faces = {"x_low": gp.Thermal(1.0), "x_high": gp.Thermal(2.0)}
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)], faces=faces)
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.heat_flux(simulation).face.values.tolist()
+    ['x low', 'x high']
     """
     with open_run(source, start) as run:
         require_defined("heat_flux", run.scene)
@@ -50,18 +77,46 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
 
 
 def wall_shear(source: Source, start: float | None = None) -> Observable:
-    """Shear stress on each face that draws velocities along itself, (face, component): the momentum along
-    each axis that it is given per time and per area that centres can touch, in units energy / length^d.
+    """Measure the shear stress on each face that draws velocities along itself.
 
-    By the engines that tally it, where a face slides or a force drives the gas along it. NaN across the
-    face, where the `wall_pressure` is. The mean is that of the steady state, as of `heat_flux`, by the change
-    of the momentum of the gas. source, start: as there.
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        Momentum along each axis that the face is given per time and per area that centres can touch,
+        (face, component), in [energy/length^d]. NaN across the face, where the `wall_pressure` is.
+
+    Raises
+    ------
+    SceneError
+        If nothing drags faces along themselves, there are too few frames, or nothing hit these faces.
+
+    Notes
+    -----
+    It is measured by the engines that tally it, where a face slides or a force drives the gas along it. The
+    mean is that of the steady state, as of `heat_flux`, by the change of the momentum of the gas.
 
     Theory: half of the weight of a gas that a force drives along two equal faces, exactly; between plates
     that slide free flight above a Knudsen number of 100, Enskog's viscosity with slip below 0.1, and between
     these an interpolation, good to 8 % (`gaspart.theory.interpolated_stress`); with partial accommodation
-    free flight alone. Raises SceneError where
-    nothing drags faces along themselves, for too few frames, and if nothing hit these faces.
+    free flight alone.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> faces = {"x_low": gp.Thermal(1.0), "x_high": gp.Thermal(1.0, velocity=(0.0, 1.0))}
+    >>> box = gp.Container((9.0, 9.0), boundary=("wall", "periodic"))
+    >>> scene = gp.Scene(box, [gp.Species(20, 0.2, temperature=1.0)], faces=faces)
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.wall_shear(simulation).estimate.dims
+    ('face', 'component')
     """
     with open_run(source, start) as run:
         require_defined("wall_shear", run.scene)

@@ -1,8 +1,8 @@
 """`gaspart.sweep`: observables over a grid of scenes or settings, without a workflow.
 
 The grid is an experiment of a config, with the points, seeds and jobs of the workflow. Trajectories are
-kept, so that a sweep that was cut short goes on, and one with more values or observables makes only what
-is missing.
+stored, so that an interrupted sweep is continued, and a sweep with more values or observables simulates only
+what is missing.
 """
 
 from __future__ import annotations
@@ -65,32 +65,85 @@ def sweep(
     progress: Progress | None = None,
     overwrite: bool = False,
 ) -> SweepTable:
-    """Run a scene for each combination of some values, and measure observables of each run.
+    """Run a scene for each combination of parameter values, and measure observables of each run.
 
-    over: the values of each key that varies; without any key there is one point. A key is one of a config:
-    of one species alone in a container `packing_fraction`, `count`, `radius`, `side`, `temperature` and the
-    others of a gas, where of radius, packing fraction and count those that do not vary are kept as far as
-    possible; a setting of the engine, such as `time_step`; or the place of a value in a scene file, such as
-    `gravity` or `species.0.mass`. observables: names of `gaspart measure`. engine: by default event-driven.
+    Trajectories are stored. A repeated call simulates only what is missing in `folder`.
 
-    Each run has a duration, divided into so many samples (128), or ends when the standard errors of `until`
-    are reached (see `gaspart.run`; the samples are those until `at_most`, by default one for each collision
-    of a particle). equilibration: a time before, which is not measured; by default the first quarter of each
-    run is not. correlations: what each run accumulates; for viscosities and conductivity those of the stress.
-    replicas: independent runs, whose mean is taken. seed: with the names of point and replica it gives each
-    random stream. workers: processes that run points at a time, which changes no bit. progress(done, points,
-    name) is called when a point is complete; by default it writes a line to the standard error.
+    Parameters
+    ----------
+    scene : Scene
+        The scene whose parameters are varied.
+    over : mapping of str to sequence
+        Values of each varied key; without any key there is one point. A key is one of a config: of one
+        species alone in a container "packing_fraction", "count", "radius", "side", "temperature" and the
+        others of a gas; a setting of the engine, such as "time_step"; or the position of a value in a scene
+        file, such as "gravity" or "species.0.mass".
+    observables : iterable of str
+        Names of observables as of `gaspart measure`.
+    folder : str or Path
+        Folder of the trajectories, ``points/<name>/replica-<k>.nc``. Several sweeps may use it, also at the
+        same time.
+    engine : Engine or {"event", "step", "dsmc"}, optional
+        The engine; a name selects its default settings. Default: event-driven.
+    duration : float, [time], optional
+        Length of each run. Excludes `until`.
+    until : Accuracy or sequence of Accuracy, optional
+        Each run ends when these standard errors are reached (see `run`).
+    at_most : float, [time], optional
+        Maximum length of each run with `until`.
+    samples : int, optional
+        Number of samples of each run. Default: 128; with `until`, those until `at_most`, by default one for
+        each collision of a particle.
+    equilibration : float, [time], optional
+        Time before the measurement. Default: the first quarter of each run is discarded.
+    correlations : Correlations, optional
+        Time correlations that each run accumulates. Viscosities and the conductivity require ``stress=True``.
+    replicas : int, default 1
+        Number of independent runs of each point; their mean is measured.
+    seed : int, default 0
+        Seed of the sweep. With the names of point and replica it determines each random stream.
+    workers : int, default 1
+        Number of processes that run points at the same time. It changes no bit.
+    progress : callable, optional
+        Called as ``progress(done, points, name)`` when a point is complete. Default: write a line to the
+        standard error.
+    overwrite : bool, default False
+        Replace trajectories of other settings.
 
-    Returns a Dataset that plots itself (`SweepTable.plot`), with a dimension for each key, with each
-    observable, its standard uncertainty (_error), its value by theory, if there is one (_theory), its curve's
-    own dimension, such as `rdf_distance` (where places differ `rdf_distance_places`), `face` and
-    `component`, which all observables share, and `duration`. What could not be made or measured is NaN;
-    `failure` has the reason, otherwise "". Trajectories are `folder`/points/<name>/replica-<k>.nc: complete
-    ones are not made again, one that was cut short goes on, and those of other settings are replaced only
-    with `overwrite`. Several sweeps may use a folder, also at the same time.
+    Returns
+    -------
+    SweepTable
+        A Dataset that plots itself (`SweepTable.plot`), with a dimension for each key. Variables: each
+        observable; its standard uncertainty (suffix _error); its value by theory, if there is one (suffix
+        _theory); `duration`; and `failure`, the reason why a result is NaN, otherwise "". A curve has its own
+        dimension, such as `rdf_distance` (where positions differ `rdf_distance_places`); all observables
+        share `face` and `component`.
 
-    Raises SceneError for settings that contradict each other, trajectories of another sweep, an observable
-    that no point can have, and a grid of which no point can be run.
+    Raises
+    ------
+    SceneError
+        If settings contradict each other, trajectories are of another sweep, no point can have an observable,
+        or no point of the grid can be run.
+
+    See Also
+    --------
+    run : A single run.
+
+    Notes
+    -----
+    If some of radius, packing fraction and count are varied, the others keep their values as far as possible.
+    A complete trajectory is not simulated again, and an interrupted one is continued.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> gas = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> quiet = lambda done, points, name: None
+    >>> values = {"packing_fraction": [0.05, 0.1]}
+    >>> table = gp.sweep(gas, values, ["Z"], folder="swept", duration=10.0, progress=quiet)
+    >>> table.Z.dims, table.Z_theory.values.round(2)
+    (('packing_fraction',), array([1.11, 1.23]))
     """
     require_scene(scene)
     engine = chosen(engine)
@@ -108,25 +161,25 @@ def sweep(
 
 @dataclass(frozen=True)
 class _Plan:
-    """The points of a sweep, and, by the name of each that cannot be made, the reason."""
+    """Points of a sweep, and the reasons why some cannot be run, by the names of the points."""
 
     points: list[Point]
     failures: dict[str, str]
 
     @property
     def able(self) -> list[Point]:
-        """The points without a reason."""
+        """Points that can be run."""
         return [point for point in self.points if point.name not in self.failures]
 
 
 def _experiment(point: dict[str, Any], axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
-    """The experiment of a config, with what its points share."""
+    """Return the experiment of a config, with the settings that its points share."""
     grid = {key if key in point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
     return {"job": "simulate", "point": point, "grid": grid}
 
 
 def _make(plan: _Plan, workers: int, overwrite: bool, progress: Progress) -> None:
-    """Make the points, and add the reasons why some could not be made to the plan."""
+    """Run the points, and add the reasons why some failed to the plan."""
     done = count(len(plan.failures) + 1)
     for name, reason in plan.failures.items():
         _complain(name, reason)
@@ -142,14 +195,14 @@ def _make(plan: _Plan, workers: int, overwrite: bool, progress: Progress) -> Non
 
 
 def _root(folder: Any) -> str:
-    """The absolute path of the folder of a sweep. Raises SceneError."""
+    """Return the absolute path of the folder of a sweep, or raise SceneError."""
     if not isinstance(folder, str | Path) or not str(folder) or "\0" in str(folder):
         raise SceneError("folder", folder, "must be the path of a folder")
     return str(Path(folder).absolute())
 
 
 def _make_folder(root: str) -> None:
-    """Make the folder of the points, unless it exists. Raises SceneError."""
+    """Make the folder of the points, unless it exists, or raise SceneError."""
     try:
         Path(root, EXPERIMENT).mkdir(parents=True, exist_ok=True)
     except (OSError, UnicodeEncodeError) as error:
@@ -164,7 +217,7 @@ def _length(
     samples: int | None,
     equilibration: float | None,
 ) -> dict[str, Any]:
-    """The keys of the length of a point. Raises SceneError."""
+    """Return the keys of the length of a point, or raise SceneError."""
     if (duration is None) == (until is None):
         raise SceneError("duration", duration, "must be given, or until, but not both")
     key, value = ("duration", duration) if until is None else ("at_most", at_most)
@@ -186,7 +239,7 @@ def _length(
 
 
 def _kept(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
-    """The keys of the contents of a point's files. Raises SceneError."""
+    """Return the keys of the contents of a point's files, or raise SceneError."""
     needs = {OBSERVABLES[name].needs for name in names}
     if "until" in length:
         if correlations is not None:
@@ -208,12 +261,23 @@ def _kept(names: list[str], correlations: Correlations | None, length: dict[str,
 
 
 def point_keys(engine: Engine) -> set[str]:
-    """The keys of a config that a sweep may vary: those of a gas and of the engine."""
+    """Return the keys of a config that a sweep may vary: the keys of a gas and of the engine.
+
+    Parameters
+    ----------
+    engine : Engine
+        The engine.
+
+    Returns
+    -------
+    set of str
+        The keys.
+    """
     return {*EXTENTS, *GAS, *ENGINE_KEYS[engine.name]}
 
 
 def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
-    """The keys of a point's scene and engine, without those that vary. Raises SceneError."""
+    """Return the keys of a point's scene and engine that do not vary, or raise SceneError."""
     settings = {key: value for key, value in engine_to_dict(engine).items() if value is not None}
     settings = {("engine" if key == "name" else key): value for key, value in settings.items()}
     settings = {key: value for key, value in settings.items() if key not in axes}
@@ -230,7 +294,7 @@ def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[st
 
 
 def _gas(scene: Scene, axes: Mapping[str, list], varied: str) -> dict[str, Any]:
-    """The settings that describe one species alone in a container. Raises SceneError for another scene."""
+    """Return the settings of one species alone in a container; raise SceneError for another scene."""
     rule = "varies one species alone in a container; of other scenes vary a value, such as species.0.count"
     if len(scene.species) != 1:
         raise SceneError(f"over.{varied}", axes[varied], rule)
@@ -266,8 +330,10 @@ def _gas(scene: Scene, axes: Mapping[str, list], varied: str) -> dict[str, Any]:
 
 
 def _planned(experiment: dict, root: str, seed: int) -> _Plan:
-    """The points of an experiment, in the order of the product of its values. Raises SceneError for values of
-    no use anywhere, and if no point can be run."""
+    """Return the points of an experiment, in the order of the product of its values.
+
+    Raises SceneError for values that no point can use, and if no point can be run.
+    """
     config = {"experiments": {EXPERIMENT: experiment}, "points": root, "seed": seed}
     try:
         planned = list(gridded_points(config, EXPERIMENT).values())
@@ -286,7 +352,7 @@ def _planned(experiment: dict, root: str, seed: int) -> _Plan:
 
 
 def _of_sweep(error: SceneError) -> SceneError:
-    """An error of a config with the key that it has in a sweep."""
+    """Return an error of a config with the key that it has in a sweep."""
     key = error.key.removeprefix(f"experiments.{EXPERIMENT}")
     if key.startswith("["):
         key = f"{EXPERIMENT}{key}"
@@ -296,7 +362,7 @@ def _of_sweep(error: SceneError) -> SceneError:
 
 
 def _without_point(error: SceneError, name: str) -> str:
-    """The text of an error of a point, where its name is known."""
+    """Return the text of an error of a point without the point's name."""
     key = error.key.removeprefix(f"{EXPERIMENT}[{name}].")
     return str(SceneError(key, error.value, error.rule, error.file))
 
@@ -319,7 +385,7 @@ def _require_measurable(names: list[str], points: list[Point]) -> None:
 
 
 def _row(point: Point, names: list[str], part: bool, failure: str) -> Measured:
-    """A row of the table: what a point gives, or the reason why it could not be made."""
+    """Return a row of the table: the results of a point, or the reason of its failure."""
     if failure:
         return Measured({}, [], failure)
     found, refused = measured(point, names, part)

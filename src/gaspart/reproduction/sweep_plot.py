@@ -22,7 +22,7 @@ class SweepTable(ByFace):
 
     @property
     def observables(self) -> list[str]:
-        """The names of the observables that were measured."""
+        """Names of the measured observables."""
         return [str(name) for name in self.data_vars if f"{name}_error" in self]
 
     def plot(  # type: ignore[override]
@@ -30,9 +30,26 @@ class SweepTable(ByFace):
     ) -> Axes:
         """Draw an observable with bars of one standard deviation, and theory as lines where it is known.
 
-        observable: by default the first one; along: the dimension of the axis, by default that of a curve,
-        else the first key with several values. Each value of the others gives one curve. axis: an Axes of
-        matplotlib; by default a new one. Returns the Axes. Raises SceneError for names that the table lacks.
+        Each value of the other dimensions gives one curve.
+
+        Parameters
+        ----------
+        observable : str, optional
+            Name of the observable. Default: the first one.
+        along : str, optional
+            Dimension of the axis. Default: the dimension of a curve, else the first key with several values.
+        axis : matplotlib Axes, optional
+            Axes to draw in. Default: a new one.
+
+        Returns
+        -------
+        matplotlib Axes
+            The Axes.
+
+        Raises
+        ------
+        SceneError
+            For names that the table lacks.
         """
         import matplotlib.pyplot as plt
 

@@ -1,8 +1,8 @@
-"""The space partition: equal boxes on a grid, each axis divided on its own, down to one box.
+"""Partition of space into equal boxes on a grid.
 
-Box coordinates are kept for three axes whatever the dimension; a missing axis has one box and no
-neighbours. Which boxes neighbour one another is a table per axis, so that walls, periodic faces and
-axes of one or two boxes need no code of their own.
+Each axis is divided on its own, down to one box. Box coordinates are kept for three axes whatever the
+dimension; a missing axis has one box and no neighbours. A table for each axis states which boxes are
+neighbours, so that walls, periodic faces and axes of one or two boxes need no code of their own.
 """
 
 from __future__ import annotations
@@ -21,11 +21,20 @@ NOWHERE = -1
 
 @dataclass(frozen=True)
 class Boxes:
-    """A grid of boxes.
+    """Grid of boxes.
 
-    per_side: (3,) boxes along each axis; widths: (3,) their sides; strides: (3,) of the linear index;
-    neighbour: (3, most, 3) what a step of -1, 0, +1 from a box coordinate adds to the linear index, or
-    NOWHERE; shift: (3, most, 3) the container lengths that this step crosses on a periodic axis.
+    Parameters
+    ----------
+    per_side : ndarray of int, shape (3,)
+        Boxes along each axis.
+    widths : ndarray, shape (3,), [length]
+        Sides of a box.
+    strides : ndarray of int, shape (3,)
+        Strides of the linear index.
+    neighbour : ndarray of int, shape (3, most, 3)
+        Change of the linear index by a step of -1, 0, +1 from a box coordinate, or NOWHERE.
+    shift : ndarray of int, shape (3, most, 3)
+        Container lengths that this step crosses on a periodic axis.
     """
 
     per_side: np.ndarray
@@ -36,12 +45,22 @@ class Boxes:
 
     @property
     def count(self) -> int:
-        """The number of boxes."""
+        """Number of boxes."""
         return int(self.per_side.prod())
 
     def coordinates(self, positions: np.ndarray) -> np.ndarray:
-        """(N, 3) box coordinates of positions (N, d); the outermost box for a position outside, and the first
-        for none (NaN)."""
+        """Return the box coordinates of positions.
+
+        Parameters
+        ----------
+        positions : ndarray, shape (N, d), [length]
+            Positions. NaN means no position.
+
+        Returns
+        -------
+        ndarray of int, shape (N, 3)
+            Coordinates: the outermost box for a position outside, and the first box for no position.
+        """
         boxes, positions = np.zeros((len(positions), 3), dtype=np.int64), np.nan_to_num(positions)
         for k in range(positions.shape[1]):
             along = (positions[:, k] / self.widths[k]).astype(np.int64)
@@ -49,24 +68,71 @@ class Boxes:
         return boxes
 
     def cut(self, axis: int) -> Boxes:
-        """The same, but along an axis the first and the last boxes are not neighbours."""
+        """Return a grid whose first and last boxes along an axis are not neighbours.
+
+        Parameters
+        ----------
+        axis : int
+            Index of the axis.
+
+        Returns
+        -------
+        Boxes
+            Grid that is otherwise equal.
+        """
         neighbour, last = self.neighbour.copy(), self.per_side[axis] - 1
         neighbour[axis, 0, 0] = neighbour[axis, last, 2] = NOWHERE
         return replace(self, neighbour=neighbour)
 
     def index_of(self, position: np.ndarray) -> int:
-        """The linear index of the box that holds a position (d,)."""
+        """Return the linear index of the box that holds a position.
+
+        Parameters
+        ----------
+        position : ndarray, shape (d,), [length]
+            Position.
+
+        Returns
+        -------
+        int
+            Linear index.
+        """
         return int(self.coordinates(position[None])[0] @ self.strides)
 
 
 def narrowest_box(scene: Scene) -> float:
-    """The smallest side a box may have: the largest diameter, so that no contact is missed."""
+    """Return the smallest side of a box: the largest diameter, so that no contact is missed.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the particles.
+
+    Returns
+    -------
+    float, [length]
+        Smallest side.
+    """
     return 2.0 * scene.largest_radius
 
 
 def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float = 1.0) -> tuple[int, ...]:
-    """Boxes per side (d,) for about so many boxes per particle, none narrower than the largest diameter, or
-    than `narrowest` if larger particles are kept outside the boxes."""
+    """Return the numbers of boxes per side for a number of boxes per particle.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the particles.
+    narrowest : float, optional, [length]
+        Smallest side of a box, if larger particles are kept outside the boxes. Default: the largest diameter.
+    per_particle : float, default 1.0
+        Number of boxes per particle, which is reached approximately.
+
+    Returns
+    -------
+    tuple of int, shape (d,)
+        Boxes along each axis.
+    """
     lengths = scene.container.lengths
     narrowest = narrowest_box(scene) if narrowest is None else narrowest
     width = max(cube_side(lengths, per_particle * scene.capacity), narrowest)
@@ -74,8 +140,20 @@ def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float 
 
 
 def cube_side(lengths: tuple[float, ...], number: float) -> float:
-    """The side of cubes of which about `number`, but at least one, fill a container with sides `lengths`
-    (d,). An axis shorter than that side has one cube, and the others share the number."""
+    """Return the side of cubes of which about `number` fill a container.
+
+    Parameters
+    ----------
+    lengths : tuple of float, shape (d,), [length]
+        Sides of the container. A side shorter than the cube has one cube, and the others share the number.
+    number : float
+        Number of cubes; at least 1 is used.
+
+    Returns
+    -------
+    float, [length]
+        Side of a cube.
+    """
     sides = lengths
     while True:
         width = (math.prod(sides) / max(1.0, number)) ** (1.0 / len(sides))
@@ -88,13 +166,29 @@ def cube_side(lengths: tuple[float, ...], number: float) -> float:
 def make_boxes(
     scene: Scene, boxes_per_side: int | tuple[int, ...], images: bool, narrowest: float | None = None
 ) -> Boxes:
-    """The grid of `boxes_per_side` (one number, or one per axis) for a scene. narrowest: the smallest side a
-    box may have, the largest diameter unless some particles are kept outside the boxes.
+    """Return the grid of boxes for a scene.
 
-    On a periodic axis of fewer than three boxes the same box is a neighbour on both sides: with `images`
-    the table has both, each with its own shift; without, it has each box once.
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the particles.
+    boxes_per_side : int or tuple of int, shape (d,)
+        Boxes per side: one number, or one for each axis.
+    images : bool
+        On a periodic axis of fewer than three boxes the same box is a neighbour on both sides. If True, the
+        table has both, each with its own shift; if False, it has each box once.
+    narrowest : float, optional, [length]
+        Smallest side of a box, if some particles are kept outside the boxes. Default: the largest diameter.
 
-    Raises SceneError if a box would be narrower than the largest diameter.
+    Returns
+    -------
+    Boxes
+        Grid.
+
+    Raises
+    ------
+    SceneError
+        If a box would be narrower than `narrowest`, or if `boxes_per_side` is invalid.
     """
     lengths = scene.container.lengths
     partition("boxes_per_side", boxes_per_side)

@@ -1,9 +1,10 @@
-"""Random packings denser than insertion can make: particles that move, collide and grow until they are as
-large as wanted, or jam (Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990)).
+"""Random packings denser than insertion can make, by growing particles.
 
-All particles grow in proportion, at a constant rate of their diameters; they move as particles of mass 1
-whose temperature is brought back to 1 every few collisions. How dense they become depends on how slowly
-they grow: fast, spheres jam at a packing fraction of about 0.64 and discs at 0.84; slowly, they crystallise.
+The particles move, collide and grow until they have their size or jam (Lubachevsky & Stillinger, J. Stat.
+Phys. 60, 561 (1990)). All particles grow in proportion, at a constant rate of their diameters. They move as
+particles of mass 1 whose temperature is brought back to 1 every few collisions. Their final density depends
+on how slowly they grow: fast, spheres jam at a packing fraction of about 0.64 and discs at 0.84; slowly, they
+crystallise.
 """
 
 from __future__ import annotations
@@ -36,8 +37,21 @@ _POSITIONS, _MOTION = 0, 4
 
 @dataclass(frozen=True)
 class Packing:
-    """positions (N, d); scale: the radii reached, as multiples of the scene's; packing_fraction; pressure,
-    reduced, in the last stretch; collisions, in all."""
+    """Packing of particles that `compress` has reached.
+
+    Parameters
+    ----------
+    positions : ndarray, shape (N, d), [length]
+        Positions.
+    scale : float, [1]
+        Radii divided by the radii of the scene.
+    packing_fraction : float, [1]
+        Packing fraction.
+    pressure : float, [1]
+        Reduced pressure in the last block of collisions.
+    collisions : int
+        Number of all collisions.
+    """
 
     positions: np.ndarray
     scale: float
@@ -53,13 +67,50 @@ def compress(
     until: float | Literal["jammed"] | None = None,
     jammed: float = JAMMED,
 ) -> Packing:
-    """Grow the species of a scene from a random start until their packing fraction is `until` (by default the
-    scene's), or, with "jammed", until the reduced pressure exceeds `jammed`, which always ends it.
+    """Grow the particles of a scene to a packing fraction, or until they jam.
 
-    The diameter of the largest particles grows by `growth_rate` times the thermal speed of a particle.
+    Parameters
+    ----------
+    scene : Scene
+        Scene without particles or walls of its own and without fixed particles.
+    seed : int or tuple of int, default 0
+        Seed of the random start, from which the species grow.
+    growth_rate : float, default 0.0625, [1]
+        Growth rate of the diameter of the largest particles, divided by the thermal speed of a particle.
+    until : float or "jammed", optional
+        Packing fraction at which growth ends; "jammed" for growth until the particles jam. Default: the
+        packing fraction of the scene.
+    jammed : float, default 1e6, [1]
+        Reduced pressure that ends the growth in any case.
 
-    Raises SceneError for scenes with particles or walls of their own, and if particles jam before they are as
-    dense as wanted.
+    Returns
+    -------
+    Packing
+        Positions, scale of the radii, packing fraction, pressure and number of collisions.
+
+    Raises
+    ------
+    SceneError
+        If the scene has particles or walls of its own or fixed particles, or if particles jam before they are
+        as dense as requested.
+
+    Notes
+    -----
+    The algorithm of Lubachevsky and Stillinger [1]_. The temperature is brought back to 1 every few
+    collisions. Fast, spheres jam at a packing fraction of about 0.64 and discs at 0.84; slowly, they
+    crystallise.
+
+    References
+    ----------
+    .. [1] B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60, 561 (1990).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> gas = gp.Scene(gp.Container((10.0, 10.0), boundary="periodic"), [gp.Species(20, radius=0.5)])
+    >>> packing = gp.compress(gas, seed=1, until=0.7)
+    >>> round(packing.packing_fraction, 4), round(packing.scale, 4)
+    (0.7, 2.111)
     """
     if scene.particles or scene.walls or any(kind.fixed for kind in scene.species):
         raise SceneError(
@@ -86,9 +137,24 @@ def compress(
 
 
 def compressed(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
-    """(N, d) positions for the scene as it is, by the fastest of `RATES` that leads there.
+    """Return positions for a scene, by the fastest of `RATES` that reaches its packing fraction.
 
-    Raises SceneError if none does.
+    Parameters
+    ----------
+    scene : Scene
+        Scene, as for `compress`.
+    seed : int or tuple of int
+        Seed of the random start.
+
+    Returns
+    -------
+    ndarray, shape (N, d), [length]
+        Positions.
+
+    Raises
+    ------
+    SceneError
+        If no rate reaches it.
     """
     for rate in RATES[:-1]:
         with suppress(SceneError):
@@ -97,7 +163,7 @@ def compressed(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
 
 
 def _root(value: float, dimension: int) -> float:
-    """The square or cube root, by bisection: library roots differ between machines."""
+    """Return the square or cube root, by bisection: library roots differ between machines."""
     low, high = 0.0, max(1.0, value)
     for _ in range(200):
         middle = 0.5 * (low + high)
@@ -107,12 +173,12 @@ def _root(value: float, dimension: int) -> float:
 
 
 def _scaled(scene: Scene, scale: float) -> tuple[Species, ...]:
-    """The species of a scene with radii of another scale, at random places."""
+    """Return the species of a scene with scaled radii, at random positions."""
     return tuple(replace(kind, radius=kind.radius * scale, arrangement="random") for kind in scene.species)
 
 
 class _Growing:
-    """The particles of a scene, at `scale` times their radii, in progress."""
+    """Particles of a scene that grow, at `scale` times their radii."""
 
     def __init__(self, scene: Scene, seed: int | tuple[int, ...], scale: float, end: float) -> None:
         from gaspart.kernels import model
@@ -143,7 +209,7 @@ class _Growing:
         self._queue = empty_queue(n)
 
     def grow(self, rate: float, end: float) -> None:
-        """Some collisions per particle at this rate, or until the scale is `end`."""
+        """Simulate some collisions per particle at this rate, or until the scale is `end`."""
         d, n = self._scene.dimension, self._scene.count
         rate /= 2.0 * self._scene.largest_radius * self.scale
         remaining = (end / self.scale - 1.0) / rate
@@ -159,7 +225,7 @@ class _Growing:
             self.pressure = 1.0 + float(tally.sums[self._kernels.VIRIAL].sum()) / (d * n * time)
 
     def final_positions(self, scale: float) -> np.ndarray:
-        """(N, d) positions at this scale. Raises SimulationError if any two particles would overlap."""
+        """Return the (N, d) positions at a scale; raise SimulationError if two particles overlap."""
         self.flights["radius"] = self._radii * scale
         if self._growth.closest(self.particles, self.boxes, self._space) < 1.0:
             raise SimulationError("growth has left an overlap")

@@ -1,5 +1,7 @@
-"""Initial states that are given instead of drawn: what the particles, the piston and the sheared images of
-another run are and do."""
+"""Initial states that are given instead of drawn.
+
+They are the positions and motions of the particles, of the piston and of the sheared images of another run.
+"""
 
 from __future__ import annotations
 
@@ -32,15 +34,36 @@ def state_from_arrays(
     displaced: float | np.ndarray | None = None,
     vibrations: np.ndarray | None = None,
 ) -> State:
-    """The state at time 0 of a scene whose particles have these positions and velocities (N, d), of a sheared
-    gas with the flow.
+    """Return the state at time 0 of a scene whose particles have these positions and velocities.
 
-    spins: (N,) in 2D, (N, 3) in 3D, of rough particles; None: none. piston (2,), its place along its axis and
-    its velocity; None: at rest at its side. displaced: by how much images above are displaced in a sheared
-    gas; None: not at all. vibrations (N,): energies, of a scene whose particles store them. Positions beyond
-    a wall or the piston by no more than the rounding of single precision are put at it. Raises SceneError for
-    a scene that remembers more than these, numbers that are not finite or too few, and particles outside the
-    container, beyond the piston or in an interior wall.
+    Parameters
+    ----------
+    scene : Scene
+        Scene.
+    positions : ndarray, shape (N, d), [length]
+        Positions. Positions beyond a wall or the piston by no more than the rounding of single precision are
+        put at it.
+    velocities : ndarray, shape (N, d), [length/time]
+        Velocities, in a sheared gas with the flow.
+    spins : ndarray, shape (N,) in 2D or (N, 3) in 3D, optional, [1/time]
+        Spins of rough particles. Default: 0.
+    piston : ndarray, shape (2,), optional, [length] and [length/time]
+        Position of the piston along its axis, and its velocity. Default: at rest at its side.
+    displaced : float, optional, [length]
+        Displacement of the images above in a sheared gas. Default: 0.
+    vibrations : ndarray, shape (N,), optional, [energy]
+        Energies, of a scene whose particles store them.
+
+    Returns
+    -------
+    State
+        State.
+
+    Raises
+    ------
+    SceneError
+        If the scene remembers more than these values; if numbers are not finite or too few; if particles are
+        outside the container, beyond the piston or in an interior wall.
     """
     if "sticky" in scene.features:
         rule = "excludes a given initial state, which does not say which particles stick"
@@ -74,14 +97,33 @@ def state_from_arrays(
 
 
 def state_at_time_zero(scene: Scene, other: State) -> State:
-    """The state at time 0 of a scene, with the positions, velocities and spins of `other`, of the same
-    particles in a container of the same size.
+    """Return the state at time 0 of a scene, with particles as in another state.
 
-    A piston keeps its place and velocity, whatever its mass and load; without one in `other` it is at rest at
-    its side. Between sheared faces the images keep their displacement, and velocities are kept at one shear
-    rate; from another rate, or none, those about the flow and the mean are, and the flow of the scene is
-    added. Faces that vibrate begin anew. Raises SceneError, as `state_from_arrays`, for other particles,
-    another container, a piston that is another face, and displaced images in a container that has none.
+    Parameters
+    ----------
+    scene : Scene
+        Scene.
+    other : State
+        State of the same particles in a container of the same size, whose positions, velocities and spins are
+        used.
+
+    Returns
+    -------
+    State
+        State.
+
+    Raises
+    ------
+    SceneError
+        As `state_from_arrays`; for other particles, another container, a piston that is another face, and
+        displaced images in a container that has none.
+
+    Notes
+    -----
+    A piston keeps its position and velocity, whatever its mass and load; without a piston in `other` it is at
+    rest at its side. Between sheared faces the images keep their displacement, and velocities are kept at the
+    same shear rate. From another rate, or none, the velocities about the flow and the mean are kept, and the
+    flow of the scene is added. Faces that vibrate begin anew.
     """
     if not isinstance(other, State):
         raise SceneError("initial", type(other).__name__, "must be a State, as of Simulation.state")
@@ -108,7 +150,7 @@ def state_at_time_zero(scene: Scene, other: State) -> State:
 
 
 def _in_flow(scene: Scene, other: State) -> tuple[np.ndarray, np.ndarray]:
-    """(N, d) positions and (N, d) velocities of a state, which are about the flow of the scene."""
+    """Return (N, d) positions and velocities of a state, about the flow of the scene."""
     places, height = np.array(other.positions, dtype=float), scene.container.lengths[GRADIENT]
     if scene.shear_rate is not None and other.shear_rate is None:  # whose faces are places as any other
         places[:, GRADIENT] = _wrapped(places[:, GRADIENT], height)
@@ -119,8 +161,10 @@ def _in_flow(scene: Scene, other: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _displaced(scene: Scene, other: State) -> float | None:
-    """By how much images are displaced, but for whole lengths of the container, which is exact. Raises
-    SceneError."""
+    """Return the displacement of images; raise SceneError if the scene has none.
+
+    Complete lengths of the container are subtracted, which is exact.
+    """
     here = math.fmod(other.displaced or 0.0, scene.container.lengths[FLOW])
     if scene.shear_rate is not None:
         return here
@@ -134,7 +178,10 @@ def _displaced(scene: Scene, other: State) -> float | None:
 
 
 def _taken_piston(scene: Scene, other: State) -> np.ndarray | None:
-    """The piston's place and velocity in a state; None if that or the scene has none. Raises SceneError."""
+    """Return position and velocity of the piston in a state, or None without a piston.
+
+    Raises SceneError if the piston is another face in the scene.
+    """
     if other.piston is None:
         return None
     for n, face in scene.pistons:
@@ -151,7 +198,7 @@ def _taken_piston(scene: Scene, other: State) -> np.ndarray | None:
 
 
 def _checked_piston(scene: Scene, piston: np.ndarray | None) -> np.ndarray | None:
-    """The given place and velocity of a piston. Raises SceneError."""
+    """Return the given position and velocity of a piston; raise SceneError if they are invalid."""
     axes = [n // 2 for n, _ in scene.pistons]
     if wall := scene.moving_wall:
         axes = [wall.axis]
@@ -164,7 +211,15 @@ def _checked_piston(scene: Scene, piston: np.ndarray | None) -> np.ndarray | Non
 
 
 def check_apart(scene: Scene, state: State) -> None:
-    """Raise SceneError if particles overlap by more than the rounding of positions in single precision."""
+    """Raise SceneError if particles overlap by more than the rounding of single precision.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the state.
+    state : State
+        State.
+    """
     if state.count == 0:
         return
     places, radii = state.positions, state.radii
@@ -181,7 +236,10 @@ def check_apart(scene: Scene, state: State) -> None:
 
 
 def _with_images(state: State) -> tuple[np.ndarray, np.ndarray]:
-    """(M, d) positions and (M,) radii of a sheared gas, with those images below it that it may touch."""
+    """Return positions (M, d) and radii (M,) of a sheared gas and its images.
+
+    These are the images below the gas that it may touch.
+    """
     near = state.lengths[GRADIENT] - state.positions[:, GRADIENT] <= 2.0 * state.radii.max()
     images = state.positions[near]
     images[:, GRADIENT] -= state.lengths[GRADIENT]
@@ -190,13 +248,16 @@ def _with_images(state: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _wrapped(values: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
-    """Coordinates in [0, L) of the same places among periodic images."""
+    """Return coordinates in [0, L) of the same positions among periodic images."""
     placed = values - lengths * np.floor(values / lengths)
     return np.where(placed >= lengths, 0.0, placed)  # rounded up
 
 
 def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.ndarray | None) -> np.ndarray:
-    """(N, d) positions in [0, L) on axes with fixed images, between the walls and the piston on others."""
+    """Return (N, d) positions inside the container; raise SceneError for a particle outside.
+
+    They are in [0, L) on axes with fixed images, and between the walls and the piston on other axes.
+    """
     lengths, periodic = np.array(scene.container.lengths), np.array(scene.image_axes)
     slack = _SINGLE * lengths
     low, high = _bounds(scene, positions, radii, piston)
@@ -216,8 +277,11 @@ def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.n
 def _bounds(
     scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(N, d), (N, d) the least and the greatest coordinates of particles at these positions (N, d) between
-    walls and before a piston, or on their side of it; a sheared face is crossed where it is reached."""
+    """Return the (N, d) least and (N, d) greatest coordinates of particles at these positions.
+
+    The bounds are walls and a piston, or the side of a piston on which a particle is. A sheared face is
+    crossed where it is reached.
+    """
     walled = ~np.array(scene.container.periodic)
     margins = np.where(walled & (not scene.centres_to_walls), radii[:, None], 0.0)
     low, high = margins.copy(), np.array(scene.container.lengths) - margins

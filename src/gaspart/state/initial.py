@@ -23,9 +23,24 @@ _POSITIONS, _VELOCITIES, _VIBRATIONS = 0, 1, 3  # 2 is that of draws at walls
 
 
 def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
-    """The state at time 0. Positions and velocities have streams of their own under the one seed.
+    """Return the state of a scene at time 0.
 
-    Raises SceneError if the particles cannot be placed.
+    Parameters
+    ----------
+    scene : Scene
+        Scene.
+    seed : int or tuple of int
+        Seed. Positions and velocities have streams of their own under the same seed.
+
+    Returns
+    -------
+    State
+        State.
+
+    Raises
+    ------
+    SceneError
+        If the particles cannot be placed.
     """
     explicit = len(scene.particles)
     spins = np.zeros((scene.count, 3))
@@ -58,15 +73,43 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
 
 
 def masses_of(scene: Scene) -> np.ndarray:
-    """(N,) masses of all particles, infinite if fixed."""
+    """Return the masses of all particles, infinite for fixed particles.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene.
+
+    Returns
+    -------
+    ndarray, shape (N,), [mass]
+        Masses.
+    """
     return np.where(
         per_particle(scene, "fixed").astype(bool), np.inf, per_particle(scene, "mass").astype(float)
     )
 
 
 def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins: np.ndarray) -> State:
-    """The state at time 0 with these positions and velocities (N, d), and spins (N,) or (N, 3); with a piston
-    at its place, at rest or at its speed, and images of a sheared gas that are not displaced yet."""
+    """Return the state at time 0 with these positions, velocities and spins.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene.
+    positions : ndarray, shape (N, d), [length]
+        Positions.
+    velocities : ndarray, shape (N, d), [length/time]
+        Velocities.
+    spins : ndarray, shape (N,) in 2D or (N, 3) in 3D, [1/time]
+        Spins.
+
+    Returns
+    -------
+    State
+        State, with a piston at its position, at rest or at its speed, and images of a sheared gas that are
+        not displaced yet.
+    """
     radii, masses = per_particle(scene, "radius").astype(float), per_particle(scene, "mass").astype(float)
     shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # of a uniform disc or sphere
     inertia = per_particle(scene, "moment_of_inertia").astype(float)  # None becomes nan
@@ -95,7 +138,10 @@ def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins
 
 
 def _piston(scene: Scene) -> tuple[str | None, np.ndarray | None]:
-    """The name of the face or interior wall that is a piston, and (2,) its place and velocity at time 0."""
+    """Return the name of the face or interior wall that is a piston, and its start.
+
+    The start is (2,): position and velocity at time 0.
+    """
     for n, face in scene.pistons:
         start = scene.container.lengths[n // 2] if n % 2 else 0.0
         return FACES[n], np.array([start, face.initial_velocity(n)])
@@ -104,8 +150,10 @@ def _piston(scene: Scene) -> tuple[str | None, np.ndarray | None]:
 
 
 def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.ndarray:
-    """(N, d) positions of a "lattice" or "slab". Raises SceneError where `lattice` does, and if a particle
-    would overlap an interior wall."""
+    """Return the (N, d) positions of a "lattice" or "slab".
+
+    Raises SceneError as `lattice`, and if a particle would overlap an interior wall.
+    """
     positions = lattice(scene, rng, slab=arrangement == "slab")
     radii = per_particle(scene, "radius").astype(float)
     hit = (scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True))
@@ -115,8 +163,10 @@ def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.
 
 
 def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
-    """Advice to a user whose particles do not fit by random insertion: an arrangement only if it holds
-    them."""
+    """Return advice for particles that do not fit by random insertion.
+
+    It names an arrangement only if the arrangement holds them.
+    """
     try:
         arranged = replace(scene, species=[replace(kind, arrangement="lattice") for kind in scene.species])
         _on_lattice(arranged, stream(seed, _POSITIONS), "lattice")
@@ -126,7 +176,10 @@ def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
 
 
 def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
-    """(N,) energies of the modes: given, or drawn from exp(-E/kT)/kT; 0 where there is no mode."""
+    """Return the (N,) energies of the vibrations.
+
+    They are given, or drawn from exp(-E/kT)/kT; 0 without a vibration.
+    """
     parts = [np.array([particle.vibration or 0.0 for particle in scene.particles])]
     for kind in scene.species:
         if kind.vibrates and kind.temperature is not None:
@@ -137,7 +190,7 @@ def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 
 
 def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
-    """(N, d): given, of one fixed speed, Maxwellian, or none."""
+    """Return the (N, d) velocities: given, of equal speeds, Maxwellian, or 0."""
     parts = [
         np.array([particle.velocity for particle in scene.particles], dtype=float).reshape(
             -1, scene.dimension
@@ -158,15 +211,32 @@ def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 
 
 def _add_flow(scene: Scene, positions: np.ndarray, velocities: np.ndarray) -> None:
-    """Let drawn velocities (N, d) be about the flow of a sheared gas."""
+    """Add the flow of a sheared gas to drawn velocities (N, d)."""
     drawn = slice(len(scene.particles), None)
     if scene.shear_rate is not None and len(positions[drawn]):
         velocities[drawn] = in_flow(scene, masses_of(scene)[drawn], positions[drawn], velocities[drawn])
 
 
 def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
-    """(N, d) velocities (N, d) about the flow of a sheared gas, without a mean: a gas that moves across the
-    flow would be dragged along by it, ever faster. masses (N,): finite."""
+    """Return velocities about the flow of a sheared gas, without a mean.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the flow.
+    masses : ndarray, shape (N,), [mass]
+        Finite masses.
+    positions : ndarray, shape (N, d), [length]
+        Positions.
+    velocities : ndarray, shape (N, d), [length/time]
+        Velocities without the flow.
+
+    Returns
+    -------
+    ndarray, shape (N, d), [length/time]
+        Velocities. A gas with a mean velocity across the flow would be dragged along by the flow, ever
+        faster.
+    """
     peculiar = velocities.copy()
     for k in range(scene.dimension):
         peculiar[:, k] -= math.fsum(masses * velocities[:, k]) / math.fsum(masses)
@@ -174,9 +244,12 @@ def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities:
 
 
 def _make_exact(scene: Scene, velocities: np.ndarray) -> None:
-    """Give the species of exact temperature, together, no mean velocity along axes on which momentum is
-    conserved, and the mean of m v^2 / kT per degree of freedom 1. With sums whose rounding is that of no
-    machine. Raises SceneError without a degree of freedom."""
+    """Rescale velocities so that the species of exact temperature, together, have that temperature.
+
+    They get no mean velocity along axes on which momentum is conserved, and the mean of m v^2 / kT per degree
+    of freedom is 1. The sums have the same rounding on every machine. Raises SceneError without a degree of
+    freedom.
+    """
     first, parts = len(scene.particles), []
     for kind in scene.species:
         if kind.exact_temperature and kind.temperature and kind.count:
@@ -200,12 +273,29 @@ def _make_exact(scene: Scene, velocities: np.ndarray) -> None:
 
 
 def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.ndarray:
-    """(N, d) positions on a triangular (2D) or face-centred cubic (3D) lattice stretched to the container.
+    """Return positions on a triangular (2D) or face-centred cubic (3D) lattice.
 
-    If there are more sites than particles, the sites left empty are random, as is the order of the species in
-    a mixture. With `slab` they are all in the upper half of the longest side, which melts where a complete
-    crystal would not: the start of a crystal that coexists with its fluid. Raises SceneError if the lattice
-    would have to be denser than the particles allow, or if the particles are too few for the slab.
+    Parameters
+    ----------
+    scene : Scene
+        Scene, to whose container the lattice is stretched.
+    rng : numpy.random.Generator
+        Generator. If there are more sites than particles, the sites left empty are random, as is the order of
+        the species in a mixture.
+    slab : bool, default False
+        Leave sites empty only in the upper half of the longest side, which melts where a complete crystal
+        would not: the start of a crystal that coexists with its fluid.
+
+    Returns
+    -------
+    ndarray, shape (N, d), [length]
+        Positions.
+
+    Raises
+    ------
+    SceneError
+        If the lattice would have to be denser than the particles allow, or if the particles are too few for
+        the slab.
     """
     margin = np.array(scene.reach(scene.largest_radius)[0])
     walled = ~np.array(scene.container.periodic)
@@ -242,12 +332,15 @@ _FCC = np.array([[0.0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]])
 
 
 def _periods(cells: np.ndarray, walled: np.ndarray, basis: np.ndarray) -> np.ndarray:
-    """(d,) lattice cells that fill the length: between walls the last half cell is empty, so not counted."""
+    """Return the (d,) lattice cells that fill the length.
+
+    Between walls the last half cell is empty, so it is not counted.
+    """
     return np.where(walled, np.maximum(cells - 1 + basis.max(axis=0), 0.5), cells)
 
 
 def _spacing(lengths: np.ndarray, cells: np.ndarray, walled: np.ndarray, basis: np.ndarray) -> float:
-    """Shortest distance of two sites."""
+    """Return the shortest distance of two sites."""
     edge = lengths / _periods(np.asarray(cells), walled, basis)
     diagonals = (basis[1:] * edge) if len(basis) > 1 else np.empty((0, len(edge)))
     return float(min(np.sqrt((diagonals**2).sum(axis=1)).min(), edge.min()))
@@ -256,7 +349,7 @@ def _spacing(lengths: np.ndarray, cells: np.ndarray, walled: np.ndarray, basis: 
 def _cell_counts(
     lengths: np.ndarray, shape: np.ndarray, walled: np.ndarray, count: int, per_cell: int
 ) -> list[np.ndarray]:
-    """Numbers of cells (d,) near the ideal shape that hold `count` sites."""
+    """Return numbers of cells (d,) near the ideal shape that hold `count` sites."""
     ideal = (lengths / shape) * (count / per_cell / np.prod(lengths / shape)) ** (1.0 / len(lengths))
     reach = np.stack(np.meshgrid(*([np.arange(-2, 4)] * len(lengths)), indexing="ij"), axis=-1)
     options = np.floor(ideal).astype(int) + reach.reshape(-1, len(lengths))

@@ -1,4 +1,4 @@
-"""Random sequential insertion: one particle after another at random places that are free."""
+"""Random sequential insertion: particles are placed in sequence at random free positions."""
 
 from __future__ import annotations
 
@@ -22,7 +22,21 @@ PATIENCE = 2_000_000
 
 
 def per_particle(scene: Scene, attribute: str) -> np.ndarray:
-    """(N,) an attribute of all particles; all of one species have the same, but for the radius."""
+    """Return an attribute of all particles.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the particles.
+    attribute : str
+        Name of an attribute of `Particle` and `Species`. All particles of a species have the same value,
+        except for the radius.
+
+    Returns
+    -------
+    ndarray, shape (N,)
+        Values.
+    """
     alone = [getattr(particle, attribute) for particle in scene.particles]
     if attribute == "radius":
         return np.concatenate([alone, *(kind.radii for kind in scene.species)])
@@ -30,8 +44,22 @@ def per_particle(scene: Scene, attribute: str) -> np.ndarray:
 
 
 def range_of_centres(scene: Scene, kind: Species) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """(d,), (d,): the lowest and highest coordinates at which centres of a species are placed, of which all
-    keep the distance of the largest from walls."""
+    """Return the lowest and highest coordinates at which centres of a species are placed.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the species.
+    kind : Species
+        Species, all particles of which keep the distance of the largest from walls.
+
+    Returns
+    -------
+    lowest : tuple of float, shape (d,), [length]
+        Lowest coordinates.
+    highest : tuple of float, shape (d,), [length]
+        Highest coordinates.
+    """
     radius = kind.largest_radius
     if kind.region is None:
         return scene.reach(radius)
@@ -40,7 +68,26 @@ def range_of_centres(scene: Scene, kind: Species) -> tuple[tuple[float, ...], tu
 
 
 def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Placed, PeriodicBoxes, Block]:
-    """The arrays of an empty container for particles of these radii (N,), none of which has a place."""
+    """Return the arrays of an empty container for the insertion of particles.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the container.
+    boxes : Boxes
+        Partition of the container.
+    radii : ndarray, shape (N,), [length]
+        Radii of the particles, none of which is placed yet.
+
+    Returns
+    -------
+    placed : Placed
+        Particles.
+    grid : PeriodicBoxes
+        Boxes.
+    block : Block
+        Memory for a block of attempts.
+    """
     from gaspart.kernels.insertion import BLOCK, PLACES, Block, PeriodicBoxes, Placed
 
     near = aligned((boxes.count, 4, PLACES), float)
@@ -60,10 +107,28 @@ def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Placed,
 def random_insertion(
     scene: Scene, rng: np.random.Generator, patience: int = PATIENCE
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Place the species one particle after another at random places that are free, larger radii first.
+    """Place the species in sequence at random free positions, larger radii first.
 
-    Returns positions (N, d) and failures (N,), the failed attempts before each particle found its place.
-    Raises SceneError when one particle has failed `patience` times: the container is practically full.
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the species.
+    rng : numpy.random.Generator
+        Generator of the attempts.
+    patience : int, default 2_000_000
+        Number of failures of one particle after which the container counts as full.
+
+    Returns
+    -------
+    positions : ndarray, shape (N, d), [length]
+        Positions.
+    failures : ndarray of int, shape (N,)
+        Failed attempts before each particle was placed.
+
+    Raises
+    ------
+    SceneError
+        If one particle has failed `patience` times: the container is practically full.
     """
     from gaspart.kernels.insertion import Task, place, put
 

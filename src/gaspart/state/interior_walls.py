@@ -1,8 +1,8 @@
-"""Interior walls as arrays: one row per wall, and per image of it that comes near a periodic face.
+"""Interior walls as arrays, with images of walls near periodic faces.
 
-Rows of segments and plates are described in `kernels.obstacles.distance`. Particles meet
-a wall near a periodic face across it too, so a wall has an image wherever one is within a radius of the
-container.
+There is a row for each wall, and for each image of a wall that comes near a periodic face. Rows of segments
+and plates are described in `kernels.obstacles.distance`. Particles meet a wall near a periodic face across it
+too, so a wall has an image wherever one is within a radius of the container.
 """
 
 from __future__ import annotations
@@ -19,7 +19,20 @@ _SLACK = 1e-9  # by which neighbourhoods are drawn wider, so that rounding leave
 
 
 def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """(M,) segments or plates, and (M,) the index of the wall that each row represents."""
+    """Return a row for each interior wall and for its images near periodic faces.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the walls.
+
+    Returns
+    -------
+    rows : ndarray, shape (M,)
+        Segments or plates.
+    walls : ndarray of int, shape (M,)
+        Index of the wall of each row.
+    """
     from gaspart.kernels.obstacles.distance import PLATE, SEGMENT
 
     lengths, reach = np.array(scene.container.lengths), scene.largest_radius * (1 + _SLACK)
@@ -42,19 +55,21 @@ def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _segment(wall: Wall) -> np.ndarray:
+    """Return the numbers of the row of a segment."""
     start, end = np.array(wall.start), np.array(wall.end)
     length = float(np.hypot(*(end - start)))
     return np.array([*start, *((end - start) / length), length])
 
 
 def _plate(wall: Plate) -> np.ndarray:
+    """Return the numbers of the row of a plate."""
     edges = np.array(wall.edges)
     sizes = np.sqrt((edges**2).sum(axis=1, keepdims=True))
     return np.concatenate([np.array(wall.corner), np.hstack([edges / sizes, sizes]).ravel()])
 
 
 def _corners(row: np.ndarray) -> np.ndarray:
-    """(2, 2) the ends of a segment, or (4, 3) the corners of a plate."""
+    """Return the ends (2, 2) of a segment, or the corners (4, 3) of a plate."""
     if len(row) == 5:
         return np.array([row[:2], row[:2] + row[2:4] * row[4]])
     along, across = row[3:6] * row[6], row[7:10] * row[10]
@@ -62,13 +77,29 @@ def _corners(row: np.ndarray) -> np.ndarray:
 
 
 def _normal(row: np.ndarray) -> np.ndarray:
-    """(d,) the unit normal of a segment or plate."""
+    """Return the unit normal (d,) of a segment or plate."""
     return np.array([-row[3], row[2]]) if len(row) == 5 else np.cross(row[3:6], row[7:10])
 
 
 def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """The walls within `reach` of each box: those of box b are listed[first[b] : first[b + 1]]. All of them
-    follow the last box, for particles that reach further."""
+    """Return the walls within a distance of each box.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (M,)
+        Segments or plates.
+    boxes : Boxes
+        Partition.
+    reach : float, [length]
+        Distance.
+
+    Returns
+    -------
+    first : ndarray of int, shape (boxes + 2,)
+        Box b has the walls listed[first[b] : first[b + 1]].
+    listed : ndarray of int
+        Rows of the walls. All of them follow the last box, for particles that reach further.
+    """
     reach *= 1 + _SLACK
     numbers = rows.view(float).reshape(len(rows), rows.itemsize // 8)
     d = 2 if numbers.shape[1] == 5 else 3

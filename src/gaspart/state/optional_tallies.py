@@ -1,6 +1,6 @@
-"""Tallies that not every run has, see `Tally`: those that a run asks for, and those of some scenes.
+"""Tallies that not every run has, see `Tally`: requested tallies, and tallies of some scenes.
 
-A run asks for a tally by an instance of its class, which holds its settings. An engine that can make it has
+A run requests a tally by an instance of its class, which holds its settings. An engine that can make it has
 its name in `Engine.tallies`, and a part (`engines.features.part.TallyPart`) that is found by that name.
 """
 
@@ -25,42 +25,95 @@ AnyTally = TypeVar("AnyTally", bound="OptionalTally")
 
 @dataclass(frozen=True)
 class OptionalTally:
-    """A tally. name: in messages, in files, and as `only` in the metadata of its fields of `Tally`."""
+    """Tally that not every run has.
+
+    Attributes
+    ----------
+    name : str
+        Name in messages, in files, and as `only` in the metadata of its fields of `Tally`.
+    """
 
     name: ClassVar[str]
 
     def check(self, scene: Scene) -> None:
-        """Raise SceneError for a scene of which no engine can make it."""
+        """Raise SceneError for a scene of which no engine can make the tally.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene to check.
+        """
 
     def axes(self, scene: Scene) -> dict[str, int]:
-        """The lengths of the axes `along` which its fields are, but for `face`."""
+        """Return the lengths of the axes `along` of its fields, except for `face`.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene of the run.
+
+        Returns
+        -------
+        dict of str to int
+            Lengths by the name of the axis.
+        """
         return {}
 
     def to_text(self) -> str:
-        """Its settings, in the form of an option of `gaspart run`; "" of one that has no such option."""
+        """Return the settings as an option of `gaspart run`; "" without such an option."""
         return ""
 
 
 @dataclass(frozen=True)
 class StressTally(OptionalTally):
-    """The stress tensor and the heat flux."""
+    """Stress tensor and heat flux."""
 
     name: ClassVar[str] = "stress"
 
     def check(self, scene: Scene) -> None:
-        """Raise SceneError unless velocities change at contacts only, in a periodic container."""
+        """Raise SceneError unless velocities change only at contacts, in a periodic container.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene to check.
+        """
         require_tallied(scene)
 
     def axes(self, scene: Scene) -> dict[str, int]:
-        """Both axes of the tensor."""
+        """Return the lengths of both axes of the tensor.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene of the run.
+
+        Returns
+        -------
+        dict of str to int
+            Lengths by the name of the axis.
+        """
         return {"axis": scene.dimension, "direction": scene.dimension}
 
 
 @dataclass(frozen=True)
 class ImpulseTally(OptionalTally):
-    """The momentum that particles carry along an axis, "x", "y" or "z", through planes across it, in so many
-    equal bins of the container, from which their density follows (`analysis.impulses`). Raises SceneError for
-    another axis, and for fewer than 2 bins and more than 100000."""
+    """Momentum that particles carry along an axis through planes across the axis.
+
+    The density along the axis follows from it (`analysis.impulses`).
+
+    Parameters
+    ----------
+    axis : {"x", "y", "z"}
+        Axis.
+    bins : int
+        Number of equal bins of the container, from 2 to 100000.
+
+    Raises
+    ------
+    SceneError
+        If the axis or the number of bins is invalid.
+    """
 
     axis: str
     bins: int
@@ -74,32 +127,79 @@ class ImpulseTally(OptionalTally):
 
     @classmethod
     def from_text(cls, text: str) -> ImpulseTally:
-        """From its axis and number of bins, such as "z:200". Raises SceneError."""
+        """Make the tally from its axis and number of bins, such as "z:200".
+
+        Parameters
+        ----------
+        text : str
+            Axis and number of bins.
+
+        Returns
+        -------
+        ImpulseTally
+            Tally.
+
+        Raises
+        ------
+        SceneError
+            If the text is invalid.
+        """
         axis, _, bins = str(text).partition(":")
         if not bins.isdecimal():
             raise SceneError("impulses", text, "must be an axis and a number of bins, such as z:200")
         return cls(axis, int(bins))
 
     def to_text(self) -> str:
-        """The form that `from_text` accepts."""
+        """Return the form that `from_text` accepts."""
         return f"{self.axis}:{self.bins}"
 
     def check(self, scene: Scene) -> None:
-        """Raise SceneError unless the scene has the axis, and is in equilibrium at one temperature."""
+        """Raise SceneError unless the scene has the axis and is in equilibrium at one temperature.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene to check.
+        """
         one_of("impulses.axis", self.axis, tuple("xyz"[: scene.dimension]))
         require_impulses(scene)
 
     def axes(self, scene: Scene) -> dict[str, int]:
-        """Species and bins."""
+        """Return the numbers of species and bins.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene of the run.
+
+        Returns
+        -------
+        dict of str to int
+            Lengths by the name of the axis.
+        """
         return {"species": row_count(scene), "bin": self.bins}
 
 
 @dataclass(frozen=True)
 class PairImpulseTally(OptionalTally):
-    """The momentum that pairs of particles gain along their separation, in so many shells of equal thickness
-    up to the `furthest` distance, from which g(r) follows (`analysis.pair_impulses`). share: of contacts, at
-    which the pairs with the others are searched for. Raises SceneError for a distance that is not positive,
-    fewer than 2 shells and more than 100000, and a share that is not in (0, 1]."""
+    """Momentum that pairs of particles gain along their separation, in shells of equal thickness.
+
+    The pair distribution g(r) follows from it (`analysis.pair_impulses`).
+
+    Parameters
+    ----------
+    furthest : float, [length]
+        Largest distance, above 0.
+    shells : int
+        Number of shells, from 2 to 100000.
+    share : float, default 1.0, [1]
+        Fraction of contacts at which the pairs with the other particles are searched for, in (0, 1].
+
+    Raises
+    ------
+    SceneError
+        If a value is out of range.
+    """
 
     furthest: float
     shells: int
@@ -114,7 +214,23 @@ class PairImpulseTally(OptionalTally):
 
     @classmethod
     def from_text(cls, text: str) -> PairImpulseTally:
-        """From its distance, number of shells and share, such as "3:300:0.5". Raises SceneError."""
+        """Make the tally from its distance, number of shells and fraction, such as "3:300:0.5".
+
+        Parameters
+        ----------
+        text : str
+            Distance, number of shells and, optionally, fraction of contacts.
+
+        Returns
+        -------
+        PairImpulseTally
+            Tally.
+
+        Raises
+        ------
+        SceneError
+            If the text is invalid.
+        """
         parts = str(text).split(":")
         try:
             furthest, shells = float(parts[0]), int(parts[1])
@@ -127,22 +243,55 @@ class PairImpulseTally(OptionalTally):
         return cls(furthest, shells, share)
 
     def to_text(self) -> str:
-        """The form that `from_text` accepts."""
+        """Return the form that `from_text` accepts."""
         return f"{self.furthest!r}:{self.shells}:{self.share!r}"
 
     def check(self, scene: Scene) -> None:
-        """Raise SceneError unless the scene is periodic, in equilibrium at one temperature, and longer than
-        twice the distance."""
+        """Raise SceneError unless pair impulses are defined for a scene.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene, which must be periodic, in equilibrium at one temperature, and longer than twice the
+            distance.
+        """
         require_pair_impulses(scene, self.furthest)
 
     def axes(self, scene: Scene) -> dict[str, int]:
-        """Shells."""
+        """Return the number of shells.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene of the run.
+
+        Returns
+        -------
+        dict of str to int
+            Lengths by the name of the axis.
+        """
         return {"shell": self.shells}
 
 
 def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int) -> tuple[ImpulseTally, ...]:
-    """Those along an axis, if a run of a scene can keep them and the density follows from them; tallies: the
-    names of those that its engine can make."""
+    """Return the impulse tally along an axis, if the density of a scene follows from it.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the run.
+    tallies : collection of str
+        Names of the tallies that the engine can make.
+    axis : int
+        Index of the axis.
+    bins : int
+        Number of bins.
+
+    Returns
+    -------
+    tuple of ImpulseTally
+        One tally, or none.
+    """
     asked = ImpulseTally("xyz"[axis], bins)
     try:
         asked.check(scene)
@@ -155,65 +304,144 @@ def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int
 
 
 def option_of(tally: OptionalTally) -> list[str]:
-    """The option of `gaspart run` by which a run keeps a tally; none of one that has no such option."""
+    """Return the option of `gaspart run` that requests a tally.
+
+    Parameters
+    ----------
+    tally : OptionalTally
+        Tally.
+
+    Returns
+    -------
+    list of str
+        Option and its value, or an empty list without such an option.
+    """
     text = tally.to_text()
     return [f"--{tally.name.replace('_', '-')}", text] if text else []
 
 
 def impulse_tallies(text: str | None) -> tuple[OptionalTally, ...]:
-    """What a run asks for that is to keep impulses, if it is. Raises SceneError as `from_text`."""
+    """Return the impulse tally that a text requests.
+
+    Parameters
+    ----------
+    text : str or None
+        Text of `ImpulseTally.from_text`, or None without a tally.
+
+    Returns
+    -------
+    tuple of OptionalTally
+        One tally, or none.
+
+    Raises
+    ------
+    SceneError
+        If the text is invalid.
+    """
     return () if text is None else (ImpulseTally.from_text(text),)
 
 
 def pair_impulse_tallies(text: str | None) -> tuple[OptionalTally, ...]:
-    """The same of those of pairs. Raises SceneError as `PairImpulseTally.from_text`."""
+    """Return the tally of pair impulses that a text requests.
+
+    Parameters
+    ----------
+    text : str or None
+        Text of `PairImpulseTally.from_text`, or None without a tally.
+
+    Returns
+    -------
+    tuple of OptionalTally
+        One tally, or none.
+
+    Raises
+    ------
+    SceneError
+        If the text is invalid.
+    """
     return () if text is None else (PairImpulseTally.from_text(text),)
 
 
 @dataclass(frozen=True)
 class WallShearTally(OptionalTally):
-    """The momentum that faces are given along themselves."""
+    """Momentum given to faces along themselves."""
 
     name: ClassVar[str] = "wall_shear"
 
     def axes(self, scene: Scene) -> dict[str, int]:
-        """The components of the momentum."""
+        """Return the number of components of the momentum.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene of the run.
+
+        Returns
+        -------
+        dict of str to int
+            Lengths by the name of the axis.
+        """
         return {"axis": scene.dimension}
 
 
 @dataclass(frozen=True)
 class EntryTally(OptionalTally):
-    """The particles that have entered through open faces."""
+    """Particles that have entered through open faces."""
 
     name: ClassVar[str] = "entries"
 
 
 @dataclass(frozen=True)
 class FixedCollisionTally(OptionalTally):
-    """The collisions with fixed particles."""
+    """Collisions with fixed particles."""
 
     name: ClassVar[str] = "fixed_collisions"
 
 
 @dataclass(frozen=True)
 class PerAreaTally(OptionalTally):
-    """What faces are given per area that centres of particles of each size can reach, where sizes differ."""
+    """Momentum and heat of faces per area that centres of each size can reach.
+
+    A run has it if sizes differ.
+    """
 
     name: ClassVar[str] = "per_area"
 
     def axes(self, scene: Scene) -> dict[str, int]:
-        """The components of the momentum."""
+        """Return the number of components of the momentum.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene of the run.
+
+        Returns
+        -------
+        dict of str to int
+            Lengths by the name of the axis.
+        """
         return {"axis": scene.dimension}
 
 
 ASKED: dict[str, type[OptionalTally]] = {
     tally.name: tally for tally in (StressTally, ImpulseTally, PairImpulseTally)
 }
-"""All that a run can ask for, by name."""
+"""Tallies that a run can request, by name."""
 
 
 def tallies_of(scene: Scene) -> tuple[OptionalTally, ...]:
-    """Those that every run of a scene has, if its engine makes them."""
+    """Return the tallies that every run of a scene has, if its engine makes them.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the run.
+
+    Returns
+    -------
+    tuple of OptionalTally
+        Tallies.
+    """
     made = {
         WallShearTally(): scene.drags_faces,
         EntryTally(): scene.is_open,
@@ -224,7 +452,18 @@ def tallies_of(scene: Scene) -> tuple[OptionalTally, ...]:
 
 
 def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:
-    """The fields of `Tally` that a run with these optional tallies has."""
+    """Return the fields of `Tally` that a run with some optional tallies has.
+
+    Parameters
+    ----------
+    tallies : iterable of OptionalTally
+        Optional tallies.
+
+    Returns
+    -------
+    list of str
+        Names of the fields.
+    """
     from gaspart.state.tally import Tally  # loads numpy, which planning does not need
 
     present = {None, *(tally.name for tally in tallies)}
@@ -232,13 +471,41 @@ def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:
 
 
 def tally_to_dict(tally: OptionalTally) -> dict:
-    """The mapping that `tally_from_dict` accepts."""
+    """Return the mapping that `tally_from_dict` accepts.
+
+    Parameters
+    ----------
+    tally : OptionalTally
+        Tally.
+
+    Returns
+    -------
+    dict
+        Name and settings.
+    """
     return {"name": tally.name, **asdict(tally)}
 
 
 def tally_from_dict(mapping: dict) -> OptionalTally:
-    """The tally described by {"name": name, setting: value, ...}. Raises SceneError for an unknown name, and
-    TypeError for an unknown setting."""
+    """Return the tally that a mapping describes.
+
+    Parameters
+    ----------
+    mapping : dict
+        {"name": name, setting: value, ...}.
+
+    Returns
+    -------
+    OptionalTally
+        Tally.
+
+    Raises
+    ------
+    SceneError
+        If the name is unknown.
+    TypeError
+        If a setting is unknown.
+    """
     settings = dict(mapping)
     name = settings.pop("name", None)
     if name not in ASKED:
@@ -247,7 +514,26 @@ def tally_from_dict(mapping: dict) -> OptionalTally:
 
 
 def stored_tally(stored: str, kind: type[AnyTally]) -> AnyTally | None:
-    """The tally of a kind among those that a trajectory states in its attribute `tallies` (JSON); None if it
-    is not there. Raises as `tally_from_dict`."""
+    """Return the tally of a kind among the tallies that a trajectory states.
+
+    Parameters
+    ----------
+    stored : str
+        Attribute `tallies` of the trajectory (JSON).
+    kind : type
+        Class of the tally.
+
+    Returns
+    -------
+    OptionalTally or None
+        Tally, or None if the trajectory does not have it.
+
+    Raises
+    ------
+    SceneError
+        If a name is unknown.
+    TypeError
+        If a setting is unknown.
+    """
     tallies = map(tally_from_dict, json.loads(stored))
     return next((tally for tally in tallies if isinstance(tally, kind)), None)

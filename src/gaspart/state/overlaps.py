@@ -1,4 +1,4 @@
-"""The deepest overlap of particles of any sizes, in time and memory that grow as their number."""
+"""Deepest overlap of particles of any sizes, in time and memory that grow as their number."""
 
 from __future__ import annotations
 
@@ -10,11 +10,29 @@ import numpy as np
 def deepest_overlap(
     positions: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: tuple[bool, ...]
 ) -> float:
-    """1 - distance / contact distance of the pair that overlaps most, 0 if none does, by nearest images.
+    """Return the relative overlap of the pair of particles that overlaps most, by nearest images.
 
-    positions (N, d), on periodic axes in [0, L]; radii (N,); lengths, periodic (d,). A particle wider than a
-    periodic side overlaps its own image. Particles are sorted into classes of sizes within a factor of two,
-    with a tree each: so a search reaches no farther than its pair of classes may touch.
+    Parameters
+    ----------
+    positions : ndarray, shape (N, d), [length]
+        Positions, on periodic axes in [0, L].
+    radii : ndarray, shape (N,), [length]
+        Radii.
+    lengths : ndarray, shape (d,), [length]
+        Lengths of the container.
+    periodic : tuple of bool, shape (d,)
+        True for periodic axes.
+
+    Returns
+    -------
+    float, [1]
+        1 - distance / contact distance, or 0 without an overlap. A particle wider than a periodic side
+        overlaps its own image.
+
+    Notes
+    -----
+    Particles are sorted into classes of sizes within a factor of two, with a tree for each class. So a search
+    reaches no farther than its pair of classes may touch.
     """
     from scipy.spatial import cKDTree  # which few runs need
 

@@ -1,7 +1,7 @@
-"""Oversized particles: those that are too large for the boxes of the partition.
+"""Oversized particles, which are too large for the boxes of the partition.
 
 A box may not be narrower than the diameter of any particle that is found by its box alone. So a few large
-particles would make the boxes of all the small ones huge; outside the partition, they cost a look at each of
+particles would make the boxes of all the small ones huge. Outside the partition, they cost a look at each of
 them in every search, and a look at all the boxes around one in a search of its own.
 """
 
@@ -20,18 +20,42 @@ _BOXES = {2: (0.53, 0.5, 0.8), 3: (1.0, 3.0, 1.5)}  # per particle: in a dilute 
 
 
 def boxes_per_particle(scene: Scene) -> float:
-    """How many boxes there are for each particle. Eight particles are tested at once, so in a dilute gas of
-    discs, which cross many boxes between contacts, wide ones are best; measured with 10^4 particles at
-    packing fractions of 0.01 to 0.4 (docs/design-notes.md). Not where gravity gathers the particles, or where
-    kicks make most searches find nothing new: there is one each at least."""
+    """Return the number of boxes for each particle.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the particles.
+
+    Returns
+    -------
+    float
+        Number, at least 1 if gravity gathers the particles, or if kicks make most searches find nothing new.
+
+    Notes
+    -----
+    Eight particles are tested at once. So in a dilute gas of discs, which cross many boxes between contacts,
+    wide boxes are best; measured with 10^4 particles at packing fractions of 0.01 to 0.4
+    (docs/design-notes.md).
+    """
     dilute, by_density, limit = _BOXES[scene.dimension]
     best = min(dilute + by_density * scene.packing_fraction, limit)
     return max(1.0, best) if scene.gravity is not None or scene.thermostat else best
 
 
 def largest_in_boxes(scene: Scene) -> float:
-    """The largest radius that the boxes are made for: of the radii that leave at most `MOST` particles
-    outside them, that with which a search looks at least, but the largest of all unless that saves a quarter.
+    """Return the largest radius that the boxes are made for.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the particles.
+
+    Returns
+    -------
+    float, [length]
+        Of the radii that leave at most `MOST` particles outside the boxes, the radius with the least work of
+        a search. The largest radius of all, unless the other saves a quarter.
     """
     radii, counts = sizes(scene)
     if len(radii) < 2 or scene.shear_rate is not None:
@@ -43,10 +67,26 @@ def largest_in_boxes(scene: Scene) -> float:
 
 
 def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None) -> tuple[Boxes, float]:
-    """The partition, and the largest radius of the particles in it: of so many boxes, or as
-    `largest_in_boxes` chooses.
+    """Return the partition and the largest radius of the particles in it.
 
-    Raises SceneError for boxes that are narrower than most of the particles.
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the particles.
+    boxes_per_side : int or tuple of int or None
+        Boxes per side. None: as `largest_in_boxes` chooses.
+
+    Returns
+    -------
+    boxes : Boxes
+        Partition.
+    largest : float, [length]
+        Largest radius.
+
+    Raises
+    ------
+    SceneError
+        If boxes are narrower than most of the particles.
     """
     if boxes_per_side is None:
         largest = largest_in_boxes(scene)
@@ -62,8 +102,21 @@ def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None
 
 
 def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """The different radii (K,) in rising order, and (K,) how many particles have each; all of a polydisperse
-    species count as the largest of it, because boxes wide enough for it are faster than a long list."""
+    """Return the different radii and how many particles have each radius.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the particles. All particles of a polydisperse species count as its largest, because boxes
+        wide enough for it are faster than a long list.
+
+    Returns
+    -------
+    radii : ndarray, shape (K,), [length]
+        Different radii in ascending order.
+    counts : ndarray of int, shape (K,)
+        Numbers of particles.
+    """
     kinds = [kind for kind in scene.kinds if kind.count]
     largest = np.array([kind.largest_radius for kind in kinds], float)
     different, which = np.unique(largest, return_inverse=True)
@@ -71,10 +124,20 @@ def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def work(scene: Scene, largest: float) -> float:
-    """Boxes and particles looked at while each particle goes a unit of length, if the boxes are for radii up
-    to `largest`: in a search after every contact, and a third of one at every face of a box.
+    """Return the boxes and particles searched while each particle travels a unit of length.
 
-    Particles are taken to be spread evenly and to be equally fast.
+    Parameters
+    ----------
+    scene : Scene
+        Scene, whose particles are taken to be spread evenly and to be equally fast.
+    largest : float, [length]
+        Largest radius of particles in the boxes.
+
+    Returns
+    -------
+    float, [1/length]
+        Number of boxes and particles: in a search after every contact, and a third of a search at every face
+        of a box.
     """
     dimension, volume = scene.dimension, scene.container.volume
     radii, counts = sizes(scene)

@@ -13,19 +13,53 @@ from gaspart.kernels.physics.logarithm import LN2, LOG_SERIES
 
 
 def stream(seed: int | tuple[int, ...], *purpose: int) -> np.random.Generator:
-    """An independent generator for one purpose (a tuple of small numbers) of one seed.
+    """Return an independent generator of random numbers for one purpose.
 
-    Raises SceneError unless the seed is a non-negative integer or a sequence of them.
+    Parameters
+    ----------
+    seed : int or tuple of int
+        Seed.
+    *purpose : int
+        Small numbers that identify the purpose.
+
+    Returns
+    -------
+    numpy.random.Generator
+        Generator.
+
+    Raises
+    ------
+    SceneError
+        If the seed is neither a non-negative integer nor a sequence of them.
     """
     return np.random.Generator(np.random.PCG64(_sequence(seed, purpose)))
 
 
 def key_of(seed: int | tuple[int, ...], *purpose: int) -> np.ndarray:
-    """(2,) words of 64 bits for the random numbers inside kernels (see `draws`); raises the same."""
+    """Return the key of the random numbers inside kernels (see `draws`).
+
+    Parameters
+    ----------
+    seed : int or tuple of int
+        Seed.
+    *purpose : int
+        Small numbers that identify the purpose.
+
+    Returns
+    -------
+    ndarray of uint64, shape (2,)
+        Words of 64 bits.
+
+    Raises
+    ------
+    SceneError
+        If the seed is neither a non-negative integer nor a sequence of them.
+    """
     return _sequence(seed, purpose).generate_state(2, np.uint64)
 
 
 def _sequence(seed: int | tuple[int, ...], purpose: tuple[int, ...]) -> np.random.SeedSequence:
+    """Return the seed sequence of one purpose; raise SceneError for an invalid seed."""
     parts = seed if isinstance(seed, (tuple, list)) else (seed,)
     for part in parts:
         if isinstance(part, bool) or not isinstance(part, (int, np.integer)) or part < 0:
@@ -34,9 +68,22 @@ def _sequence(seed: int | tuple[int, ...], purpose: tuple[int, ...]) -> np.rando
 
 
 def natural_log(x: np.ndarray) -> np.ndarray:
-    """ln x of positive floats, to 2 units in the last place, by +, -, x and / alone.
+    """Compute ln x to 2 units in the last place, by arithmetic alone.
 
-    x = m 2^e with m in [1/sqrt 2, sqrt 2); ln m = 2 artanh((m - 1)/(m + 1)), by its series.
+    Parameters
+    ----------
+    x : ndarray, [1]
+        Positive numbers.
+
+    Returns
+    -------
+    ndarray, same shape as `x`, [1]
+        Logarithms.
+
+    Notes
+    -----
+    Only +, -, x and / are used: x = m 2^e with m in [1/sqrt 2, sqrt 2); ln m = 2 artanh((m - 1)/(m + 1)), by
+    its series.
     """
     mantissa, exponent = np.frexp(np.asarray(x, dtype=float))
     low = mantissa < 0.7071067811865476
@@ -51,7 +98,10 @@ def natural_log(x: np.ndarray) -> np.ndarray:
 
 
 def _disc(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """`count` points (u, v) uniform in the unit disc without its centre, and s = u^2 + v^2."""
+    """Return `count` points (u, v) uniform in the unit disc, and s = u^2 + v^2.
+
+    The centre of the disc is excluded.
+    """
     us, vs, have = [np.empty(0)], [np.empty(0)], 0
     while have < count:
         u, v = 2.0 * rng.random((2, 2 * (count - have) + 8)) - 1.0
@@ -65,7 +115,22 @@ def _disc(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray,
 
 
 def directions(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:
-    """(count, d) isotropic unit vectors (Marsaglia, Ann. Math. Stat. 43, 645 (1972))."""
+    """Draw isotropic unit vectors (Marsaglia, Ann. Math. Stat. 43, 645 (1972)).
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+        Generator.
+    count : int
+        Number of vectors.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, shape (count, d), [1]
+        Vectors.
+    """
     u, v, s = _disc(rng, count)
     if dimension == 2:
         return np.stack([(u * u - v * v) / s, 2.0 * u * v / s], axis=1)
@@ -74,7 +139,22 @@ def directions(rng: np.random.Generator, count: int, dimension: int) -> np.ndarr
 
 
 def normals(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:
-    """(count, d) independent standard normal numbers, by Marsaglia's polar method."""
+    """Draw independent standard normal numbers, by Marsaglia's polar method.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+        Generator.
+    count : int
+        Number of rows.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, shape (count, d), [1]
+        Numbers.
+    """
     pairs = (count * dimension + 1) // 2
     u, v, s = _disc(rng, pairs)
     factor = np.sqrt(-2.0 * natural_log(s) / s)

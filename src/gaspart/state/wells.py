@@ -9,7 +9,20 @@ from gaspart.scene.scene import Scene
 
 
 def wells_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """(2d,), (2d,) depths and widths of the wells at all faces, 0 where there is none."""
+    """Return the depths and widths of the wells at all faces.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the faces.
+
+    Returns
+    -------
+    depths : ndarray, shape (2d,), [energy]
+        Depths, 0 where there is no well.
+    widths : ndarray, shape (2d,), [length]
+        Widths, 0 where there is no well.
+    """
     faces = (scene.faces.get(name) for name in FACES[: 2 * scene.dimension])
     wells = [(face.depth, face.width) if isinstance(face, Well) else (0.0, 0.0) for face in faces]
     depths, widths = np.array(wells).T
@@ -17,7 +30,22 @@ def wells_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def places_in_wells(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """(N, d) -1 where a particle is in the well of an axis' low face, 1 in that of the high face, else 0."""
+    """Return the wells in which particles are.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the faces.
+    positions : ndarray, shape (N, d), [length]
+        Positions.
+    radii : ndarray, shape (N,), [length]
+        Radii.
+
+    Returns
+    -------
+    ndarray of int8, shape (N, d)
+        -1 in the well of an axis' low face, 1 in the well of the high face, otherwise 0.
+    """
     margins = 0.0 if scene.centres_to_walls else radii[:, None]
     _, widths = wells_of(scene)
     low = positions - margins < widths[::2]
@@ -26,6 +54,19 @@ def places_in_wells(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> n
 
 
 def well_energies(scene: Scene, places: np.ndarray) -> np.ndarray:
-    """(N,) the potential energy of particles in these places."""
+    """Return the potential energy of particles in wells.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the faces.
+    places : ndarray of int8, shape (N, d)
+        Wells of the particles, by `places_in_wells`.
+
+    Returns
+    -------
+    ndarray, shape (N,), [energy]
+        Energies.
+    """
     depths, _ = wells_of(scene)
     return -(np.where(places < 0, depths[::2], 0.0) + np.where(places > 0, depths[1::2], 0.0)).sum(axis=1)
