@@ -88,7 +88,7 @@ def forge(path, name):
     attributes = {}
     with netCDF4.Dataset(path) as file:
         attributes = {key: file.getncattr(key) for key in file.ncattrs()}
-        particles = {name: file[name][:].data for name in ("radius", "mass", "type")}
+        particles = {key: file[key][:].data for key in ("radius", "mass", "type")}
     for key in ("header_bytes", "header_crc32", "frame_bytes"):
         del attributes[key]
     old = str(attributes.get(name, ""))

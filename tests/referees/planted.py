@@ -120,6 +120,19 @@ def data_box(folder, to, name="gas.data"):
     return to
 
 
+def text(name, good, wrong):
+    """Plant by another word in a text file."""
+
+    def plant(folder, to):
+        path = copied(folder, to, name) / name
+        before = path.read_text()
+        assert good in before, good
+        path.write_text(before.replace(good, wrong))
+        return to
+
+    return plant
+
+
 def number(which):
     """A measured pressure that is 3 % larger."""
 

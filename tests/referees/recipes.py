@@ -18,7 +18,11 @@ REACH = 1.5
 """Distance of the pairs that are counted: three radii, beyond contact."""
 RESOLUTION = 1e-6
 """Allowed deviation, in units of a diameter, the thermal speed, or relative: single precision."""
-SUFFIXES = {"freud": ".gsd", "lammps": ".data"}
+SUFFIXES = {
+    "freud": ".gsd",
+    "lammps": ".data",
+    **{f"{name}_xyz": ".xyz" for name in ("ase", "ovito", "chemfiles")},
+}
 
 
 @cache

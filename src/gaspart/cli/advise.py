@@ -19,13 +19,13 @@ from gaspart.cli.arguments import (
     UsageError,
     config_command,
     print_lines,
+    print_note,
     real,
     set_command,
 )
 from gaspart.cli.engine_options import one_of
 from gaspart.cli.progress import waiting
 from gaspart.cli.stated_run import run_options
-from gaspart.errors import visible
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def _advise(given: argparse.Namespace) -> None:
 
     def announce(text: str) -> None:
         if sys.stderr.isatty():
-            print(f"gaspart: {visible(text)}", file=sys.stderr)
+            print_note(text)
 
     scene, request = Scene.from_file(given.scene), (given.observable, given.accuracy, given.budget)
     with warnings.catch_warnings():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from textwrap import fill
 from typing import Any, NoReturn, TypeVar
@@ -156,6 +157,12 @@ def print_lines(lines: Iterable[object]) -> None:
     """Print several lines; a line break within one of them is escaped."""
     for line in lines:
         print_line(line)
+
+
+def print_note(text: str) -> None:
+    """Print one line on stderr, where it is no part of a result that scripts read."""
+    with suppress(OSError):  # full or closed
+        print(f"gaspart: {visible(text)}", file=sys.stderr, flush=True)
 
 
 def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Parser, add_output, add_trajectory, integer, print_line, set_command
+from gaspart.cli.arguments import (
+    Parser,
+    add_output,
+    add_trajectory,
+    integer,
+    print_line,
+    print_note,
+    set_command,
+)
 
 _EXAMPLES = """examples:
   gaspart export run.nc -o state.gsd              # last frame, for HOOMD
@@ -31,6 +39,10 @@ def _frame(text: str) -> int | str:
 
 
 def _export(given: argparse.Namespace) -> None:
+    from gaspart.cli.conventions import conventions
     from gaspart.trajectory.export import export
+    from gaspart.trajectory.recipe import read_recipe
 
-    print_line(export(given.trajectory, given.output, given.frame, given.force))
+    path = export(given.trajectory, given.output, given.frame, given.force)
+    print_line(path)
+    print_note(conventions(read_recipe(given.trajectory).scene, path.suffix))

@@ -28,6 +28,7 @@ def add_info(parser: Parser) -> None:
 
 def _info(given: argparse.Namespace) -> None:
     from gaspart.accuracy.scales import scales
+    from gaspart.cli.conventions import conventions
     from gaspart.cli.stated_run import run_options
     from gaspart.inspection.certificate import certificate
     from gaspart.trajectory.opening import check_frames, opened
@@ -45,7 +46,7 @@ def _info(given: argparse.Namespace) -> None:
     check_frames(stored_at)
     scene = recipe.scene
     complete = frames == recipe.frames if recipe.until is None else stored_at.suffix != PARTIAL
-    state = "complete" if complete else "unfinished: `gaspart resume` continues it"
+    state = "complete" if complete else _unfinished(stored_at, recipe)
     replica = "" if recipe.replica is None else ", replica {} of {}".format(*recipe.replica)
     of_all = f"{frames} frames" if recipe.until else f"{frames} of {recipe.frames} frames"
     versions = [f"{key.removesuffix('_version')} {stored[key]}" for key in stored if key.endswith("_version")]
@@ -62,6 +63,7 @@ def _info(given: argparse.Namespace) -> None:
     print_lines(f"{begun}{line}" for line in scales(scene).lines)
     print_lines(certificate(stored_at))
     print_lines(_measurable(recipe))
+    print_lines(filter(None, [conventions(scene, ".nc")]))
     for key, value in recipe.engine.predictions(scene).items():
         print_line(f"predicted {key.replace('_', ' ')}: {100.0 * value:+.2g} % (by its cells and steps)")
     print_line(f"checksums: the header and {'all frames' if frames else 'no frames yet'} are undamaged")
@@ -74,6 +76,15 @@ def _info(given: argparse.Namespace) -> None:
         )
     print_line("scene:")
     print_lines(f"    {line}" for line in _lines_of(stored["scene"]))
+
+
+def _unfinished(path: Path, recipe: Recipe) -> str:
+    """State how a run that was cut short goes on."""
+    from gaspart.trajectory.recipe import begun_as
+
+    if begun_as(path, recipe):
+        return "unfinished: `gaspart resume` continues it"
+    return "unfinished, and begun by another version: start it anew, as below"
 
 
 def _lines_of(scene: str) -> list[str]:

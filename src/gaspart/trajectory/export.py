@@ -19,6 +19,7 @@ from gaspart.files import FileKind, begins_with, output_path, writing
 from gaspart.keys.values import count_of
 from gaspart.state.insertion import per_particle
 from gaspart.system import descriptor_path
+from gaspart.trajectory import amber
 from gaspart.trajectory.opening import check_frames, opened, run_path
 from gaspart.trajectory.recipe import read_recipe
 
@@ -168,7 +169,9 @@ def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
         for n in numbers:
             places = np.asarray(file["coordinates"][n], dtype=float)
             inside = np.isfinite(places).all(axis=1)  # of particles that come and go
-            moves = "cell_origin" in file.variables
+            piston = np.asarray(file["piston"][n]) if scene.has_piston else None
+            # not read: files of early versions have the whole container, and discs in cells of their diameter
+            cell = amber.cell(scene, np.array(scene.container.lengths), piston)
             yield Snapshot(
                 positions=places[inside],
                 velocities=np.asarray(file["velocities"][n], dtype=float)[inside],
@@ -176,8 +179,8 @@ def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
                 diameters=diameters[inside],
                 masses=masses[inside],
                 types=types[inside],
-                lengths=np.asarray(file["cell_lengths"][n], dtype=float),
-                origin=np.asarray(file["cell_origin"][n], dtype=float) if moves else np.zeros(3),
+                lengths=cell["cell_lengths"],
+                origin=cell.get("cell_origin", np.zeros(3)),
                 periodic=(*scene.container.periodic, True)[:3],
                 time=float(file["time"][n]),
                 frame=n,

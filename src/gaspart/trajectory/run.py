@@ -94,7 +94,7 @@ def begun(partial: Path) -> Recipe:
     """The recipe of an unfinished trajectory. Raises SceneError if another version began it."""
     wanted = read_recipe(partial)
     if not begun_as(partial, wanted):
-        rule = "was begun by another version of gaspart, Python or a package: it could end otherwise"
+        rule = "was begun by another version of gaspart, Python or a package: start it anew"
         raise SceneError("path", str(partial), rule)
     return wanted
 

@@ -1,0 +1,58 @@
+"""What other programs take the file of a scene for: the line that `info` and `export` print.
+
+Each statement is one of docs/tools.md or docs/conventions.md, which the referees repeat.
+"""
+
+from __future__ import annotations
+
+from gaspart.scene.scene import Scene
+
+_SLAB = "g(r) of discs is theirs times 2 r / L_z, that of a slab"
+
+
+def conventions(scene: Scene, suffix: str) -> str:
+    """Return a line on a file of a scene in other programs; "" if they take it for what it is.
+
+    suffix: .nc, of a trajectory, or that of an exported file.
+    """
+    state = {".nc": _of_trajectory, ".gsd": _of_gsd, ".xyz": _of_xyz, ".data": _of_data}[suffix]
+    found = "; ".join(state(scene))
+    return f"in other programs: {found}" if found else ""
+
+
+def _as_periodic(scene: Scene) -> list[str]:
+    """The axes whose walls are not in a format."""
+    axes = zip("xyz", scene.container.periodic, strict=False)
+    walled = ", ".join(axis for axis, periodic in axes if not periodic)
+    return [f"walls across {walled} are read as periodic"] if walled else []
+
+
+def _of_trajectory(scene: Scene) -> list[str]:
+    found = _as_periodic(scene)
+    if scene.dimension == 2:
+        found.append(_SLAB)
+    if scene.is_open:
+        found.append("rows of NaN are numbers that no particle has")
+    if scene.has_piston:
+        found.append("positions are in the cell after subtraction of cell_origin")
+    return found
+
+
+def _of_gsd(scene: Scene) -> list[str]:
+    return [*_as_periodic(scene), "g(r) of freud is smaller by (N - 1) / N"]
+
+
+def _of_xyz(scene: Scene) -> list[str]:
+    found = ["velocities are the property velo in ASE and chemfiles"]
+    if not all(scene.container.periodic):
+        found.append("chemfiles has no pbc")
+    return found + ([_SLAB] if scene.dimension == 2 else [])
+
+
+def _of_data(scene: Scene) -> list[str]:
+    periodic = (*scene.container.periodic, True)[:3]
+    flat = ", dimension 2" if scene.dimension == 2 else ""
+    found = [f"LAMMPS needs boundary {' '.join('p' if along else 'f' for along in periodic)}{flat}"]
+    if not any(scene.container.periodic):
+        found.append("its temp is larger by N / (N - 1)")
+    return found
