@@ -19,7 +19,7 @@ COLUMNS, WIDTH, GAP = 4, 320, 12  # pixels
 _INTRODUCTION = """# Gallery
 
 Scenes to start from, from the simple to the special. `gaspart new NAME.yaml --template NAME` writes the
-file of one and prints the command that runs it; `gaspart render NAME.nc -o NAME.mp4` makes its film,
+file of one and prints the command that runs it; `gaspart film NAME.nc -o NAME.mp4` makes its film,
 `gaspart films FOLDER` those of all, for slides. A name leads to its file.
 """
 

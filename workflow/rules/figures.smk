@@ -37,26 +37,6 @@ use rule draw as draw_for_journal with:
         "<results>/benchmarks/draw_for_journal/{figure}.tsv"
 
 
-def page_of(figures, claims, films):
-    """The input of a page with some figures, the table of their claims and the films beside them."""
-    stated = [figure for figure in figures if figure not in OWN_CAPTIONS]
-    return dict(
-        pictures=expand("<results>/figures/{figure}.png", figure=figures),
-        vectors=expand("<results>/figures/{figure}.svg", figure=figures),
-        columns=expand("<results>/figures/journal/{figure}.png", figure=figures),
-        datasets=expand("<results>/measurements/{figure}.nc", figure=figures),
-        captions=[of_project(f"workflow/report/{figure}.rst") for figure in stated],
-        claims=claims,
-        films=expand("<results>/animations/{animation}.mp4", animation=films),
-        posters=expand("<results>/animations/{animation}.jpg", animation=films),
-        template=of_project("workflow/report/report.html.j2"),
-        style=of_project("workflow/report/page.css"),
-        behaviour=[of_project(f"workflow/report/{name}") for name in ("page.js", "engines.js", "states.js")],
-        findings=of_project("workflow/report/findings.yaml"),
-        references=of_project("workflow/report/references.yaml"),
-    )
-
-
 rule report:
     input:
         **page_of(FIGURES, "<results>/tables/claims.csv", ANIMATIONS),

@@ -43,7 +43,7 @@ class Narrowed(types.NamedTuple):
     def __init__(self, kinds: list, instance_class: type) -> None:
         super().__init__(kinds, instance_class)
         # numba takes what is before the parenthesis for the name of the class, in loops that threads share
-        self.name = self.name.replace("(", "(narrowed: ", 1)
+        self.name = self.name.replace("(", "(narrowed: ", 1)  # type: ignore[has-type]
 
     def unify(self, context: Any, other: Any) -> Any:
         """Return the type of a variable that holds either this tuple or one that the function has made."""
