@@ -1,4 +1,4 @@
-"""Simulation: a scene, an engine and a seed, and the state and counters that they have reached."""
+"""Simulation of a scene by an engine: the state and the counters at the time reached."""
 
 from __future__ import annotations
 
@@ -50,20 +50,50 @@ PROPERTIES = (
 
 
 class Simulation:
-    """One run of a scene by an engine, which is advanced in time.
+    """A run of a scene by an engine, which is advanced in time.
 
-    `engine`: by default event-driven; "event", "step" or "dsmc" is one with default settings.
-    `seed`: a whole number, or a tuple of them, that fixes the initial state and the random
-    numbers of thermal walls. stress: whether `tally` has the stress tensor and the heat flux, of a periodic
-    scene without gravity; tallies: what it has that not every run counts (`state.optional_tallies`), of which
-    `stress` adds a `StressTally`. initial: a state whose positions, velocities and spins are those at time 0,
-    instead of what the scene states; its particles and the size of its container must be the scene's.
-    Velocities are about the flow of a sheared scene: kept at the shear rate of the state, else peculiar ones
-    with the flow added. Its images keep their displacement and a piston its motion, which is at rest at its
-    side if the state has none; faces that vibrate begin anew.
+    Parameters
+    ----------
+    scene : Scene
+        The scene to simulate.
+    engine : Engine or {"event", "step", "dsmc"}, optional
+        The engine; a name selects its default settings. Default: event-driven.
+    seed : int or tuple of int, default 0
+        Seed of the initial state and of the random numbers of thermal walls.
+    stress : bool, default False
+        Also tally the stress tensor and the heat flux, of a periodic scene without gravity. This adds a
+        `StressTally` to the `tallies`.
+    initial : State, optional
+        State with the positions, velocities and spins at time 0, instead of those that the scene states. Its
+        particles and the size of its container must be the same as in the scene.
+    tallies : iterable of OptionalTally, optional
+        Tallies that not every run counts (`state.optional_tallies`).
 
-    Raises SceneError if the scene cannot be set up, the engine cannot model it, or particles of `initial`
-    overlap or are not inside the container.
+    Raises
+    ------
+    SceneError
+        If the scene cannot be set up, the engine cannot model it, or particles of `initial` overlap or are
+        not inside the container.
+
+    See Also
+    --------
+    run : Simulate a scene and write a trajectory.
+
+    Notes
+    -----
+    In a sheared scene the velocities of `initial` are about the flow: they are unchanged at the shear rate of
+    the state, otherwise they are peculiar velocities to which the flow is added. Sheared images keep their
+    displacement, and a piston its motion; if the state has none, the piston is at rest at its side. Vibrating
+    faces start at the beginning of a period.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(duration=2.0)
+    >>> simulation.time, simulation.state.positions.shape
+    (2.0, (20, 2))
     """
 
     scene: Scene
@@ -93,12 +123,13 @@ class Simulation:
         return f"<Simulation of {count} {kind}, {self.engine.name} engine: {reached}>"
 
     def _repr_html_(self) -> str:
-        """A picture of the present state, with `repr` below it."""
+        """Return a picture of the present state, with `repr` below it."""
         if self.scene.count > DRAWN:
             return html.escape(repr(self))
         return gaspart.render(self, size=THUMBNAIL).figure(repr(self))
 
     def _set_up(self) -> None:
+        """Set up the initial state and the engine."""
         self.engine = self._asked.resolved(self.scene)
         if self._given is None:
             self._initial = initial_state(self.scene, self.seed)
@@ -120,8 +151,34 @@ class Simulation:
         mass: float = 1.0,
         **properties: Any,
     ) -> None:
-        """Add one particle (properties as in `Particle`): `scene` becomes a new, validated scene. Refused
-        once the simulation has advanced."""
+        """Add a particle before the first advance; `scene` becomes a new, validated scene.
+
+        Parameters
+        ----------
+        position : iterable of float, shape (d,), [length]
+            Position of the centre.
+        velocity : iterable of float, shape (d,), [length/time]
+            Velocity.
+        radius : float, [length]
+            Radius.
+        mass : float, default 1.0, [mass]
+            Mass.
+        **properties
+            Other properties as in `Particle`.
+
+        Raises
+        ------
+        SceneError
+            If the simulation has advanced, or the new scene is impossible.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0))))
+        >>> simulation.add(position=(4.0, 4.0), velocity=(1.0, 0.0), radius=0.5)
+        >>> simulation.scene.count
+        1
+        """
         self._change(
             self.scene.with_particles(
                 gaspart.Particle(tuple(position), tuple(velocity), radius, mass, **properties)
@@ -129,23 +186,109 @@ class Simulation:
         )
 
     def add_random(self, count: int, radius: float, **properties: Any) -> None:
-        """Add `count` particles at random places (properties as in `Species`), before the first advance."""
+        """Add particles at random positions, before the first advance.
+
+        Parameters
+        ----------
+        count : int
+            Number of particles.
+        radius : float, [length]
+            Radius.
+        **properties
+            Other properties as in `Species`.
+
+        Raises
+        ------
+        SceneError
+            If the simulation has advanced, or the new scene is impossible.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0))))
+        >>> simulation.add_random(count=20, radius=0.2, temperature=1.0)
+        >>> simulation.scene.count
+        20
+        """
         self._change(self.scene.with_species(gaspart.Species(count, radius, **properties)))
 
     def add_wall(self, start: Iterable[float], end: Iterable[float]) -> None:
-        """Add an interior wall from `start` to `end`. Refused after the first advance."""
+        """Add an interior wall of two dimensions, before the first advance.
+
+        Parameters
+        ----------
+        start : iterable of float, shape (2,), [length]
+            One end.
+        end : iterable of float, shape (2,), [length]
+            The other end.
+
+        Raises
+        ------
+        SceneError
+            If the simulation has advanced, or the new scene is impossible.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0))))
+        >>> simulation.add_wall(start=(3.0, 1.0), end=(3.0, 8.0))
+        >>> len(simulation.scene.walls)
+        1
+        """
         self._change(self.scene.with_walls(Wall(tuple(start), tuple(end))))
 
     def add_plate(self, corner: Iterable[float], edges: Iterable[Iterable[float]]) -> None:
-        """Add an interior wall of three dimensions (see `Plate`). Refused after the first advance."""
+        """Add an interior wall of three dimensions (see `Plate`), before the first advance.
+
+        Parameters
+        ----------
+        corner : iterable of float, shape (3,), [length]
+            One corner.
+        edges : iterable of two vectors, shape (2, 3), [length]
+            Vectors from this corner to the two neighbouring corners.
+
+        Raises
+        ------
+        SceneError
+            If the simulation has advanced, or the new scene is impossible.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0, 9.0))))
+        >>> simulation.add_plate(corner=(3.0, 1.0, 1.0), edges=((0.0, 7.0, 0.0), (0.0, 0.0, 7.0)))
+        >>> len(simulation.scene.walls)
+        1
+        """
         self._change(self.scene.with_walls(Plate(tuple(corner), tuple(map(tuple, edges)))))
 
     def add_box(self, lower: Iterable[float], upper: Iterable[float]) -> None:
-        """Add the walls of a rectangle or of a cuboid, given opposite corners. Refused after the first
-        advance."""
+        """Add the walls of a rectangle or of a cuboid, before the first advance.
+
+        Parameters
+        ----------
+        lower : iterable of float, shape (d,), [length]
+            Lower corner.
+        upper : iterable of float, shape (d,), [length]
+            Opposite corner.
+
+        Raises
+        ------
+        SceneError
+            If the simulation has advanced, or the new scene is impossible.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0))))
+        >>> simulation.add_box(lower=(3.0, 3.0), upper=(6.0, 6.0))
+        >>> len(simulation.scene.walls)
+        4
+        """
         self._change(self.scene.with_walls(*box_of_walls(tuple(lower), tuple(upper))))
 
     def _change(self, scene: Scene) -> None:
+        """Set up the simulation of another scene; without any change if that is impossible."""
         if self._advanced:
             raise SceneError(
                 "scene", "under way", "particles and walls can only be added before the first advance"
@@ -166,14 +309,38 @@ class Simulation:
         until: float | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Advance by `duration`, to the time `until`, or by `max_events` collisions and wall hits, whichever
-        comes first. The time-stepped engine stops at the last complete step not after the target.
+        """Advance by a duration, to a time, or by a number of events, whichever comes first.
 
-        max_work (event-driven engine): stop as well after about so many events, crossings of boxes and of
-        periodic faces, and predictions, so that a call takes a bounded time however rare events are.
+        Parameters
+        ----------
+        duration : float, [time], optional
+            Time by which to advance.
+        max_events : int, optional
+            Number of collisions and wall hits by which to advance.
+        until : float, [time], optional
+            Time to which to advance. It may be infinite together with `max_events`.
+        max_work : int, optional
+            Event-driven engine: also stop after about this number of events, crossings of boxes and of
+            periodic faces, and predictions, so that a call takes a bounded time, however rare events are.
 
-        Raises SceneError, with nothing changed, for no target, one in the past, or one that is not a number;
-        `until` may be infinite together with max_events.
+        Raises
+        ------
+        SceneError
+            If there is no target, or the target is in the past or no number. Nothing is changed then.
+
+        Notes
+        -----
+        The time-stepped engine stops at the last complete step that is not after the target.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(duration=2.0)
+        >>> simulation.advance(until=3.0)
+        >>> simulation.time
+        3.0
         """
         if max_events is not None:
             max_events = count_of("max_events", max_events)
@@ -218,39 +385,115 @@ class Simulation:
 
     @property
     def time(self) -> float:
-        """The simulated time reached."""
+        """Simulated time reached.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Simulation(gp.Scene(gp.Container((9.0, 9.0)))).time
+        0.0
+        """
         return self._dynamics.time
 
     @property
     def state(self) -> State:
-        """All particles now; read-only, of which `copy` can be changed."""
+        """All particles at the present time; read-only, `copy` returns a state that can be changed.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, speed=1.0)])
+        >>> gp.Simulation(scene, seed=1).state.velocities.shape
+        (20, 2)
+        """
         return self._dynamics.state.read_only()
 
     @property
     def initial_state(self) -> State:
-        """All particles at the start; read-only, of which `copy` can be changed."""
+        """All particles at time 0; read-only, `copy` returns a state that can be changed.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, speed=1.0)])
+        >>> gp.Simulation(scene, seed=1).initial_state.speeds.max().round(12)
+        np.float64(1.0)
+        """
         return self._initial.copy().read_only()
 
     @property
     def tally(self) -> Tally:
-        """Counters and sums since the start, or since the last `reset_tally`; a copy."""
+        """Counters and sums since the start, or since the last `reset_tally`; a copy.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(max_events=50)
+        >>> int(simulation.tally.collisions + simulation.tally.wall_hits.sum())
+        50
+        """
         return self._dynamics.tally
 
     def sums_of(self, tally: str) -> np.ndarray:
-        """The sums of the optional tally of this name, as in `tally` but read faster: of "stress" (2 d^2 +
-        d,) those of the stress tensor, of its collisional part and of the heat flux. Raises SceneError unless
-        it was asked for."""
+        """Return the sums of an optional tally, as in `tally` but read faster.
+
+        Parameters
+        ----------
+        tally : str
+            Name of the tally.
+
+        Returns
+        -------
+        ndarray
+            The sums. Of "stress", shape (2 d^2 + d,): the sums of the stress tensor, of its collisional part
+            and of the heat flux.
+
+        Raises
+        ------
+        SceneError
+            If the simulation was created without this tally.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((9.0, 9.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(20, 0.2, temperature=1.0)])
+        >>> gp.Simulation(scene, seed=1, stress=True).sums_of("stress").shape
+        (10,)
+        """
         if not any(asked.name == tally for asked in self.tallies):
             raise SceneError(tally, False, "was not asked for when the simulation was made")
         return self._dynamics.sums_of(tally)
 
     def reset_tally(self) -> None:
-        """Set all counters and sums to zero."""
+        """Set all counters and sums to zero.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(max_events=50)
+        >>> simulation.reset_tally()
+        >>> int(simulation.tally.collisions)
+        0
+        """
         self._dynamics.reset_tally()
 
     @property
     def record_events(self) -> bool:
-        """Whether events are recorded (event-driven engine only)."""
+        """True if events are recorded (event-driven engine only).
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0))))
+        >>> simulation.record_events = True
+        >>> simulation.record_events
+        True
+        """
         return self._log is not None
 
     @record_events.setter
@@ -263,23 +506,80 @@ class Simulation:
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """The events recorded: time (M,), particles (M, 2), positions and velocities (M, 2, d) just after;
-        with rough contacts also spins, (M, 2) in 2D and (M, 2, 3) in 3D.
+        """Recorded events: times, particles, and their positions and velocities just after.
 
-        The second of `particles` is -1 - face for a hit at a face of the container or the edge of its well,
-        -1 - 2d - n for one at interior wall n.
+        Arrays of M events: time (M,), particles (M, 2), positions and velocities (M, 2, d); with rough
+        contacts also spins, (M, 2) in 2D and (M, 2, 3) in 3D. The second of `particles` is -1 - face for a
+        hit at a face of the container or at the edge of its well, and -1 - 2d - n for a hit at interior wall
+        n.
+
+        Raises
+        ------
+        SceneError
+            If `record_events` was not set to True.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.record_events = True
+        >>> simulation.advance(max_events=50)
+        >>> simulation.events["particles"].shape, simulation.events["positions"].shape
+        ((50, 2), (50, 2, 2))
         """
         if self._log is None:
             raise SceneError("events", None, "set record_events to True before advancing")
         return self._log.events
 
     def again(self) -> Simulation:
-        """This simulation at its start."""
+        """Return a new simulation of the same run, at its start.
+
+        Returns
+        -------
+        Simulation
+            A simulation with the same scene, engine, seed, initial state and tallies.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(duration=2.0)
+        >>> simulation.again().time
+        0.0
+        """
         return Simulation(self.scene, self.engine, self.seed, initial=self._given, tallies=self.tallies)
 
     def replay(self, by: str = "time", interval: float | None = None) -> Iterator[State]:
-        """The states from the start to the present time, by running it again: at every `interval`
-        (by="time"), or after every event (by="event", event-driven engine only)."""
+        """Run the simulation again from its start and yield states until the present time.
+
+        Parameters
+        ----------
+        by : {"time", "event"}, default "time"
+            Yield a state at every `interval`, or after every event (event-driven engine only).
+        interval : float, [time], optional
+            Time between states. Requires by="time".
+
+        Yields
+        ------
+        State
+            The states, from the start to the present time.
+
+        Raises
+        ------
+        SceneError
+            If `by` is unknown, or the interval is not positive.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(duration=2.0)
+        >>> [state.time for state in simulation.replay(interval=1.0)]
+        [0.0, 1.0, 2.0]
+        """
         if by == "time":
             step = number("interval", interval, "must be positive", above=0.0)
             count = math.floor(self.time / step * (1 + 1e-12)) + 1
@@ -297,20 +597,42 @@ class Simulation:
             raise SceneError("by", by, 'must be "time" or "event"')
 
     def _states_at(self, times: Iterable[float]) -> Iterator[State]:
-        """The states at rising times, by running it again."""
+        """Yield the states at ascending times; the simulation is run again for them."""
         again = self.again()
         for time in times:
             again.advance(until=time)
             yield again.state
 
     def properties(self, *names: str, at: Iterable[float] | None = None) -> dict[str, np.ndarray]:
-        """Chosen properties of all particles as arrays, by their names in `PROPERTIES`.
+        """Return selected properties of all particles as arrays, now or at given times.
 
-        Now: (N, ...) each. Or at the times `at`, from the start to the present one and in any order, by
-        running it again: (T, N, ...) each, and `time` (T,) with them.
+        Parameters
+        ----------
+        *names : str
+            Names of properties, of `PROPERTIES`: "positions", "velocities", "speeds" ...
+        at : iterable of float, [time], optional
+            Times from the start to the present, in any order. The simulation is run again for them. Default:
+            the present time.
 
-        Raises SceneError for an unknown name, for a time outside this range, and for times of a scene with
-        open faces, whose particles are others at each.
+        Returns
+        -------
+        dict of str to ndarray
+            The arrays by name, shape (N, ...); with `at` shape (T, N, ...) and "time", shape (T,).
+
+        Raises
+        ------
+        SceneError
+            If a name is unknown, a time is outside the run, or times are given in a scene with open faces,
+            whose particles change with time.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(duration=2.0)
+        >>> simulation.properties("positions", "speeds", at=[0.5, 1.5])["positions"].shape
+        (2, 20, 2)
         """
         for name in names:
             if name not in PROPERTIES:
@@ -331,8 +653,28 @@ class Simulation:
         return {"time": np.array(times), **arrays}
 
     def check_invariants(self, state: State | None = None) -> None:
-        """Raise SimulationError if the energy has drifted, exchange with contacts and walls accounted for,
-        or if a position or velocity is not finite. state: the present one, if the caller has it."""
+        """Check that the energy has not drifted and that all positions and velocities are finite.
+
+        The energy that is exchanged with contacts and walls is taken into account.
+
+        Parameters
+        ----------
+        state : State, optional
+            The present state, if the caller has it.
+
+        Raises
+        ------
+        SimulationError
+            If the energy has drifted, or a position or velocity is not finite.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(duration=2.0)
+        >>> simulation.check_invariants()
+        """
         state = self.state if state is None else state
         if not (np.isfinite(state.positions).all() and np.isfinite(state.velocities).all()):
             raise SimulationError(f"at time {self.time:g} a position or velocity is not finite")
@@ -351,25 +693,86 @@ class Simulation:
             )
 
     def show(self, frames: int = 200) -> View:
-        """An interactive view of the run so far, `gaspart.view(self, frames)`, which shows itself in a
-        notebook. Raises SceneError for a simulation that has not advanced."""
+        """Return an interactive view of the run so far, which shows itself in a notebook.
+
+        Parameters
+        ----------
+        frames : int, default 200
+            Number of frames.
+
+        Returns
+        -------
+        View
+            The view, ``gaspart.view(self, frames)``.
+
+        Raises
+        ------
+        SceneError
+            If the simulation has not advanced.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(duration=2.0)
+        >>> type(simulation.show(frames=5)).__name__
+        'View'
+        """
         return gaspart.view(self, frames)  # its public name, because views are made of simulations
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        """Arrays from which `restore` continues to the same bits, and what they belong to: scene, seed,
-        engine, version and the initial state, if it was given."""
+        """Return a checkpoint, from which `restore` continues to the same bits.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Arrays of the present state, and their identity: scene, seed, engine, version and, if it was
+            given, the initial state.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(duration=2.0)
+        >>> later = simulation.again()
+        >>> later.restore(simulation.checkpoint())
+        >>> later.time
+        2.0
+        """
         return {**self._dynamics.checkpoint(), **self._identity()}
 
     def _identity(self) -> dict[str, np.ndarray]:
+        """Return the arrays that identify the run of a checkpoint."""
         return checkpoint_identity(
             self.scene, self.engine, self.seed, None if self._given is None else self._initial
         )
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Continue from a checkpoint of a simulation of the same scene and seed, with the same engine, to the
-        same bits: settings of an engine that change no result, such as the search or threads, may be others.
+        """Continue from a checkpoint, to the same bits.
 
-        Raises SceneError, with nothing changed, for any other checkpoint, and for one with missing arrays.
+        Parameters
+        ----------
+        checkpoint : dict of str to ndarray
+            Checkpoint of a simulation of the same scene and seed, with the same engine. Settings of an engine
+            that change no result, such as the search or threads, may differ.
+
+        Raises
+        ------
+        SceneError
+            If it is any other checkpoint, or arrays are missing. Nothing is changed then.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> simulation = gp.Simulation(scene, seed=1)
+        >>> simulation.advance(duration=2.0)
+        >>> later = gp.Simulation(scene, seed=1)
+        >>> later.restore(simulation.checkpoint())
+        >>> later.tally.collisions == simulation.tally.collisions
+        True
         """
         check_identity(checkpoint, self._identity())
         self._advanced = True

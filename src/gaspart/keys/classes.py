@@ -1,4 +1,4 @@
-"""Keys that are the fields of a dataclass: their checks, and the schema of a mapping of them."""
+"""Keys that are the fields of a dataclass: their checks, and the schema of their mapping."""
 
 from __future__ import annotations
 
@@ -17,14 +17,34 @@ T = TypeVar("T", bound="DataclassInstance")
 
 
 def declared(kind: Kind) -> dict[str, Any]:
-    """The metadata of a field of a dataclass."""
+    """Return the metadata of a field of a dataclass.
+
+    Parameters
+    ----------
+    kind : Kind
+        Kind of the field.
+
+    Returns
+    -------
+    dict
+        Metadata, for `dataclasses.field`.
+    """
     return {"kind": kind}
 
 
 def validate(instance: Any) -> None:
-    """Check every field of a frozen dataclass that is being made, and write it in its final type.
+    """Check every field of a frozen dataclass during its construction, and convert it.
 
-    None is accepted where it is the default. Raises SceneError with key, value and rule.
+    Parameters
+    ----------
+    instance : dataclass
+        Instance, each field of which is set to its value in the final type. None is accepted where it is the
+        default.
+
+    Raises
+    ------
+    SceneError
+        If a value breaks its rule: with key, value and rule.
     """
     for name, check, optional in _checks(instance.__class__):
         value = getattr(instance, name)
@@ -34,11 +54,20 @@ def validate(instance: Any) -> None:
 
 @cache
 def _checks(cls: Any) -> tuple[tuple[str, Check, bool], ...]:
+    """Return name, check and True if None is the default, for each field of a dataclass."""
     return tuple((item.name, item.metadata["kind"].check, item.default is None) for item in fields(cls))
 
 
 def set_fields(instance: Any, **checked: object) -> None:
-    """Write checked values into a frozen dataclass that is being made."""
+    """Write checked values into a frozen dataclass during its construction.
+
+    Parameters
+    ----------
+    instance : dataclass
+        Instance, whose cached properties are deleted: they follow from the values before.
+    **checked : object
+        Values by the name of their field.
+    """
     for name, value in checked.items():
         object.__setattr__(instance, name, value)
     for name in set(vars(instance)) - {item.name for item in fields(instance)}:
@@ -46,12 +75,36 @@ def set_fields(instance: Any, **checked: object) -> None:
 
 
 def stated(instance: Any) -> dict[str, Any]:
-    """Return the fields of a dataclass by name, without cached properties."""
+    """Return the fields of a dataclass by name, without cached properties.
+
+    Parameters
+    ----------
+    instance : dataclass
+        Instance.
+
+    Returns
+    -------
+    dict
+        Values by the name of their field.
+    """
     return {item.name: getattr(instance, item.name) for item in fields(instance)}
 
 
 def schema_of(cls: Any, **more: Kind) -> Kind:
-    """The JSON schema of a mapping of the keys of a dataclass, with `more` keys before them."""
+    """Return the JSON schema of a mapping of the keys of a dataclass.
+
+    Parameters
+    ----------
+    cls : type
+        Dataclass, whose fields were `declared`. The summary of its docstring is the meaning of the mapping.
+    **more : Kind
+        Further keys, before the fields.
+
+    Returns
+    -------
+    Kind
+        Schema with the title of the class.
+    """
     keys = dict(more)
     for item in fields(cls):
         kind = item.metadata["kind"]
@@ -65,7 +118,27 @@ def schema_of(cls: Any, **more: Kind) -> Kind:
 
 
 def from_mapping(cls: type[T], mapping: object, where: str) -> T:
-    """Make the dataclass `cls` from a mapping whose keys must all be fields of it. Raises SceneError."""
+    """Make a dataclass from a mapping whose keys are its fields.
+
+    Parameters
+    ----------
+    cls : type
+        Dataclass.
+    mapping : object
+        Value of a file.
+    where : str
+        Key of the mapping in the file, for messages.
+
+    Returns
+    -------
+    cls
+        Instance.
+
+    Raises
+    ------
+    SceneError
+        If `mapping` is no mapping, has an unknown key, lacks a required key, or has an invalid value.
+    """
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping of keys to values")
     refuse_unknown(cls, mapping, where)
@@ -80,7 +153,22 @@ def from_mapping(cls: type[T], mapping: object, where: str) -> T:
 
 
 def refuse_unknown(cls: Any, mapping: dict, where: str) -> None:
-    """Raise SceneError for a key that is no field of a dataclass."""
+    """Raise SceneError for a key that is no field of a dataclass.
+
+    Parameters
+    ----------
+    cls : type
+        Dataclass.
+    mapping : dict
+        Mapping to check.
+    where : str
+        Key of the mapping in the file, for messages.
+
+    Raises
+    ------
+    SceneError
+        If a key is unknown; the message names the most similar field.
+    """
     known = [item.name for item in fields(cls)]
     for key, value in mapping.items():
         if key not in known:
@@ -88,7 +176,20 @@ def refuse_unknown(cls: Any, mapping: dict, where: str) -> None:
 
 
 def instance_of(cls: type, meaning: str) -> Kind:
-    """An instance of a dataclass; in a file a mapping of its keys."""
+    """Return the kind of an instance of a dataclass.
+
+    Parameters
+    ----------
+    cls : type
+        Dataclass.
+    meaning : str
+        Meaning of the value.
+
+    Returns
+    -------
+    Kind
+        Kind with the schema of the class: in a file the value is a mapping of its keys.
+    """
 
     def check(key: str, value: Any) -> Any:
         if not isinstance(value, cls):
@@ -99,7 +200,22 @@ def instance_of(cls: type, meaning: str) -> Kind:
 
 
 def instances_of(meaning: str, *classes: type, rule: str) -> Kind:
-    """A list of instances of these dataclasses; the rule is that for one item."""
+    """Return the kind of a list of instances of some dataclasses.
+
+    Parameters
+    ----------
+    meaning : str
+        Meaning of the list.
+    *classes : type
+        Dataclasses of the items.
+    rule : str
+        Rule for an item, for messages.
+
+    Returns
+    -------
+    Kind
+        Kind whose check returns a tuple.
+    """
     items = [schema_of(cls) for cls in classes]
     schema = {"type": "array", "items": items[0] if len(items) == 1 else {"anyOf": items}}
 

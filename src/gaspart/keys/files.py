@@ -11,8 +11,22 @@ from gaspart.errors import SceneError, unknown_word
 
 
 def require(kind: Mapping[str, Any], value: object, where: str) -> None:
-    """Raise SceneError with the most relevant rule of a schema that a value of a file, at the key `where`,
-    breaks."""
+    """Raise SceneError if a value of a file breaks a schema.
+
+    Parameters
+    ----------
+    kind : mapping
+        JSON schema.
+    value : object
+        Value of the file.
+    where : str
+        Key of the value in the file; "" for the complete file.
+
+    Raises
+    ------
+    SceneError
+        With the most relevant rule that the value breaks.
+    """
     from jsonschema.exceptions import best_match
 
     error = best_match(_validator()(kind).iter_errors(value))
@@ -37,7 +51,10 @@ def require(kind: Mapping[str, Any], value: object, where: str) -> None:
 
 @cache
 def _validator() -> Any:
-    """The validator of JSON schemas, with a test for uniqueness in a time linear in the length of a list."""
+    """Return the validator of JSON schemas.
+
+    Its test of uniqueness takes a time linear in the length of a list.
+    """
     from jsonschema import Draft202012Validator, ValidationError
     from jsonschema.validators import extend
 
@@ -50,7 +67,7 @@ def _validator() -> Any:
 
 
 def _rule(validator: str, wanted: Any) -> str:
-    """A JSON schema's keyword in words."""
+    """Return the rule of a JSON schema's keyword in words."""
     if validator == "type":
         types = [wanted] if isinstance(wanted, str) else wanted
         return f"must be of type {' or '.join(types)}"

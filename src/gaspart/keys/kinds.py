@@ -10,17 +10,23 @@ from gaspart.errors import SceneError
 from gaspart.keys import values
 
 Check = Callable[[str, Any], Any]
-"""check(key, value) returns the value in its final type, or raises SceneError."""
+"""Function check(key, value) that returns the value in its final type, or raises SceneError."""
 
 
 def _as_given(_: str, value: Any) -> Any:
+    """Return the value as it is."""
     return value
 
 
 class Kind(dict[str, Any]):
-    """A JSON schema (draft 2020-12): the type, the rules, `description` and, for an optional key, `default`.
+    """JSON schema (draft 2020-12): the type, the rules, `description` and, for an optional key, `default`.
 
-    check: for a field of a class; by default the value is taken as it is, and the class itself checks it.
+    Parameters
+    ----------
+    schema : mapping
+        Entries of the schema.
+    check : Check, optional
+        Check for a field of a class. Default: the value is taken as it is, and the class itself checks it.
     """
 
     def __init__(self, schema: Mapping[str, Any], check: Check = _as_given) -> None:
@@ -28,7 +34,18 @@ class Kind(dict[str, Any]):
         self.check = check
 
     def stating(self, **more: Any) -> Kind:
-        """This kind with more in its schema."""
+        """Return this kind with further entries in its schema.
+
+        Parameters
+        ----------
+        **more : object
+            Entries, which replace entries of the same name.
+
+        Returns
+        -------
+        Kind
+            New kind with the same check.
+        """
         return Kind({**self, **more}, self.check)
 
 
@@ -42,28 +59,95 @@ _PER_AXIS = {"minItems": 2, "maxItems": 3}
 
 
 def described(kind: Mapping[str, Any], meaning: str, check: Check | None = None, **more: Any) -> Kind:
-    """A kind, or a schema, with its meaning, and what else the schema is to state, such as `default`."""
+    """Return a kind with its meaning and further entries of its schema.
+
+    Parameters
+    ----------
+    kind : Kind or mapping
+        Kind or JSON schema.
+    meaning : str
+        Description; "" for none.
+    check : Check, optional
+        Check for a field of a class. Default: the check of `kind`.
+    **more : object
+        Further entries of the schema, such as `default`.
+
+    Returns
+    -------
+    Kind
+        New kind.
+    """
     schema = {**kind, **more} | ({"description": meaning} if meaning else {})
     return Kind(schema, check or (kind.check if isinstance(kind, Kind) else _as_given))
 
 
 def positive(meaning: str, **more: Any) -> Kind:
-    """A number above 0."""
+    """Return the kind of a number above 0.
+
+    Parameters
+    ----------
+    meaning : str
+        Description.
+    **more : object
+        Further entries of the schema.
+
+    Returns
+    -------
+    Kind
+        Kind, whose check returns a float.
+    """
     return described(POSITIVE, meaning, **more)
 
 
 def not_negative(meaning: str, **more: Any) -> Kind:
-    """A number of at least 0."""
+    """Return the kind of a number of at least 0.
+
+    Parameters
+    ----------
+    meaning : str
+        Description.
+    **more : object
+        Further entries of the schema.
+
+    Returns
+    -------
+    Kind
+        Kind, whose check returns a float.
+    """
     return described(NOT_NEGATIVE, meaning, **more)
 
 
 def signed(meaning: str) -> Kind:
-    """A number of either sign, 0 or of an acceptable size."""
+    """Return the kind of a number of either sign, 0 or of an acceptable size.
+
+    Parameters
+    ----------
+    meaning : str
+        Description.
+
+    Returns
+    -------
+    Kind
+        Kind, whose check returns a float.
+    """
     return described(NUMBER, meaning)
 
 
 def between(meaning: str, least: float, most: float) -> Kind:
-    """A number from `least` to `most`."""
+    """Return the kind of a number in a range.
+
+    Parameters
+    ----------
+    meaning : str
+        Description.
+    least, most : float
+        Ends of the range, which belong to it.
+
+    Returns
+    -------
+    Kind
+        Kind, whose check returns a float.
+    """
     rule = f"must be from {least:g} to {most:g}"
 
     def check(key: str, value: Any) -> float:
@@ -73,7 +157,18 @@ def between(meaning: str, least: float, most: float) -> Kind:
 
 
 def fraction(meaning: str) -> Kind:
-    """A number above 0 and at most 1."""
+    """Return the kind of a number above 0 and at most 1.
+
+    Parameters
+    ----------
+    meaning : str
+        Description.
+
+    Returns
+    -------
+    Kind
+        Kind, whose check returns a float.
+    """
 
     def check(key: str, value: Any) -> float:
         return values.number(key, value, "must be above 0 and at most 1", above=0.0, most=1.0)
@@ -82,7 +177,22 @@ def fraction(meaning: str) -> Kind:
 
 
 def count(meaning: str, minimum: int = 1, **more: Any) -> Kind:
-    """A whole number; `maximum` is one of the further rules."""
+    """Return the kind of an integer.
+
+    Parameters
+    ----------
+    meaning : str
+        Description.
+    minimum : int, default 1
+        Smallest value.
+    **more : object
+        Further entries of the schema, such as `maximum`.
+
+    Returns
+    -------
+    Kind
+        Kind, whose check returns an int.
+    """
 
     def check(key: str, value: Any) -> int:
         return values.count_of(key, value, minimum, more.get("maximum", values.LARGEST_INTEGER))
@@ -91,12 +201,40 @@ def count(meaning: str, minimum: int = 1, **more: Any) -> Kind:
 
 
 def flag(meaning: str, **more: Any) -> Kind:
-    """True or false."""
+    """Return the kind of a boolean.
+
+    Parameters
+    ----------
+    meaning : str
+        Description.
+    **more : object
+        Further entries of the schema.
+
+    Returns
+    -------
+    Kind
+        Kind, whose check returns a bool.
+    """
     return described(FLAG, meaning, **more)
 
 
 def choice(meaning: str, *known: Any, **more: Any) -> Kind:
-    """One of some values."""
+    """Return the kind of a value from a list.
+
+    Parameters
+    ----------
+    meaning : str
+        Description.
+    *known : object
+        Accepted values.
+    **more : object
+        Further entries of the schema.
+
+    Returns
+    -------
+    Kind
+        Kind, whose check returns the value.
+    """
 
     def check(key: str, value: Any) -> Any:
         return values.one_of(key, value, known)
@@ -105,8 +243,22 @@ def choice(meaning: str, *known: Any, **more: Any) -> Kind:
 
 
 def vector(meaning: str, dimension: int | None = None, sized: bool = True) -> Kind:
-    """A list of `dimension` finite numbers, 2 or 3 where that is not known; sized: the largest is 0 or of an
-    acceptable size."""
+    """Return the kind of a list of finite numbers.
+
+    Parameters
+    ----------
+    meaning : str
+        Description.
+    dimension : int, optional
+        Number of components. Default: 2 or 3, where it is not known.
+    sized : bool, default True
+        Require that the largest component is 0 or of an acceptable size.
+
+    Returns
+    -------
+    Kind
+        Kind, whose check returns a tuple of float.
+    """
 
     def check(key: str, value: Any) -> tuple[float, ...]:
         found = values.finite_vector(key, value, dimension)
@@ -118,7 +270,20 @@ def vector(meaning: str, dimension: int | None = None, sized: bool = True) -> Ki
 
 
 def two_vectors(meaning: str, dimension: int | None = None) -> Kind:
-    """Two lists of `dimension` finite numbers, of 2 or 3 where that is not known."""
+    """Return the kind of two lists of finite numbers.
+
+    Parameters
+    ----------
+    meaning : str
+        Description.
+    dimension : int, optional
+        Number of components of each list. Default: 2 or 3, where it is not known.
+
+    Returns
+    -------
+    Kind
+        Kind, whose check returns a tuple of tuples of float.
+    """
 
     def check(key: str, value: Any) -> tuple[tuple[float, ...], ...]:
         if not isinstance(value, (tuple, list)) or len(value) != 2:
@@ -129,12 +294,24 @@ def two_vectors(meaning: str, dimension: int | None = None) -> Kind:
 
 
 def _numbers(dimension: int | None) -> Kind:
+    """Return the kind of a list of numbers with the length of a vector."""
     least, most = (2, 3) if dimension is None else (dimension, dimension)
     return listed({"type": "number"}, least=least, most=most)
 
 
 def per_side(meaning: str) -> Kind:
-    """Boxes of a partition: a number for all sides, or one for each."""
+    """Return the kind of the numbers of boxes of a partition.
+
+    Parameters
+    ----------
+    meaning : str
+        Description.
+
+    Returns
+    -------
+    Kind
+        Kind of a number for all sides, or a number for each. Its check is `values.partition`.
+    """
     types = {"type": ["integer", "array"], "items": COUNT}
     return described({**COUNT, **types, **_PER_AXIS}, meaning, values.partition)
 
@@ -142,25 +319,83 @@ def per_side(meaning: str) -> Kind:
 def listed(
     item: Mapping[str, Any], meaning: str = "", least: int = 1, most: int | None = None, **more: Any
 ) -> Kind:
-    """A list of `least` to `most` values of one kind."""
+    """Return the kind of a list of values of the same kind.
+
+    Parameters
+    ----------
+    item : mapping
+        Kind or JSON schema of an item.
+    meaning : str, default ""
+        Description.
+    least : int, default 1
+        Smallest number of items.
+    most : int, optional
+        Largest number of items. Default: no limit.
+    **more : object
+        Further entries of the schema.
+
+    Returns
+    -------
+    Kind
+        New kind, without a check.
+    """
     ends = {"minItems": least} | ({} if most is None else {"maxItems": most})
     return described({"type": "array", **ends, "items": item}, meaning, **more)
 
 
 def names(meaning: str, **more: Any) -> Kind:
-    """A list of names, none of them twice."""
+    """Return the kind of a list of distinct names.
+
+    Parameters
+    ----------
+    meaning : str
+        Description.
+    **more : object
+        Further entries of the schema.
+
+    Returns
+    -------
+    Kind
+        New kind, without a check.
+    """
     return listed(TEXT, meaning, uniqueItems=True, **more)
 
 
 def record(keys: Mapping[str, Mapping[str, Any]], meaning: str = "", **more: Any) -> Kind:
-    """A mapping of these keys and no others; all are required but those with a default."""
+    """Return the kind of a mapping of these keys and no others.
+
+    Parameters
+    ----------
+    keys : mapping of str to mapping
+        Kind of each key. All keys are required except keys with a default.
+    meaning : str, default ""
+        Description.
+    **more : object
+        Further entries of the schema.
+
+    Returns
+    -------
+    Kind
+        New kind, without a check.
+    """
     required = [name for name, kind in keys.items() if "default" not in kind]
     closed = {"type": "object", "additionalProperties": False, "properties": keys}
     return described(closed | ({"required": required} if required else {}), meaning, **more)
 
 
 def nullable(kind: Kind) -> Kind:
-    """A kind or null, which counts as absent."""
+    """Return a kind that accepts null, which counts as absent.
+
+    Parameters
+    ----------
+    kind : Kind
+        Kind of the value.
+
+    Returns
+    -------
+    Kind
+        The same kind if it accepts null, otherwise a new kind.
+    """
     key, none = ("enum", None) if "enum" in kind else ("type", "null")
     given = [kind[key]] if isinstance(kind[key], str) else kind[key]
     return kind if none in given else kind.stating(**{key: [*given, none]})

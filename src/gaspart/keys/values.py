@@ -1,6 +1,7 @@
-"""Checks of single values given by a user: each returns the value in its type, or raises SceneError.
+"""Checks of single values given by a user.
 
-Every function takes any object at all: None, text, nan, an integer that no float can hold, an array.
+Each check returns the value in its type, or raises SceneError. Every function takes any object at all: None,
+text, nan, an integer that no float can hold, an array.
 """
 
 from __future__ import annotations
@@ -21,11 +22,24 @@ MOST_BOXES = 2**26
 """Largest number of boxes of a partition: more exceed the memory of a common machine."""
 LARGEST_INTEGER = 2**63 - 1
 MOST_LISTED = 50_000
-"""Species, single particles or walls of a scene, each of which is written in the scene's text."""
+"""Largest number of species, single particles or walls of a scene, each of which is written in the scene's
+text.
+"""
 
 
 def finite(value: object) -> float | None:
-    """`value` as a finite float; None for anything else. Booleans and text are not numbers."""
+    """Return `value` as a finite float, or None for any other object.
+
+    Parameters
+    ----------
+    value : object
+        Value. Booleans and text are not numbers.
+
+    Returns
+    -------
+    float or None
+        Number.
+    """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         return None
     try:
@@ -44,7 +58,31 @@ def number(
     least: float = -math.inf,
     most: float = math.inf,
 ) -> float:
-    """`value` as a finite float above `above` and from `least` to `most`, or a SceneError with `rule`."""
+    """Return `value` as a finite float, if it is in the range.
+
+    Parameters
+    ----------
+    key : str
+        Key of the value, for the message.
+    value : object
+        Value.
+    rule : str
+        Rule in words, for the message.
+    above : float, default -inf
+        Number that the value must exceed.
+    least, most : float, default -inf and inf
+        Ends of the range, which belong to it.
+
+    Returns
+    -------
+    float
+        Number.
+
+    Raises
+    ------
+    SceneError
+        If the value is not a finite number in the range.
+    """
     found = finite(value)
     if found is None or not (found > above and least <= found <= most):
         raise SceneError(key, value, rule)
@@ -52,8 +90,20 @@ def number(
 
 
 def size(key: str, value: float | tuple[float, ...]) -> None:
-    """Raise SceneError for a number, or a vector by its largest component, that is not 0 and so small or
-    large that contacts would be lost."""
+    """Raise SceneError for a number that is so small or large that contacts would be lost.
+
+    Parameters
+    ----------
+    key : str
+        Key of the value, for the message.
+    value : float or tuple of float
+        Number, or a vector, whose largest component counts. 0 is accepted.
+
+    Raises
+    ------
+    SceneError
+        If the size is not 0 and not from `SMALLEST` to `LARGEST`.
+    """
     largest = max(map(abs, value), default=0.0) if isinstance(value, tuple) else abs(value)
     if largest and not SMALLEST <= largest <= LARGEST:
         rule = f"must be 0 or of a size from {SMALLEST:g} to {LARGEST:g}: choose other units"
@@ -67,7 +117,25 @@ def _refuse_text(key: str, value: Any) -> None:
 
 
 def positive_number(key: str, value: Any) -> float:
-    """`value` as a float above 0 of an acceptable `size`."""
+    """Return `value` as a float above 0 of an acceptable `size`.
+
+    Parameters
+    ----------
+    key : str
+        Key of the value, for the message.
+    value : object
+        Value.
+
+    Returns
+    -------
+    float
+        Number.
+
+    Raises
+    ------
+    SceneError
+        If the value breaks this rule.
+    """
     _refuse_text(key, value)
     found = number(key, value, "must be positive", above=0.0)
     if not SMALLEST <= found <= LARGEST:
@@ -76,7 +144,25 @@ def positive_number(key: str, value: Any) -> float:
 
 
 def not_negative_number(key: str, value: Any) -> float:
-    """`value` as a float of at least 0 of an acceptable `size`."""
+    """Return `value` as a float of at least 0 of an acceptable `size`.
+
+    Parameters
+    ----------
+    key : str
+        Key of the value, for the message.
+    value : object
+        Value.
+
+    Returns
+    -------
+    float
+        Number.
+
+    Raises
+    ------
+    SceneError
+        If the value breaks this rule.
+    """
     _refuse_text(key, value)
     found = number(key, value, "must not be negative", least=0.0)
     size(key, found)
@@ -84,14 +170,52 @@ def not_negative_number(key: str, value: Any) -> float:
 
 
 def sized_number(key: str, value: Any) -> float:
-    """`value` as a float of either sign, 0 or of an acceptable `size`."""
+    """Return `value` as a float of either sign, 0 or of an acceptable `size`.
+
+    Parameters
+    ----------
+    key : str
+        Key of the value, for the message.
+    value : object
+        Value.
+
+    Returns
+    -------
+    float
+        Number.
+
+    Raises
+    ------
+    SceneError
+        If the value breaks this rule.
+    """
     found = number(key, value, "must be a finite number")
     size(key, found)
     return found
 
 
 def count_of(key: str, value: Any, least: int = 0, most: int = LARGEST_INTEGER) -> int:
-    """`value` as an integer from `least` to `most`."""
+    """Return `value` as an integer, if it is in the range.
+
+    Parameters
+    ----------
+    key : str
+        Key of the value, for the message.
+    value : object
+        Value.
+    least, most : int, default 0 and `LARGEST_INTEGER`
+        Ends of the range, which belong to it.
+
+    Returns
+    -------
+    int
+        Number.
+
+    Raises
+    ------
+    SceneError
+        If the value is not an integer in the range.
+    """
     rule = f"must be a whole number of at least {least}"
     if number(key, value, rule, least=least) != int(value):
         raise SceneError(key, value, rule)
@@ -101,7 +225,27 @@ def count_of(key: str, value: Any, least: int = 0, most: int = LARGEST_INTEGER) 
 
 
 def finite_vector(key: str, value: Any, dimension: int | None = None) -> tuple[float, ...]:
-    """`value` as a tuple of finite floats, of length `dimension`, or 2 or 3 where that is not known."""
+    """Return `value` as a tuple of finite floats.
+
+    Parameters
+    ----------
+    key : str
+        Key of the value, for the message.
+    value : object
+        Value.
+    dimension : int, optional
+        Number of components. Default: 2 or 3, where it is not known.
+
+    Returns
+    -------
+    tuple of float
+        Vector.
+
+    Raises
+    ------
+    SceneError
+        If the value is not a list of this length of finite numbers.
+    """
     rule = f"must be a list of {dimension or '2 or 3'} finite numbers"
     found = tuple(number(key, item, rule) for item in _items(key, value, rule, 4))
     if len(found) not in ((2, 3) if dimension is None else (dimension,)):
@@ -110,7 +254,7 @@ def finite_vector(key: str, value: Any, dimension: int | None = None) -> tuple[f
 
 
 def _items(key: str, value: Any, rule: str, most: int) -> Iterable[Any]:
-    """The first `most` items of a list, a tuple, an array or an iterator."""
+    """Return the first `most` items of a list, a tuple, an array or an iterator."""
     if isinstance(value, str | bytes | Mapping | Set):
         raise SceneError(key, value, rule)
     try:
@@ -120,7 +264,29 @@ def _items(key: str, value: Any, rule: str, most: int) -> Iterable[Any]:
 
 
 def instances(key: str, value: Any, kinds: type | tuple[type, ...], rule: str) -> tuple:
-    """`value`, a list or another iterable, or a single one, as a tuple of instances of `kinds`."""
+    """Return `value` as a tuple of instances of some classes.
+
+    Parameters
+    ----------
+    key : str
+        Key of the value, for the message.
+    value : object
+        A list or another iterable, or a single instance.
+    kinds : type or tuple of type
+        Classes of the instances.
+    rule : str
+        Rule for an item, for the message.
+
+    Returns
+    -------
+    tuple
+        Instances.
+
+    Raises
+    ------
+    SceneError
+        If an item has another class, or if there are more than `MOST_LISTED` items.
+    """
     if isinstance(value, kinds):
         return (value,)
     found: list[Any] = []
@@ -134,21 +300,77 @@ def instances(key: str, value: Any, kinds: type | tuple[type, ...], rule: str) -
 
 
 def true_or_false(key: str, value: Any) -> bool:
-    """`value`, which must be true or false."""
+    """Return `value`, if it is true or false.
+
+    Parameters
+    ----------
+    key : str
+        Key of the value, for the message.
+    value : object
+        Value.
+
+    Returns
+    -------
+    bool
+        The same value.
+
+    Raises
+    ------
+    SceneError
+        If the value is not a boolean.
+    """
     if not isinstance(value, bool):
         raise SceneError(key, value, "must be true or false")
     return value
 
 
 def one_of(key: str, value: Any, known: Iterable[Any]) -> Any:
-    """`value`, which must be one of the words, or numbers, `known`."""
+    """Return `value`, if it is one of the accepted words or numbers.
+
+    Parameters
+    ----------
+    key : str
+        Key of the value, for the message.
+    value : object
+        Value.
+    known : iterable
+        Accepted values, whose type counts, too.
+
+    Returns
+    -------
+    object
+        The same value.
+
+    Raises
+    ------
+    SceneError
+        If the value is not accepted.
+    """
     if not any(isinstance(value, type(one)) and value == one for one in known):
         raise SceneError(key, value, f"must be one of {tuple(known)}")
     return value
 
 
 def partition(key: str, value: Any) -> int | tuple[int, ...]:
-    """Boxes per side: a number, or a tuple of one per axis, of at most `MOST_BOXES` boxes."""
+    """Return the numbers of boxes per side: an integer, or a tuple.
+
+    Parameters
+    ----------
+    key : str
+        Key of the value, for the message.
+    value : object
+        Value.
+
+    Returns
+    -------
+    int or tuple of int
+        Boxes per side, or a number for each axis, at most `MOST_BOXES` boxes in all.
+
+    Raises
+    ------
+    SceneError
+        If the value is no such number or list.
+    """
     given = value if isinstance(value, (tuple, list)) else (value,)
     sides = tuple(count_of(key, n, least=1) for n in given)
     if math.prod(sides) > MOST_BOXES or len(sides) > 3:

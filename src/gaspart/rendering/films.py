@@ -1,4 +1,4 @@
-"""Films: the frames of a trajectory, one picture each."""
+"""Films: the frames of a trajectory as pictures."""
 
 from __future__ import annotations
 
@@ -55,17 +55,54 @@ def film(
     overwrite: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> Film:
-    """Write the frames of a trajectory (a path, or an open one) as a film, .mp4 or .gif; returns its path,
-    which shows the film in a notebook.
+    """Write the frames of a trajectory as a film, .mp4 or .gif.
 
-    An .mp4 needs the extra `film`, and its size is rounded down to even numbers. size, colour, clock and
-    camera as in `render`; all frames have one scale of speeds. start, stop: times between which frames are
-    shown, by default all; every: one of so many of them. trail: the index of a disc whose path is drawn
-    (interrupted where it crosses a periodic face). A film at `path` is replaced only with `overwrite`, any
-    other file never. progress: is called with the number of pictures so far and of all.
+    Parameters
+    ----------
+    trajectory : str, Path or Dataset
+        The trajectory, by its path or open.
+    path : str or Path
+        The film to write, with the suffix .mp4 (which needs the extra `film`) or .gif.
+    size : tuple of int, default (1000, 750)
+        Width and height in pixels; for .mp4 they are rounded down to even numbers.
+    colour : {"speed", "species"} or ndarray, shape (N, 3), default "speed"
+        Colours of the particles as in `render`. All frames have the same scale of speeds.
+    frames_per_second : float, default 25.0
+        Frames per second.
+    start : float, [time], optional
+        Time of the first frame to show. Default: all frames.
+    stop : float, [time], optional
+        Time of the last frame to show. Default: all frames.
+    every : int, default 1
+        Show one of this number of frames.
+    trail : int, optional
+        Index of a disc whose path is drawn, interrupted where it crosses a periodic face.
+    clock : bool, default True
+        Write parameters and times as in `render`.
+    camera : tuple of float, optional
+        Azimuth and elevation in degrees as in `render`.
+    overwrite : bool, default False
+        Replace a film at `path`. Files of other kinds are never replaced.
+    progress : callable, optional
+        Called as ``progress(done, pictures)`` after each picture.
 
-    Raises SceneError for another suffix, a file that cannot be read or written, and for arguments that
-    `render` refuses.
+    Returns
+    -------
+    Film
+        `path`, which shows the film in a notebook.
+
+    Raises
+    ------
+    SceneError
+        If the suffix is another one, a file cannot be read or written, or `render` rejects an argument.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> path = gp.run(scene, seed=1, duration=2.0, sample_interval=1.0, path="gas.nc")
+    >>> gp.film(path, "gas.gif", size=(80, 60), clock=False).name
+    'gas.gif'
     """
     path = output_path(path)
     if path.suffix not in FILM_FORMATS:
@@ -96,7 +133,15 @@ def film(
 
 
 def poster(source: str | Path, path: str | Path) -> None:
-    """Write the picture in the middle of an MP4 film as a JPEG file, for a page to show until it plays."""
+    """Write the picture in the middle of an MP4 film as a JPEG file, for a page to show until it plays.
+
+    Parameters
+    ----------
+    source : str or Path
+        The film.
+    path : str or Path
+        The JPEG file.
+    """
     from imageio_ffmpeg import count_frames_and_secs, read_frames
     from PIL import Image
 

@@ -1,4 +1,4 @@
-"""Pictures of trajectories, simulations and states."""
+"""Pictures of trajectories, simulations, states and scenes."""
 
 from __future__ import annotations
 
@@ -47,19 +47,50 @@ def render(
     clock: bool = False,
     camera: tuple[float, float] | None = None,
 ) -> Picture:
-    """A picture of a frame of a trajectory (a path or an open one; the last frame), of a `Simulation`, of a
-    `State`, or of a `Scene` at time 0 (seed 0): uint8, (H, W, 3), an array that notebooks show as a picture.
+    """Draw a picture of a frame of a trajectory, of a simulation, a state or a scene.
 
-    Spheres are drawn in perspective, with light and shadow, over the container's floor (z = 0); discs from
-    above, cut at periodic faces, with the parts that are seen at the other side. Interior walls of a state
-    are not drawn. size: (W, H) pixels. colour: "speed", from dark at rest to bright at the speed `fastest`
-    (twice the root-mean-square one) and above, fixed particles grey; "species"; or an array (N, 3) of red,
-    green and blue from 0 to 1. clock: whether parameters and the meaning of the colours are written above,
-    the time and a bar of a round length (of spheres: in the middle of the container) below. camera: azimuth
-    and elevation in degrees from which spheres are seen, (298, 24). The same particles give the same pixels.
+    Parameters
+    ----------
+    source : str, Path, Dataset, Simulation, State or Scene
+        A trajectory, by its path or open, a simulation or a state now, or a scene at time 0 (seed 0).
+    frame : int, default -1
+        Number of the frame of a trajectory, counted from 0, or from the end if negative.
+    size : tuple of int, default (1000, 750)
+        Width W and height H in pixels.
+    colour : {"speed", "species"} or ndarray, shape (N, 3), default "speed"
+        Colours of the particles. "speed": from dark at rest to bright at the speed `fastest` and above; fixed
+        particles are grey. An array has red, green and blue from 0 to 1.
+    fastest : float, [length/time], optional
+        Speed of the brightest colour. Default: twice the root-mean-square speed.
+    clock : bool, default False
+        Write parameters and the meaning of the colours above the picture, and the time and a bar of a round
+        length (for spheres: in the middle of the container) below.
+    camera : tuple of float, optional
+        Azimuth and elevation in degrees from which spheres are seen. Default: (298, 24).
 
-    Raises SceneError for a missing frame, an impossible size or camera, an unknown colouring, or a scene
-    whose particles do not fit.
+    Returns
+    -------
+    Picture
+        Array of uint8, shape (H, W, 3), which notebooks show as a picture.
+
+    Raises
+    ------
+    SceneError
+        If the frame does not exist, the size or the camera is impossible, the colouring is unknown, or the
+        particles of a scene do not fit.
+
+    Notes
+    -----
+    Spheres are drawn in perspective, with light and shadow, over the floor of the container (z = 0). Discs
+    are drawn from above, cut at periodic faces, with the parts that are seen at the other side. Interior
+    walls of a state are not drawn. The same particles give the same pixels.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> gp.render(scene, size=(80, 60)).shape
+    (60, 80, 3)
     """
     size = checked_size(size)
     with opened(source) as open_source:
@@ -77,7 +108,18 @@ def render(
 
 @contextmanager
 def opened(source: Source) -> Iterator[xr.Dataset | Simulation | State | Scene]:
-    """A source whose trajectory is open; one that was given as a path is closed at the end."""
+    """Yield an open source; a trajectory that was given as a path is closed at the end.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset, Simulation, State or Scene
+        The source of a picture.
+
+    Yields
+    ------
+    Dataset, Simulation, State or Scene
+        The open source.
+    """
     if isinstance(source, str | Path):
         with open_trajectory(source) as trajectory:
             yield trajectory
@@ -86,10 +128,25 @@ def opened(source: Source) -> Iterator[xr.Dataset | Simulation | State | Scene]:
 
 
 def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -1) -> DrawnParticles:
-    """The particles of a simulation or a `State` now, of a scene at time 0, or of a frame (counted from the
-    end if negative) of an open trajectory.
+    """Return the particles of a source to draw.
 
-    Raises SceneError for a missing frame. A state has no interior walls and no periodic axes.
+    Parameters
+    ----------
+    source : State, Simulation, Scene or Dataset
+        A simulation or a state now, a scene at time 0, or an open trajectory. A state has no interior walls
+        and no periodic axes.
+    frame : int, default -1
+        Number of the frame of a trajectory, counted from the end if negative.
+
+    Returns
+    -------
+    DrawnParticles
+        The particles.
+
+    Raises
+    ------
+    SceneError
+        If the frame does not exist.
     """
     if isinstance(source, Simulation):
         return _of_state(source.state, source.scene)

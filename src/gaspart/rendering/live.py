@@ -51,17 +51,29 @@ class LiveGas:
 
     @property
     def picture(self) -> Picture:
-        """Of the particles now, with the parameters of the scene."""
+        """Picture of the particles now, with the parameters of the scene."""
         return render(self.simulation, size=self.size, clock=True)
 
     def advance(self) -> Picture:
-        """Go on by an interval; returns the picture then."""
+        """Advance by an interval and return the picture then."""
         self.simulation.advance(duration=self.interval)
         return self.picture
 
     def fill(self, packing_fraction: float) -> None:
-        """Begin anew with so many particles of the species that move, in the proportions of the first scene,
-        that the packing fraction is about this. Raises SceneError if they do not fit."""
+        """Start again with another number of particles, for about this packing fraction.
+
+        The species that move keep the proportions of the first scene.
+
+        Parameters
+        ----------
+        packing_fraction : float, [1]
+            Packing fraction.
+
+        Raises
+        ------
+        SceneError
+            If the particles do not fit.
+        """
         factor = (packing_fraction - self.emptiest) / (self._first.packing_fraction - self.emptiest)
         species = [
             one if one.fixed else replace(one, count=max(1, round(factor * one.count)))
@@ -71,25 +83,31 @@ class LiveGas:
         self.simulation = Simulation(scene, self._engine, self._seed)
 
     def pull(self, acceleration: float) -> None:
-        """Go on from where the particles are under another gravity, down the last axis."""
+        """Continue from the present positions under another gravity, down the last axis.
+
+        Parameters
+        ----------
+        acceleration : float, [length/time^2]
+            Acceleration.
+        """
         down = (*[0.0] * (self._first.dimension - 1), -acceleration)
         scene = replace(self.simulation.scene, gravity=down)
         self.simulation = Simulation(scene, self._engine, self._seed, initial=self.simulation.state)
 
     @property
     def emptiest(self) -> float:
-        """The packing fraction of all particles but those of species that move."""
+        """Packing fraction of all particles except species that move."""
         fixed = [one for one in self._first.species if one.fixed]
         return replace(self._first, species=fixed).packing_fraction
 
     @property
     def densest(self) -> float:
-        """The highest packing fraction to choose."""
+        """Highest packing fraction to choose."""
         return max(_DENSEST[self._first.dimension], self._first.packing_fraction)
 
     @property
     def strongest(self) -> float | None:
-        """The strongest gravity to choose; None without a floor."""
+        """Strongest gravity to choose; None without a floor."""
         if self._first.container.periodic[-1]:
             return None
         height = self._first.container.lengths[-1]
@@ -97,7 +115,7 @@ class LiveGas:
 
     @property
     def gravity(self) -> float:
-        """The acceleration down the last axis."""
+        """Acceleration down the last axis."""
         pull = self.simulation.scene.gravity
         return -pull[-1] if pull else 0.0
 
@@ -108,11 +126,44 @@ def live(
     seed: int | tuple[int, ...] = 0,
     size: tuple[int, int] = _SIZE,
 ) -> Any:
-    """A film of a scene that runs as long as it is watched, a widget of a notebook (ipywidgets.VBox).
+    """Show a scene that runs as long as it is watched, in a widget of a notebook.
 
-    A slider changes the packing fraction, with which the gas begins anew, another one gravity, under which it
-    goes on, where there is a floor. The first change of gravity compiles kernels. Arguments and errors as of
-    `LiveGas`; raises SceneError too if ipywidgets is not installed.
+    A slider changes the packing fraction, and the gas starts again. If there is a floor, another slider
+    changes gravity, under which the gas goes on.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene to simulate.
+    engine : Engine or {"event", "step", "dsmc"}, optional
+        The engine; a name selects its default settings. Default: event-driven.
+    seed : int or tuple of int, default 0
+        Seed of the initial state and of all random numbers.
+    size : tuple of int
+        Width and height of the picture in pixels.
+
+    Returns
+    -------
+    ipywidgets.VBox
+        The widget.
+
+    Raises
+    ------
+    SceneError
+        If nothing moves at the start, the number of particles is not fixed, the engine cannot model the
+        scene, or ipywidgets is not installed.
+
+    Notes
+    -----
+    The first change of gravity compiles kernels.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> widget = gp.live(scene, size=(80, 60))
+    >>> type(widget).__name__
+    'VBox'
     """
     widgets = optional("ipywidgets", "live", "gases that run in a notebook")
     gas = LiveGas(scene, engine, seed, size)

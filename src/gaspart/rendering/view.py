@@ -1,4 +1,4 @@
-"""An interactive view: one page of HTML, without a server and without other files, drawn by WebGL."""
+"""An interactive view: an HTML page without a server and without other files, drawn by WebGL."""
 
 from __future__ import annotations
 
@@ -45,7 +45,13 @@ PAGE = FileKind("a page written by gaspart view", _is_view)
 
 @dataclass(frozen=True)
 class View:
-    """A page that shows the particles of a run. In a notebook it shows itself."""
+    """A page that shows the particles of a run, also in a notebook.
+
+    Parameters
+    ----------
+    page : str
+        The text of the page.
+    """
 
     page: str
 
@@ -54,8 +60,25 @@ class View:
         return f"<View: a page of {size:.2g} MB, which shows itself in a notebook; save(path) writes it>"
 
     def save(self, path: str | Path, overwrite: bool = False) -> Path:
-        """Write the page, .html; returns its path. A page of this kind is replaced only with `overwrite`, any
-        other file never. Raises SceneError for these, and for another suffix."""
+        """Write the page to an .html file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+        overwrite : bool, default False
+            Replace a page of this kind. Files of other kinds are never replaced.
+
+        Returns
+        -------
+        Path
+            `path`.
+
+        Raises
+        ------
+        SceneError
+            If a file is not replaced, or the suffix is another one.
+        """
         path = output_path(path)
         if path.suffix != ".html":
             raise SceneError("path", str(path), "a view must end in .html")
@@ -69,13 +92,42 @@ class View:
 
 
 def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order: bool = False) -> View:
-    """An interactive view of a trajectory (a path or an open one), or of a simulation, which is run again.
+    """Return an interactive view of a trajectory, or of a simulation, which is run again.
 
-    Play, turn, move and zoom; colours by speed or species; time and scale. frames: how many are shown, evenly
-    spaced. order: also colours by local bond order, which needs a periodic container and the extra `order`:
-    |psi_6| of discs, the averaged q_6 of spheres. Ten thousand particles in 200 frames make a page of 19 MB
-    (22 MB with order). Raises SceneError for a simulation that has not advanced, and for a file that cannot
-    be read.
+    The page can play, turn, move and zoom; it shows colours by speed or species, the time and a scale.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    frames : int, default 200
+        Number of frames to show, evenly spaced.
+    order : bool, default False
+        Also show colours by local bond order: ``|psi_6|`` of discs, the averaged q_6 of spheres. This needs a
+        periodic container and the extra `order`.
+
+    Returns
+    -------
+    View
+        The page, which shows itself in a notebook and can be saved.
+
+    Raises
+    ------
+    SceneError
+        If a simulation has not advanced, or a file cannot be read.
+
+    Notes
+    -----
+    Ten thousand particles in 200 frames make a page of 19 MB (22 MB with order).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(duration=2.0)
+    >>> gp.view(simulation, frames=5).save("gas.html").name
+    'gas.html'
     """
     count_of("frames", frames, least=1)
     with opened(source) as found:
@@ -101,7 +153,7 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
 
 
 def _with_names(simulation: Simulation) -> xr.Dataset:
-    """The frames of a simulation, with the variables of a trajectory that pictures need."""
+    """Return the frames of a simulation with the variables of a trajectory that pictures need."""
     data, initial = repeated(simulation), simulation.initial_state
     lengths = np.tile(initial.lengths, (data.sizes["frame"], 1))
     looks = (np.resize(values, data.sizes["atom"]) for values in (initial.radii, initial.species))
@@ -112,7 +164,7 @@ def _with_names(simulation: Simulation) -> xr.Dataset:
 
 
 def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
-    """What the page draws: numbers as base64, positions as 16-bit parts of the sides."""
+    """Return what the page draws: numbers as base64, positions as 16-bit fractions of the sides."""
     import matplotlib
 
     shown = [particles_of(data, int(n)) for n in chosen]
@@ -152,7 +204,7 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
 
 
 def _order(shown: list[DrawnParticles]) -> dict:
-    """The local bond order of every particle in every frame, in parts of the largest value that is shown."""
+    """Return the local bond order of every particle in every frame, in parts of the largest value shown."""
     first = shown[0]
     if not all(first.periodic[: first.dimension]):
         raise SceneError("order", True, "bond order needs a periodic container")
@@ -165,8 +217,10 @@ def _order(shown: list[DrawnParticles]) -> dict:
 
 
 def _lines(lengths: np.ndarray, walls: list[np.ndarray]) -> np.ndarray:
-    """(frames, 2M, 3) ends of the container's edges and of the sides of walls (M, 2, d); of one frame if they
-    are in the same place in all."""
+    """Return the ends of the container's edges and of the sides of walls, shape (frames, 2M, 3).
+
+    Walls have the shape (M, 2, d). There is one frame if they have the same positions in all frames.
+    """
     if all(np.array_equal(walls[0], one) for one in walls):
         walls = walls[:1]
     edges = edges_of(lengths)

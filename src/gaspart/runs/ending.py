@@ -1,4 +1,4 @@
-"""What ends a run that has no duration: the accuracy of its observables, and what no run can reach.
+"""End of a run without a duration: the accuracy of its observables, and accuracies that no run can reach.
 
 The rule by which it ends is in `gaspart.accuracy.reached`.
 """
@@ -26,14 +26,41 @@ from gaspart.trajectory.until import Requirement
 
 
 class Accuracy(Requirement):
-    """The accuracy that a run is to reach: standard error / |value| of an observable.
+    """Requested accuracy of an observable: its standard error divided by its absolute value.
 
-    observable: Z, D, collision_rate, pressure, heat_flux, wall_shear, density, velocity or shear_viscosity,
-    as `gaspart measure` names them; accuracy: relative, of one standard error that includes correlations; of
-    those with components that vanish, and of a profile, relative to their root mean square; start: the time
-    from which frames count, by default a quarter of the run; face: of one of the walls (`x low`), by default
-    each of them. A run until the density, or the pressure on walls across one axis, is accurate keeps
-    impulses, where its engine can and they serve. Raises SceneError for other values.
+    Parameters
+    ----------
+    observable : str
+        Name of the observable, as of `gaspart measure`: Z, D, collision_rate, pressure, heat_flux,
+        wall_shear, density, velocity or shear_viscosity.
+    accuracy : float, [1]
+        Requested relative standard error; the error includes correlations. For an observable with components
+        that vanish, and for a profile, it is relative to their root mean square.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+    face : str, optional
+        Name of a wall, such as "x low". Default: each of the walls.
+
+    Raises
+    ------
+    SceneError
+        If a value is invalid, or the observable ends no run.
+
+    See Also
+    --------
+    run : Run a scene until such accuracies are reached.
+    reached_accuracy : Accuracies that a run has reached.
+
+    Notes
+    -----
+    A run until the density, or the pressure on walls across one axis, is accurate also stores impulses, if
+    its engine can and they are of use.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> gp.Accuracy("pressure", 0.01, face="x low").name
+    'pressure:x low'
     """
 
     def __post_init__(self) -> None:
@@ -52,7 +79,33 @@ class Accuracy(Requirement):
 
     @classmethod
     def named(cls, name: str, accuracy: float, start: float | None = None) -> Self:
-        """From its `name`, as on the command line and in a config: `Z`, or `pressure:x low`."""
+        """Return the accuracy of an observable with a name as on the command line and in a config.
+
+        Parameters
+        ----------
+        name : str
+            The name: "Z", or with a face "pressure:x low".
+        accuracy : float, [1]
+            Requested relative standard error.
+        start : float, [time], optional
+            Frames before this time are discarded. Default: a quarter of the run.
+
+        Returns
+        -------
+        Accuracy
+            The accuracy.
+
+        Raises
+        ------
+        SceneError
+            If a value is invalid.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Accuracy.named("pressure:x low", 0.01).face
+        'x low'
+        """
         observable, colon, face = name.partition(":")
         return cls(observable.strip(), accuracy, start, face if colon else None)
 
@@ -64,8 +117,26 @@ def require_measurable(
     follow: int | None = None,
     correlations: Correlations | None = None,
 ) -> None:
-    """Raise SceneError for an observable that a scene does not have, however long the run, of which a run by
-    an engine says nothing, or for which this run does not keep what it needs."""
+    """Raise SceneError for an accuracy of an observable that this run cannot measure.
+
+    Parameters
+    ----------
+    asked : Requirement
+        The requested accuracy.
+    scene : Scene
+        The scene, which may not have the observable, however long the run.
+    engine : Engine
+        The engine, whose runs may not determine the observable.
+    follow : int, optional
+        Number of particles that the run stores.
+    correlations : Correlations, optional
+        Correlations that the run accumulates.
+
+    Raises
+    ------
+    SceneError
+        If the run cannot measure the observable.
+    """
     walls = walls_of(asked.observable, scene)
     kept = ("fluxes",) if correlations is not None and correlations.stress else ()
     try:
@@ -79,8 +150,24 @@ def require_measurable(
 
 
 def require_end(asked: Requirement, scene: Scene, at_most: float | None, given: bool) -> None:
-    """Raise SceneError for a run in which nothing ever happens, and, without a longest duration, for one that
-    comes to no steady state. given: whether it starts from a given state."""
+    """Raise SceneError for a run that has no end.
+
+    Parameters
+    ----------
+    asked : Requirement
+        The requested accuracy.
+    scene : Scene
+        The scene, in which nothing may ever happen, or which may have no steady state.
+    at_most : float, [time], optional
+        Maximum length of the run. Without it a steady state is required.
+    given : bool
+        True if the run starts from a given state.
+
+    Raises
+    ------
+    SceneError
+        If the run would not end.
+    """
     kinds = [kind for kind in scene.kinds if kind.count]
     if not kinds:
         return  # which the recipe refuses
@@ -99,8 +186,24 @@ def require_end(asked: Requirement, scene: Scene, at_most: float | None, given: 
 
 
 def require_reachable(asked: Requirement, scene: Scene, replicas: int) -> None:
-    """Raise SceneError for an accuracy that the mean of replicas, each of its seed, never reaches, since the
-    energies of their starts scatter."""
+    """Raise SceneError for an accuracy that the mean of replicas never reaches.
+
+    Each replica has its own seed, and the energies of their initial states scatter.
+
+    Parameters
+    ----------
+    asked : Requirement
+        The requested accuracy.
+    scene : Scene
+        The scene.
+    replicas : int
+        Number of replicas.
+
+    Raises
+    ------
+    SceneError
+        If the mean never becomes so accurate.
+    """
     if replicas == 1:
         return
     from gaspart.accuracy.scatter import start_scatter  # loads the analysis, which few runs need
@@ -119,8 +222,30 @@ def require_reachable(asked: Requirement, scene: Scene, replicas: int) -> None:
 
 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
-    """The mean time between two collisions of a particle, or else to cross the container, to two digits, as a
-    multiple of the engine's steps and the samples of correlations. Raises SceneError if nothing moves."""
+    """Return the default time between frames, to two digits.
+
+    It is the mean time between two collisions of a particle, or, without collisions, the mean time to cross
+    the container, as a multiple of the engine's steps and of the samples of correlations.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    engine : Engine
+        The engine.
+    correlations : Correlations, optional
+        Correlations that the run accumulates.
+
+    Returns
+    -------
+    float
+        The interval, in [time].
+
+    Raises
+    ------
+    SceneError
+        If nothing moves.
+    """
     from gaspart.accuracy.scales import scales, two_digits
 
     shortest = scales(scene).event_time

@@ -1,4 +1,7 @@
-"""`gaspart.run` and `gaspart.resume`: runs of a duration, or until they are accurate, also replicas."""
+"""The functions `gaspart.run` and `gaspart.resume`.
+
+They run scenes for a duration or until observables are accurate, also as replicas.
+"""
 
 from __future__ import annotations
 
@@ -60,31 +63,100 @@ def run(
     keep_checkpoint: bool = False,
     replicas: int = 1,
 ) -> Path:
-    """Run a scene and write its trajectory to `path`; returns `path`.
+    """Run a scene and write its trajectory to a file.
 
-    engine: event-driven, or as `Simulation` takes it, like the seed. A frame at time 0 and at every
-    sample_interval to the duration, an integer multiple of it; with `displacements` also each particle's
-    float64 way since time 0, unwrapped; with rough contacts also spins; with `follow` only so many particles,
-    from the first on (counters are those of all), with `keep` only their "positions" or "velocities". With
-    `correlations` each frame has the sums so far of the velocities' correlations, and with `displacements` of
-    the mean-squared displacement, over all pairs of samples, or with `Correlations(stress=True)` those of the
-    stress tensor and the heat flux. With `pairs` each frame counts the collisions of each pair of species;
-    `impulses`, such as "z:200", and `pair_impulses`, such as "3:300:0.5" (distance, shells, share of
-    contacts), keep what a more accurate density along z and g(r) need (event-driven). A run of this recipe
-    and program that was cut short is continued, a complete one not changed; another trajectory is replaced
-    only with `overwrite`, another file never. `keep_checkpoint`: `path.checkpoint.npz` has the last state.
+    The run ends after `duration`, or, with `until`, when all requested accuracies are reached. An interrupted
+    run of the same recipe and program at `path` is continued, and a complete one is left unchanged.
 
-    initial: a `State`, a trajectory (its `last_state`), or a GSD or XYZ file (`read_state`) to start from.
-    Particles and container size must be the scene's; defaults of engines follow from the scene's `speed` or
-    `temperature` all the same. until: the run ends when standard error / |value| of all these observables is
-    as small as required, examined at 64, 96, 128 ... frames (`gaspart.reached_accuracy`), or after at_most,
-    by default 16384 frames without a contact; sample_interval is then the mean time between collisions.
-    replicas: so many runs are made at a time, a process each, `run-1.nc`, `run-2.nc` ... of `run.nc`
-    (`gaspart.replica_paths`), of the seed with 1, 2 ... behind it; until their mean is as accurate.
+    Parameters
+    ----------
+    scene : Scene
+        The scene to simulate.
+    engine : Engine or {"event", "step", "dsmc"}, optional
+        The engine; a name selects its default settings. Default: event-driven.
+    seed : int or tuple of int, default 0
+        Seed of the initial state and of all random numbers of the run.
+    duration : float, [time], optional
+        Length of the run, an integer multiple of `sample_interval`. Excludes `until`.
+    sample_interval : float, [time], optional
+        Time between frames; the first frame is at time 0. Default with `until`: the mean time between
+        collisions of a particle.
+    path : str or Path
+        The trajectory file (AMBER netCDF).
+    until : Accuracy or sequence of Accuracy, optional
+        Requested relative standard errors, standard error / |value|. They are tested at 64, 96, 128 ...
+        frames (see `reached_accuracy`).
+    at_most : float, [time], optional
+        Maximum length of a run with `until`. By default such a run ends after 16384 frames without a contact.
+    displacements : bool, default False
+        Also store the unwrapped displacement of each particle since time 0, in float64.
+    follow : int, optional
+        Store only the first `follow` particles. Counters still refer to all particles.
+    keep : {"positions", "velocities"}, optional
+        Store only this property of the particles.
+    correlations : Correlations, optional
+        Time correlations to accumulate: each frame has the sums so far, over all pairs of samples. The sums
+        are of the velocities and, with `displacements`, of the mean-squared displacement; with
+        ``Correlations(stress=True)``, of the stress tensor and the heat flux.
+    pairs : bool, default False
+        Count the collisions of each pair of species in each frame.
+    impulses : str, optional
+        Axis and number of bins of a density profile from impulses, such as "z:200", which is more accurate
+        than counts. Event-driven engine only.
+    pair_impulses : str, optional
+        Distance, number of shells and fraction of contacts of a g(r) from impulses, such as "3:300:0.5",
+        which is more accurate than counts. Event-driven engine only.
+    initial : State, str or Path, optional
+        Initial state: a state, the last state of a trajectory (`last_state`), or a GSD or XYZ file
+        (`read_state`). Its particles and the size of its container must be the same as in `scene`. Defaults
+        of engines still follow from the scene's speeds or temperatures.
+    checkpoint_seconds : float, default 30.0
+        Wall-clock time between checkpoints, in seconds.
+    progress : callable, optional
+        Called as ``progress(time, duration, collisions)`` about twice per second.
+    examined : callable, optional
+        Called with the list of `AccuracyStatus` after each test of `until`.
+    overwrite : bool, default False
+        Replace another trajectory at `path`. Files of other kinds are never replaced.
+    keep_checkpoint : bool, default False
+        Keep the final state in ``<path>.checkpoint.npz``.
+    replicas : int, default 1
+        Number of independent runs at the same time, one process each, of the seed followed by 1, 2 ..., with
+        the files ``run-1.nc``, ``run-2.nc`` ... of ``run.nc`` (`replica_paths`). With `until` they end when
+        their mean is accurate.
 
-    `progress(time, duration, collisions)` is called about twice a second, `examined(reached)` then. SIGINT
-    and SIGTERM take effect after a checkpoint, before the caller's handlers. Raises SceneError for settings,
-    files and measurements that cannot be; SimulationError for a broken invariant (`path.failed.npz`)."""
+    Returns
+    -------
+    Path
+        `path`.
+
+    Raises
+    ------
+    SceneError
+        If settings or measurements are impossible, or a file cannot be read or written.
+    SimulationError
+        If an invariant is violated during the run. The state is saved in ``<path>.failed.npz``.
+
+    See Also
+    --------
+    resume : Finish or extend a run.
+    open_trajectory : Open the file as an xarray.Dataset.
+    Simulation : Advance a scene without a file.
+
+    Notes
+    -----
+    With rough contacts the file also has spins. SIGINT and SIGTERM take effect after a checkpoint, before the
+    handlers of the caller.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> path = gp.run(scene, seed=1, duration=2.0, sample_interval=0.1, path="gas.nc")
+    >>> with gp.open_trajectory(path) as trajectory:
+    ...     trajectory.sizes["frame"]
+    21
+    """
     engine = _engine_of(scene, engine)
     wanted = _request(duration, sample_interval, until, at_most)
     displacements |= _needs_paths(wanted, scene, engine, follow, correlations, initial)
@@ -98,7 +170,10 @@ def run(
 
 
 def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
-    """The engine of a run (`chosen`). Raises SceneError for it, and for what is no scene."""
+    """Return the engine of a run (`chosen`).
+
+    Raises SceneError for an unknown engine, and for a value that is no scene.
+    """
     require_scene(scene)
     return chosen(engine)
 
@@ -106,7 +181,7 @@ def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
 def _tallies(
     impulses: str | None, wanted: Until | None, scene: Scene, engine: Engine
 ) -> tuple[OptionalTally, ...]:
-    """The optional tallies that are asked for, or else those that make what is wanted more accurate."""
+    """Return the requested optional tallies, or else tallies that make requested accuracies cheaper."""
     if impulses is not None or wanted is None:
         return impulse_tallies(impulses)
     from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
@@ -116,8 +191,10 @@ def _tallies(
 
 
 def _in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
-    """Return the recipes of the replicas of a run. Raises SceneError as `in_replicas`, and for an accuracy
-    that their mean never reaches."""
+    """Return the recipes of the replicas of a run.
+
+    Raises SceneError as `in_replicas`, and for an accuracy that their mean never reaches.
+    """
     recipes, until = in_replicas(recipe, replicas), recipe.until
     if until is not None and until.at_most is None and recipe.initial is None:
         for asked in until.accuracies:
@@ -131,7 +208,7 @@ def _record(
     options: WriteOptions,
     examined: Callable[[list[AccuracyStatus]], None] | None,
 ) -> Path:
-    """Make the trajectory of a recipe, or those of all replicas."""
+    """Record the trajectory of a recipe, or the trajectories of all replicas."""
     if len(recipes) > 1:
         return record_together(recipes, path, options, examined)
     return trajectory.record(recipes[0], path, options)
@@ -145,8 +222,11 @@ def _needs_paths(
     correlations: Correlations | None,
     initial: State | str | Path | None,
 ) -> bool:
-    """Whether what is to be accurate needs displacements, of a run from a given state if there is one. Raises
-    SceneError for what cannot be measured, or never becomes known."""
+    """Return True if a requested accuracy needs displacements.
+
+    Raises SceneError for an observable that cannot be measured, or never becomes accurate, also of a run from
+    a given state.
+    """
     if wanted is None:
         return False
     for asked in wanted.accuracies:
@@ -158,8 +238,10 @@ def _needs_paths(
 def _start(
     initial: State | str | Path | None, scene: Scene, path: str | Path | None, replicas: int
 ) -> State | None:
-    """The initial state of a run: of a file its last state. Raises SceneError if that is one of the files at
-    `path`, by whatever name: it would be lost."""
+    """Return the initial state of a run; of a file, its last state.
+
+    Raises SceneError if that file is one of the files at `path`, by whatever name: it would be lost.
+    """
     paths = replica_paths(_required(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
     if not isinstance(initial, str | Path):
         return initial
@@ -174,6 +256,7 @@ def _start(
 
 
 def _required(path: str | Path | None) -> str | Path:
+    """Return the path of a trajectory, which must be given."""
     if path is None:
         raise SceneError("path", None, "must be given: the file of the trajectory")
     return path
@@ -185,7 +268,10 @@ def _request(
     until: Accuracy | list[Accuracy] | tuple[Accuracy, ...] | None,
     at_most: float | None,
 ) -> Until | None:
-    """The end of a run without a duration. Raises SceneError for what excludes or needs each other."""
+    """Return the end of a run without a duration.
+
+    Raises SceneError for arguments that exclude or require each other.
+    """
     if until is not None:
         if duration is not None:
             rule = "excludes until, which ends the run; the longest duration is at_most"
@@ -209,17 +295,59 @@ def resume(
     duration: float | None = None,
     keep_checkpoint: bool = False,
 ) -> Path:
-    """Finish the run that left `path.partial`, from its files only; returns `path`. Replicas, of which it may
-    be one, are finished together.
+    """Finish an interrupted run, or extend a complete one, from its files only.
 
-    With a `duration`, the complete run at `path` goes on to that time, and its file is then the one of a run
-    of this duration in one go, to the same bytes. It continues from the state at its end if the run had
-    `keep_checkpoint`, which the extended one then has too; otherwise it is run again from its start. The
-    file is replaced when the longer run is complete; one that was cut short is finished by either form.
+    Without a `duration` the run that left ``<path>.partial`` is finished. With a `duration` the complete run
+    at `path` is continued to that time.
 
-    The other arguments as of `run`. Raises SceneError if there is nothing to resume or to extend, if another
-    version of the program began it, for a duration that is not longer, and for a file at `path` that is no
-    complete trajectory of gaspart.
+    Parameters
+    ----------
+    path : str or Path
+        The trajectory. If it is one of several replicas, all of them are finished together.
+    checkpoint_seconds : float, default 30.0
+        Wall-clock time between checkpoints, in seconds.
+    progress : callable, optional
+        Called as ``progress(time, duration, collisions)`` about twice per second.
+    examined : callable, optional
+        Called with the list of `AccuracyStatus` after each test of `until`.
+    duration : float, [time], optional
+        New length of a complete run.
+    keep_checkpoint : bool, default False
+        Keep the final state in ``<path>.checkpoint.npz``.
+
+    Returns
+    -------
+    Path
+        `path`.
+
+    Raises
+    ------
+    SceneError
+        If there is nothing to resume or to extend, another version of the program began the run, the duration
+        is not longer, or the file at `path` is no complete trajectory of gaspart.
+    SimulationError
+        If an invariant is violated during the run.
+
+    See Also
+    --------
+    run : Begin a run.
+
+    Notes
+    -----
+    The file of an extended run has the same bytes as the file of a single run of this duration. If the run
+    had `keep_checkpoint`, it continues from the state at its end, and the extended run has a checkpoint too.
+    Otherwise it is run again from its start. The file is replaced when the longer run is complete. An
+    extension that was interrupted is finished with or without `duration`.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> path = gp.run(scene, seed=1, duration=2.0, sample_interval=0.1, path="gas.nc")
+    >>> path = gp.resume(path, duration=3.0)
+    >>> with gp.open_trajectory(path) as trajectory:
+    ...     trajectory.sizes["frame"]
+    31
     """
     examiner = Examiner(examined)
     options = WriteOptions(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
@@ -231,7 +359,7 @@ def resume(
 
 
 def _replica(path: str | Path) -> tuple[Path, Recipe] | None:
-    """A file of the replicas at a path and its recipe; None if there are none."""
+    """Return a file of the replicas at a path and its recipe; None without replicas."""
     with suppress(SceneError):
         file, recipe = found(path)
         return (file, recipe) if recipe.replica else None

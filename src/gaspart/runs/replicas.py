@@ -1,7 +1,7 @@
-"""The replicas of a run, each in a process of its own.
+"""Replicas of a run, each in its own process.
 
-What they have to know of each other they read from their files (`gaspart.trajectory.replicas`): this module
-begins the processes, and gathers their progress.
+They read from their files (`gaspart.trajectory.replicas`) all that they must know of each other. This module
+starts the processes and collects their progress.
 """
 
 from __future__ import annotations
@@ -30,10 +30,29 @@ Send: TypeAlias = Callable[[Any], None]
 def record_together(
     recipes: Sequence[Recipe], path: str | Path, options: WriteOptions, examined: Examined = None
 ) -> Path:
-    """Make the trajectories of all replicas of a run at `path`; returns `path`.
+    """Record the trajectories of all replicas of a run at `path`.
 
-    What is raised is that of one run (`gaspart.trajectory.run.record`), and SimulationError for a process
-    that something has ended.
+    Parameters
+    ----------
+    recipes : sequence of Recipe
+        Recipes of the replicas.
+    path : str or Path
+        Path of the run.
+    options : WriteOptions
+        Options of writing.
+    examined : callable, optional
+        Called with the list of `AccuracyStatus` after each test.
+
+    Returns
+    -------
+    Path
+        `path`.
+
+    Raises
+    ------
+    SceneError, SimulationError
+        As for one run (`gaspart.trajectory.run.record`), and SimulationError for a process that was ended
+        from outside.
     """
     path = output_path(path)
     files = replica_paths(path, len(recipes))
@@ -44,8 +63,31 @@ def record_together(
 def resume_together(
     file: Path, recipe: Recipe, options: WriteOptions, examined: Examined, duration: float | None
 ) -> Path:
-    """Finish all replicas of a run, of which `recipe` is that of the one in a file, or continue them to a
-    duration; returns the path of all. Raises as `gaspart.trajectory.run.resume` and `extend`."""
+    """Finish all replicas of a run, or continue them to a duration.
+
+    Parameters
+    ----------
+    file : Path
+        File of one of the replicas.
+    recipe : Recipe
+        Recipe of this replica.
+    options : WriteOptions
+        Options of writing.
+    examined : callable, optional
+        Called with the list of `AccuracyStatus` after each test.
+    duration : float, [time], optional
+        New length of the run.
+
+    Returns
+    -------
+    Path
+        Path of the run, common to all replicas.
+
+    Raises
+    ------
+    SceneError, SimulationError
+        As `gaspart.trajectory.run.resume` and `extend`.
+    """
     path, all_of_them = path_of_all(file, recipe), beside(file, recipe)
     if duration is not None:
         _carry_out(_extend, [(duration, one) for one, _ in all_of_them], path, options, examined)
@@ -65,7 +107,7 @@ def _carry_out(
     options: WriteOptions,
     examined: Examined,
 ) -> None:
-    """Call a function of `send`, its arguments, options and whether progress is shown, for all replicas."""
+    """Call a function for all replicas, with `send`, its arguments, options and a flag for progress."""
     reached: dict[int, tuple[float, float, int]] = {}
 
     def received(number: int, message: Any) -> None:
@@ -91,18 +133,18 @@ def _carry_out(
 
 
 def _record(send: Send, recipe: Recipe, path: Path, options: WriteOptions, shown: bool) -> None:
-    """Make one of the replicas."""
+    """Record the trajectory of a replica."""
     load_numba(ours=True)
     trajectory.record(recipe, path, _sending(options, send, shown))
 
 
 def _extend(send: Send, duration: float, path: Path, options: WriteOptions, shown: bool) -> None:
-    """Continue one of the replicas."""
+    """Continue the trajectory of a replica."""
     load_numba(ours=True)
     trajectory.extend(path, duration, _sending(options, send, shown))
 
 
 def _sending(options: WriteOptions, send: Send, shown: bool) -> WriteOptions:
-    """The options of a process that sends what its examinations give, and its progress."""
+    """Return the options of a process that sends its progress and the results of its tests."""
     progress = (lambda *reached: send(reached)) if shown else None
     return replace(options, progress=progress, examiner=Examiner(send))

@@ -1,4 +1,4 @@
-"""The simulated volume."""
+"""The simulated volume and its boundary conditions."""
 
 from __future__ import annotations
 
@@ -19,12 +19,33 @@ _BOUNDARY: dict[str, Any] = {
 
 
 def _lengths(name: str, value: Any) -> tuple[float, ...]:
+    """Return the side lengths as a tuple of positive numbers."""
     return tuple(positive_number(name, length) for length in finite_vector(name, value))
 
 
 @dataclass(frozen=True)
 class Container:
-    """The simulated volume [0, L] on each axis, in two or three dimensions."""
+    """The simulated volume [0, L] on each axis, in two or three dimensions.
+
+    Parameters
+    ----------
+    lengths : sequence of float, shape (d,), [length]
+        Side lengths; their number is the dimension, 2 or 3.
+    boundary : {"wall", "periodic"} or sequence of these, shape (d,), default "wall"
+        Boundary condition of all axes, or of each axis.
+
+    Raises
+    ------
+    SceneError
+        If a length is not positive, or a boundary condition is unknown.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> channel = gp.Container(lengths=(20.0, 10.0), boundary=("periodic", "wall"))
+    >>> channel.volume, channel.walls
+    (200.0, ('y low', 'y high'))
+    """
 
     lengths: tuple[float, ...] = field(
         metadata=declared(described({**_PER_AXIS, "items": POSITIVE}, "(d,) side lengths", _lengths))
@@ -46,21 +67,21 @@ class Container:
 
     @cached_property
     def dimension(self) -> int:
-        """2 or 3."""
+        """Number of dimensions, 2 or 3."""
         return len(self.lengths)
 
     @cached_property
     def volume(self) -> float:
-        """The container's volume, in two dimensions its area."""
+        """Volume of the container; in two dimensions its area."""
         return math.prod(self.lengths)
 
     @cached_property
     def periodic(self) -> tuple[bool, ...]:
-        """(d,) whether each axis is periodic."""
+        """Periodicity of the axes, shape (d,): True for a periodic axis."""
         return tuple(kind == "periodic" for kind in self.boundary)
 
     @cached_property
     def walls(self) -> tuple[str, ...]:
-        """The names of its walls, `x low`, `x high` and so on."""
+        """Names of the walls: `x low`, `x high` and so on."""
         axes = [axis for axis, around in zip("xyz", self.periodic, strict=False) if not around]
         return tuple(f"{axis} {end}" for axis in axes for end in ("low", "high"))

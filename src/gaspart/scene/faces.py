@@ -1,6 +1,6 @@
-"""The kinds of faces that a container may have: what happens to a particle that reaches it.
+"""Kinds of faces of a container: what happens to a particle that reaches a face.
 
-A face without a kind is hard and follows the scene's law of contacts.
+A face without a kind is hard and follows the collision law of the scene.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ FACE_KINDS: dict[str, type[Surface]] = {}
 
 @dataclass(frozen=True)
 class Surface:
-    """A kind of face. A class derived from it is known by its `kind` once it is declared.
+    """A kind of face; a class derived from it is registered by its `kind`.
 
-    moves: whether it does by itself; only the event-driven engine has such faces.
+    `moves` is True if the face moves by itself. Only the event-driven engine has such faces.
     """
 
     kind: ClassVar[str]
@@ -63,23 +63,25 @@ class Surface:
 
     @property
     def rule(self) -> tuple[str, float]:
-        """The name by which the kernels know what happens to a particle there (`kernels.obstacles`), and the
-        one number on which that may depend: an energy or a momentum."""
+        """Name and parameter of the wall's effect on particles, as the kernels know it (`kernels.obstacles`).
+
+        The parameter is the only number on which the effect may depend: an energy or a momentum.
+        """
         return self.kind, 0.0
 
     @property
     def smooth(self) -> bool:
-        """Whether it acts on particles along its normal only."""
+        """True if the face acts on particles along its normal only."""
         return True
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """Its temperature, of one that varies those of its ends; none of a face without."""
+        """Temperature of the face, or the temperatures of both its ends; () without a temperature."""
         return ()
 
 
 def _check_temperature(key: str, value: Any) -> float | dict[str, float]:
-    """A temperature, or those at two opposite faces, the low one first."""
+    """Return a temperature, or the temperatures at two opposite faces, the low face first."""
     if not isinstance(value, Mapping):
         return positive_number(key, value)
     ends = {key_of(face): positive_number(f"{key}.{face}", one) for face, one in value.items()}
@@ -101,15 +103,45 @@ _TEMPERATURE = Kind({"anyOf": [POSITIVE, _ENDS]}, _check_temperature)
 
 @dataclass(frozen=True)
 class Thermal(Surface):
-    """A wall at a temperature, from whose distribution the velocity of a particle that leaves is drawn.
+    """A wall at a temperature, from whose distribution the velocity of a leaving particle is drawn.
 
-    The normal velocity is drawn weighted by the flux, v = sqrt(-2 kT/m ln U); with components "all" the
-    tangential ones and, in a scene of rough particles, the spins are Maxwellian (a diffuse wall with full
-    accommodation); with "normal" they are kept (the rule of Frederickx & Meerts 2010, section 4.4).
-    A wall with a `velocity` moves along itself, and the distribution is that about its velocity. With an
-    `accommodation` below 1 this happens after that fraction of hits, and after the others the particle leaves
-    as from a mirror (Maxwell, Phil. Trans. R. Soc. 170, 231 (1879)). A temperature that is given at two
-    opposite faces, as {"y_low": 1.0, "y_high": 2.0}, is linear between them: that where a particle hits.
+    Parameters
+    ----------
+    temperature : float or dict of str to float, [energy]
+        Temperature k_B T of the wall. If it is given at two opposite faces, as {"y_low": 1.0, "y_high": 2.0},
+        it is linear between them.
+    components : {"all", "normal"}, default "all"
+        Velocity components that are drawn. "all": also the tangential components and, in a scene of rough
+        particles, the spins are Maxwellian (a diffuse wall with full accommodation). "normal": the tangential
+        components and the spins are unchanged [1]_.
+    velocity : sequence of float, shape (d,), [length/time], optional
+        Velocity of the wall along itself. The distribution is about this velocity. Default: at rest.
+    accommodation : float, [1], optional
+        Fraction of hits after which velocities are drawn. After the others the particle is reflected as from
+        a mirror [2]_. Default: 1.
+
+    Raises
+    ------
+    SceneError
+        If a value is invalid, or a wall with components "normal" has a velocity.
+
+    Notes
+    -----
+    The normal velocity is drawn from the distribution weighted by the flux, v = sqrt(-2 kT/m ln U). Where the
+    temperature varies, it is the temperature at the point of the hit.
+
+    References
+    ----------
+    .. [1] R. Frederickx and P. Meerts (2010), section 4.4.
+    .. [2] J. C. Maxwell, Phil. Trans. R. Soc. 170, 231 (1879).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> cold, hot = gp.Thermal(temperature=1.0), gp.Thermal(temperature=2.0)
+    >>> scene = gp.Scene(gp.Container((10.0, 10.0)), faces={"x_low": cold, "x_high": hot})
+    >>> sorted(scene.face_temperatures)
+    [1.0, 2.0]
     """
 
     temperature: float | dict[str, float] = field(
@@ -144,35 +176,95 @@ class Thermal(Surface):
 
     @property
     def slides(self) -> bool:
-        """Whether it moves."""
+        """True if the wall moves along itself.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Thermal(temperature=1.0, velocity=(0.5, 0.0)).slides
+        True
+        """
         return any(self.velocity or ())
 
     @property
     def rule(self) -> tuple[str, float]:
-        """With its temperature, of one that varies that at its low end."""
+        """Name of the effect in the kernels, and the temperature, at the low end if it varies.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Thermal(temperature=1.0, components="normal").rule
+        ('thermal_normal', 1.0)
+        """
         return "thermal" if self.components == "all" else "thermal_normal", self.temperatures[0]
 
     @property
     def varies_along(self) -> int | None:
-        """The axis along which its temperature varies, None of one temperature."""
+        """Axis along which the temperature varies; None for a uniform temperature.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Thermal(temperature={"y_low": 1.0, "y_high": 2.0}).varies_along
+        1
+        """
         return FACES.index(next(iter(self.temperature))) // 2 if isinstance(self.temperature, dict) else None
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """The temperature, or those of the low and the high end."""
+        """The temperature, or the temperatures of the low and the high end.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Thermal(temperature={"y_low": 1.0, "y_high": 2.0}).temperatures
+        (1.0, 2.0)
+        """
         return tuple(self.temperature.values()) if isinstance(self.temperature, dict) else (self.temperature,)
 
     @property
     def smooth(self) -> bool:
-        """Unless it draws all components."""
+        """True unless all components of the velocity are drawn.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Thermal(temperature=1.0).smooth
+        False
+        """
         return self.components == "normal"
 
 
 @dataclass(frozen=True)
 class Well(Surface):
-    """A wall behind a step of the potential: a particle whose surface is within `width` of the face has the
-    energy -`depth`. It leaves if m v_n^2 / 2 > depth, and is reflected if not. The wall itself is hard, or
-    with a `temperature` as in `Thermal`."""
+    """A wall with an attractive square well of energy -`depth` within `width` of the face.
+
+    Parameters
+    ----------
+    depth : float, [energy]
+        Depth of the well.
+    width : float, [length]
+        Width of the well: largest distance of a particle's surface from the wall inside the well.
+    temperature : float, [energy], optional
+        Temperature of the wall behind the well, as of `Thermal`. Default: the wall is hard.
+
+    Raises
+    ------
+    SceneError
+        If a value is not positive.
+
+    Notes
+    -----
+    A particle leaves the well if m v_n^2 / 2 > depth, and is reflected otherwise.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> well = gp.Well(depth=2.0, width=0.5)
+    >>> scene = gp.Scene(gp.Container((10.0, 10.0)), faces={"y_low": well})
+    >>> scene.faces["y_low"].rule
+    ('hard', 0.0)
+    """
 
     depth: float = field(metadata=declared(positive("depth of the well: an energy")))
     width: float = field(
@@ -186,17 +278,38 @@ class Well(Surface):
 
     @property
     def rule(self) -> tuple[str, float]:
-        """The kind and the level of the wall behind the well."""
+        """Name of the effect of the wall behind the well in the kernels, and its temperature.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Well(depth=2.0, width=0.5, temperature=1.0).rule
+        ('thermal', 1.0)
+        """
         return ("hard", 0.0) if self.temperature is None else ("thermal", self.temperature)
 
     @property
     def smooth(self) -> bool:
-        """Unless the wall behind the well is thermal."""
+        """True unless the wall behind the well is thermal.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Well(depth=2.0, width=0.5).smooth
+        True
+        """
         return self.temperature is None
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """That of the wall behind the well, if it has one."""
+        """Temperature of the wall behind the well; () without one.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Well(depth=2.0, width=0.5).temperatures
+        ()
+        """
         return () if self.temperature is None else (self.temperature,)
 
 
@@ -204,10 +317,28 @@ class Well(Surface):
 class Sticky(Surface):
     """A wall to which slow particles stick (Frederickx & Meerts 2010, section 4.5, made definite).
 
-    A particle that arrives with a normal momentum below `momentum` p stays: its normal energy becomes that of
-    a vibration, and it slides along the wall. If a contact with another particle gives it a normal velocity,
-    that energy is added, and once the sum reaches p^2 / 2m it leaves the wall with all of it. No potential
-    binds it, so that particles that stick are not balanced by those that leave: detailed balance is broken.
+    Parameters
+    ----------
+    momentum : float, [mass length/time]
+        Normal momentum p below which an arriving particle stays.
+
+    Raises
+    ------
+    SceneError
+        If the momentum is not positive.
+
+    Notes
+    -----
+    The normal energy of a particle that stays becomes energy of a vibration, and the particle slides along
+    the wall. If a contact with another particle gives it a normal velocity, that energy is added. Once the
+    sum reaches p^2 / 2m, the particle leaves the wall with all of it. No potential binds the particle, so
+    that particles that stick are not balanced by particles that leave: detailed balance is broken.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> gp.Sticky(momentum=0.5).rule
+    ('sticky', 0.5)
     """
 
     momentum: float = field(metadata=declared(positive("normal momentum below which a particle stays")))
@@ -216,17 +347,47 @@ class Sticky(Surface):
 
     @property
     def rule(self) -> tuple[str, float]:
-        """With the momentum."""
+        """Name of the wall's effect in the kernels, and the momentum.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Sticky(momentum=0.5).rule
+        ('sticky', 0.5)
+        """
         return "sticky", self.momentum
 
 
 @dataclass(frozen=True)
 class Vibrating(Surface):
-    """A hard wall that moves in a prescribed way, whatever hits it, and gives or takes energy.
+    """A hard wall with a prescribed motion, independent of hits, which gives or takes energy.
 
-    It is at the side of the container at time 0, and moves inwards from there by twice the amplitude A at
-    most: the sine is at A (1 - cos(2 pi t / period)), the sawtooth moves in at the speed 2 A / period and is
-    back at once at the end of each period. Contacts follow the scene's law in the frame of the wall.
+    Parameters
+    ----------
+    amplitude : float, [length]
+        Half the distance that the wall moves, A.
+    period : float, [time]
+        Duration of one vibration.
+    waveform : {"sine", "sawtooth"}, default "sine"
+        Displacement as a function of time.
+
+    Raises
+    ------
+    SceneError
+        If a value is invalid.
+
+    Notes
+    -----
+    The wall is at the side of the container at time 0, and moves inwards from there by at most 2 A. The sine
+    is at A (1 - cos(2 pi t / period)). The sawtooth moves inwards at the speed 2 A / period and is back at
+    once at the end of each period. Contacts follow the collision law of the scene in the frame of the wall.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> floor = gp.Vibrating(amplitude=0.1, period=2.0)
+    >>> floor.places([0.0, 1.0])
+    array([0. , 0.2])
     """
 
     amplitude: float = field(metadata=declared(positive("half the distance that the wall moves")))
@@ -243,16 +404,47 @@ class Vibrating(Surface):
 
     @property
     def greatest_speed(self) -> float:
-        """The greatest speed of the wall, apart from the return of the sawtooth."""
+        """Maximum speed of the wall, apart from the return of the sawtooth.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Vibrating(amplitude=0.1, period=2.0, waveform="sawtooth").greatest_speed
+        0.1
+        """
         return (2.0 * math.pi if self.waveform == "sine" else 2.0) * self.amplitude / self.period
 
     @property
     def greatest_acceleration(self) -> float:
-        """The greatest acceleration of the wall, apart from the return of the sawtooth."""
+        """Maximum acceleration of the wall, apart from the return of the sawtooth.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Vibrating(amplitude=0.1, period=2.0, waveform="sawtooth").greatest_acceleration
+        0.0
+        """
         return 2.0 * math.pi * self.greatest_speed / self.period if self.waveform == "sine" else 0.0
 
     def places(self, times: np.ndarray) -> np.ndarray:
-        """(...) how far the wall has moved inwards at times (...)."""
+        """Compute the inward displacement of the wall.
+
+        Parameters
+        ----------
+        times : array_like, [time]
+            Times.
+
+        Returns
+        -------
+        ndarray, same shape as `times`, [length]
+            Displacement from the side of the container.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Vibrating(amplitude=0.1, period=2.0, waveform="sawtooth").places([0.0, 1.0])
+        array([0. , 0.1])
+        """
         import numpy as np
 
         turns = np.fmod(times, self.period) / self.period
@@ -263,15 +455,44 @@ class Vibrating(Surface):
 
 @dataclass(frozen=True)
 class Piston(Surface):
-    """A smooth wall of finite mass, pushed inwards by a constant external pressure and outwards by particles;
-    or one that moves inwards at a `speed`, whatever hits it.
+    """A smooth wall of finite mass under an external pressure, or one that moves at a constant speed.
 
-    With a mass and a pressure it starts at rest at the side of the container, which is as far outwards as it
-    comes: it bounces off there without loss. Its kinetic energy and `pressure` times the volume, together
-    with the energy of the particles, are conserved: with a light piston this is the ensemble of constant
-    pressure and enthalpy (Andersen, J. Chem. Phys. 72, 2384 (1980)), and a heavy one compresses a gas
-    adiabatically. One at a speed starts there too: slowly it compresses a gas, fast it drives a shock, and
-    its work is what particles gain. Particles are smooth and elastic, and nothing else is in the container.
+    Particles are smooth and elastic, and nothing else is in the container.
+
+    Parameters
+    ----------
+    mass : float, [mass], optional
+        Mass of the piston. Requires `pressure`.
+    pressure : float, [energy/length^d], optional
+        Constant external pressure, which pushes the piston inwards: force divided by area. Requires `mass`.
+    speed : float, [length/time], optional
+        Prescribed inward speed, which hits do not change. Excludes `mass` and `pressure`.
+
+    Raises
+    ------
+    SceneError
+        Unless either both mass and pressure or only the speed is given.
+
+    Notes
+    -----
+    The piston starts at the side of the container. With a mass and a pressure it starts at rest, and the side
+    is its outermost position: it bounces off there without loss. Its kinetic energy, `pressure` times the
+    volume and the energy of the particles have a conserved sum. A light piston samples the ensemble of
+    constant pressure and enthalpy [1]_, and a heavy one compresses a gas adiabatically. A piston with a
+    prescribed speed compresses a gas if it is slow and drives a shock if it is fast. The particles gain its
+    work.
+
+    References
+    ----------
+    .. [1] H. C. Andersen, J. Chem. Phys. 72, 2384 (1980).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> piston = gp.Piston(mass=10.0, pressure=0.5)
+    >>> scene = gp.Scene(gp.Container((10.0, 8.0)), faces={"x_high": piston})
+    >>> piston.acceleration(scene, axis=0)
+    0.4
     """
 
     mass: float | None = field(
@@ -297,29 +518,101 @@ class Piston(Surface):
             raise SceneError("speed", stated, "a piston has a mass and a pressure, or a speed alone")
 
     def acceleration(self, scene: Scene, axis: int) -> float:
-        """That by which its load pushes it inwards; 0 at a stated speed."""
+        """Return the inward acceleration due to the load; 0 if the speed is prescribed.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene of the piston.
+        axis : int
+            Axis along which the piston moves.
+
+        Returns
+        -------
+        float
+            The acceleration, in [length/time^2].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((10.0, 8.0)))
+        >>> gp.Piston(mass=10.0, pressure=0.5).acceleration(scene, axis=0)
+        0.4
+        """
         if self.mass is None or self.pressure is None:
             return 0.0
         container = scene.container
         return self.pressure / self.mass * (container.volume / container.lengths[axis])
 
     def initial_velocity(self, number: int) -> float:
-        """That along its axis with which it starts, as the face of this number."""
+        """Return the initial velocity along the axis of the piston.
+
+        Parameters
+        ----------
+        number : int
+            Number of the face: 2 axis for a low face, 2 axis + 1 for a high face.
+
+        Returns
+        -------
+        float
+            The velocity, in [length/time]; 0 without a prescribed speed.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Piston(speed=2.0).initial_velocity(number=1)
+        -2.0
+        """
         return (-1.0 if number % 2 else 1.0) * (self.speed or 0.0)
 
 
 @dataclass(frozen=True)
 class Open(Surface):
-    """An opening as wide as the face: a particle whose centre reaches it leaves, and is gone. With an
-    `activity` and a `temperature` particles of a reservoir enter there; without, there is a vacuum outside.
+    """An opening as wide as the face, through which particles leave, and enter from a reservoir.
 
-    The reservoir is a gas at rest with the activity eta exp(mu_excess / k_B T), eta its packing fraction
-    (`theory.activity`; dilute, it is eta). That of the number density z sends z (k_B T / 2 pi m)^(1/2)
-    particles per area and time, evenly over the face, with the velocities of those that pass a plane in one
-    direction. Whichever would overlap a particle inside is turned away. The container with reservoirs of one
-    kind is then, in equilibrium, exactly the grand-canonical ensemble of centres between its faces: a step
-    in is the reversal of a step out, and both have the weight z^N exp(-E / k_B T). Needs one species, and
-    `centres_to_walls`: the density is the reservoir's some diameters away from a face, not beside it.
+    A particle whose centre reaches the face leaves for good. With an `activity` and a `temperature`
+    particles of a reservoir enter there; otherwise there is a vacuum outside. It needs one species, and
+    `centres_to_walls`.
+
+    Parameters
+    ----------
+    activity : float, [1], optional
+        Activity eta exp(mu_excess / k_B T) of the reservoir outside, with its packing fraction eta. Requires
+        `temperature`. Default: a vacuum.
+    temperature : float, [energy], optional
+        Temperature k_B T of the reservoir. Requires `activity`.
+
+    Raises
+    ------
+    SceneError
+        If a value is invalid, or only one of the two is given.
+
+    See Also
+    --------
+    gaspart.theory.activity : Activity of a gas of a packing fraction.
+
+    Notes
+    -----
+    The reservoir is a gas at rest. In the dilute limit its activity is eta. A reservoir whose activity is
+    equivalent to the number density z sends z (k_B T / 2 pi m)^(1/2) particles per area and time, uniformly
+    over the face, with the velocities of particles that pass a plane in one direction. A particle that would
+    overlap a particle inside is rejected. In equilibrium the container with reservoirs of one kind is then
+    exactly the grand-canonical ensemble of centres between its faces: a step in is the reversal of a step
+    out, and both have the weight z^N exp(-E / k_B T). The density equals the reservoir's some diameters away
+    from a face, not close to it.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> reservoir = gp.Open(activity=0.1, temperature=1.0)
+    >>> scene = gp.Scene(
+    ...     gp.Container((10.0, 10.0)),
+    ...     species=[gp.Species(count=5, radius=0.5, temperature=1.0)],
+    ...     centres_to_walls=True,
+    ...     faces={"x_low": reservoir, "x_high": reservoir},
+    ... )
+    >>> scene.is_open
+    True
     """
 
     activity: float | None = field(
@@ -338,24 +631,60 @@ class Open(Surface):
 
     @property
     def smooth(self) -> bool:
-        """No: particles that leave and enter have momentum along it."""
+        """False: particles that leave and enter have momentum along the face.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Open().smooth
+        False
+        """
         return False
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """That of the reservoir, if there is one."""
+        """Temperature of the reservoir; () without one.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Open(activity=0.1, temperature=1.0).temperatures
+        (1.0,)
+        """
         return () if self.temperature is None else (self.temperature,)
 
 
 @dataclass(frozen=True)
 class LeesEdwards(Surface):
-    """Periodic faces whose images slide (Lees & Edwards, J. Phys. C 5, 1921 (1972)): a gas without walls is
-    sheared, u_x = `shear_rate` (y - L_y / 2).
+    """Periodic faces with sliding images: a gas without walls in shear flow u_x = shear_rate (y - L_y / 2).
 
-    It is stated of the face y_high, and is true of y_low too, of a container that is periodic along all axes.
-    A particle that leaves there enters at y_low displaced by -shear_rate L_y t along x, with v_x less by
-    shear_rate L_y, and back. It acts at the start too: drawn velocities are about this flow, without a mean.
-    The faces do work, by which an elastic gas heats.
+    Parameters
+    ----------
+    shear_rate : float, [1/time]
+        Gradient of the flow, du_x / dy.
+
+    Raises
+    ------
+    SceneError
+        If the shear rate is no finite number.
+
+    Notes
+    -----
+    The boundary condition is by Lees and Edwards [1]_. It is given for the face y_high of a container that is
+    periodic along all axes, and holds for y_low too. A particle that leaves at y_high enters at y_low,
+    displaced by -shear_rate L_y t along x, with v_x less by shear_rate L_y, and back. It acts at the start
+    too: drawn velocities are about this flow, without a mean. The faces do work, which heats an elastic gas.
+
+    References
+    ----------
+    .. [1] A. W. Lees and S. F. Edwards, J. Phys. C 5, 1921 (1972).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> gp.Scene(box, faces={"y_high": gp.LeesEdwards(shear_rate=0.5)}).shear_rate
+    0.5
     """
 
     shear_rate: float = field(metadata=declared(signed("gradient of the flow, du_x / dy")))
@@ -378,7 +707,25 @@ SCHEMA = {
 
 
 def surface_from_dict(mapping: object, where: str) -> Surface:
-    """The face that {"kind": one of `FACE_KINDS`, setting: value, ...} describes."""
+    """Return the face that {"kind": one of `FACE_KINDS`, setting: value, ...} describes.
+
+    Parameters
+    ----------
+    mapping : object
+        The mapping.
+    where : str
+        Key of the face in messages.
+
+    Returns
+    -------
+    Surface
+        The face.
+
+    Raises
+    ------
+    SceneError
+        If the mapping describes no face.
+    """
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping with a kind")
     settings = dict(mapping)
@@ -387,24 +734,75 @@ def surface_from_dict(mapping: object, where: str) -> Surface:
 
 
 def surface_to_dict(surface: Surface) -> dict:
-    """The inverse of `surface_from_dict`."""
+    """Return the mapping that describes a face, the inverse of `surface_from_dict`.
+
+    Parameters
+    ----------
+    surface : Surface
+        The face.
+
+    Returns
+    -------
+    dict
+        The mapping.
+    """
     return {"kind": surface.kind, **asdict(surface)}
 
 
 def key_of(face: Any) -> Any:
-    """The key of a face that is given by either of its names; other things as they are."""
+    """Return the key of a face that is given by either of its names; other values are unchanged.
+
+    Parameters
+    ----------
+    face : object
+        Name of a face, `x low` or `x_low`.
+
+    Returns
+    -------
+    object
+        The key, `x_low`.
+    """
     return face.strip().replace(" ", "_") if isinstance(face, str) else face
 
 
 def wall_of(face: Any) -> Any:
-    """The name of a face as a wall, `x low`, likewise; of several faces each."""
+    """Return the name of a face as a wall, `x low`; other values are unchanged.
+
+    Parameters
+    ----------
+    face : object
+        Name of a face, `x low` or `x_low`, or a list of names.
+
+    Returns
+    -------
+    object
+        The name, or the list of names.
+    """
     if isinstance(face, list | tuple):
         return [wall_of(one) for one in face]
     return face.strip().replace("_", " ") if isinstance(face, str) else face
 
 
 def thermal_face(scene: Scene, name: str) -> Thermal:
-    """The face of this name, which must be at one temperature. Raises SceneError."""
+    """Return the face of a name, which must be at one temperature.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    name : str
+        Key of the face.
+
+    Returns
+    -------
+    Thermal
+        The face.
+
+    Raises
+    ------
+    SceneError
+        If the face is not thermal, or its temperature varies.
+    """
     face = scene.faces.get(name)
     if not isinstance(face, Thermal) or face.varies_along is not None:
         raise SceneError(f"faces.{name}", face, "must be thermal, at one temperature")

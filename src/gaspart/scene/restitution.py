@@ -1,4 +1,4 @@
-"""The law of contacts."""
+"""The collision law."""
 
 from __future__ import annotations
 
@@ -10,7 +10,35 @@ from gaspart.keys import between, declared, not_negative, positive, validate
 
 @dataclass(frozen=True)
 class Restitution:
-    """Effect of a contact on the relative velocity of the two surfaces (Spencer 2022, Eq. 22)."""
+    """Effect of a contact on the relative velocity of the two surfaces (Spencer 2022, Eq. 22).
+
+    Parameters
+    ----------
+    normal : float, default 1.0, [1]
+        Coefficient of normal restitution: the normal part is multiplied by minus this, from 0 (the particles
+        stick) to 1 (elastic).
+    tangential : float, default -1.0, [1]
+        Coefficient of tangential restitution: the tangential part is multiplied by minus this, from -1
+        (perfectly smooth) to 1 (perfectly rough).
+    contact_duration : float, [time], optional
+        A contact of a particle within this time after its last contact is elastic; 0: no contact is.
+        Default: under gravity 0.01 of the time scale of a fall through the smallest diameter, else 0.
+    reference_speed : float, [length/time], optional
+        Particles are viscoelastic: `normal` is the restitution of two particles of the first species that
+        approach each other at this normal speed. Slower contacts take less energy.
+
+    Raises
+    ------
+    SceneError
+        If a value is invalid, or a `reference_speed` is given with a `normal` of 0 or 1.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> grains = gp.Restitution(normal=0.9)
+    >>> grains.dissipative, grains.rough
+    (True, False)
+    """
 
     normal: float = field(
         default=1.0,
@@ -57,15 +85,36 @@ class Restitution:
 
     @property
     def smooth_and_elastic(self) -> bool:
-        """Whether contacts are those of a scene without a Restitution."""
+        """True if contacts are the same as in a scene without a Restitution.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Restitution().smooth_and_elastic
+        True
+        """
         return self.normal == 1.0 and self.tangential == -1.0
 
     @property
     def dissipative(self) -> bool:
-        """Whether contacts may lose energy."""
+        """True if contacts may lose energy.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Restitution(tangential=1.0).dissipative  # perfectly rough spheres keep their energy
+        False
+        """
         return self.normal < 1.0 or -1.0 < self.tangential < 1.0
 
     @property
     def rough(self) -> bool:
-        """Whether contacts change spins."""
+        """True if contacts change spins.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Restitution(tangential=0.5).rough
+        True
+        """
         return self.tangential > -1.0

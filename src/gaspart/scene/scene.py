@@ -1,6 +1,6 @@
-"""The simulated system: a container and what is in it, as given, without anything computed.
+"""The simulated system: a container and its contents, without any computed result.
 
-A `Scene` is immutable and validated once, when it is made. Lengths and times are in the scene's own
+A `Scene` is immutable and validated once, when it is created. Lengths and times are in the scene's own
 units; masses are relative to the reference species; k_B = 1.
 """
 
@@ -54,13 +54,62 @@ _ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # not written into a
 
 @dataclass(frozen=True)
 class Scene(Facts):
-    """A container and its particles: first `particles` in their order, then each of `species` in turn.
+    """The system to simulate: a container, its particles and everything that acts on them.
 
-    With `centres_to_walls` the walls stop the particles' centres instead of their surfaces (the rule of
-    Frederickx & Meerts 2010, whose spheres stick out of the container). walls: each a Wall in two dimensions,
-    a Plate in three. faces: by name (x_low, ...).
+    A scene is immutable and is validated when it is created. In all arrays the single `particles` come first,
+    in their order, and then the particles of each of the `species`.
 
-    Raises SceneError for an impossible scene.
+    Parameters
+    ----------
+    container : Container
+        The simulated volume and its boundary conditions.
+    species : sequence of Species, optional
+        Particles that the program places.
+    particles : sequence of Particle, optional
+        Particles at given positions.
+    centres_to_walls : bool, default False
+        Walls stop the centres of particles instead of their surfaces [1]_.
+    gravity : sequence of float, shape (d,), [length/time^2], optional
+        Uniform acceleration. Along a periodic axis it drives a flow.
+    restitution : Restitution, optional
+        Collision law of all contacts. Default: elastic and smooth.
+    walls : sequence of Wall (2D) or Plate (3D), optional
+        Walls inside the container.
+    faces : dict of str to face, optional
+        Kinds of faces of the container by name: "x_low", "x_high", "y_low" ... Default: hard or periodic, as
+        the `container` states.
+    thermostat : Thermostat, optional
+        Random kicks of all particles. Default: none.
+
+    Raises
+    ------
+    SceneError
+        If the scene is impossible, for example if particles overlap or two features exclude each other.
+
+    See Also
+    --------
+    Simulation : Simulate a scene in memory.
+    run : Simulate a scene and write a trajectory.
+
+    Notes
+    -----
+    Lengths and times are in the scene's own units; masses are relative to the reference species; k_B = 1.
+
+    References
+    ----------
+    .. [1] R. Frederickx and P. Meerts (2010), whose spheres stick out of the container.
+
+    Examples
+    --------
+    A disc in a box under gravity, to which fifty small discs are added:
+
+    >>> import gaspart as gp
+    >>> disc = gp.Particle(position=(10.0, 10.0), velocity=(1.0, 0.0), radius=1.0)
+    >>> scene = gp.Scene(gp.Container((20.0, 20.0)), particles=[disc], gravity=(0.0, -1.0))
+    >>> scene.summary
+    '1 disc in 20 x 20, packing fraction 0.00785; gravity'
+    >>> scene.with_species(gp.Species(count=50, radius=0.2)).count
+    51
     """
 
     container: Container = field(metadata=declared(instance_of(Container, "the simulated volume")))
@@ -129,6 +178,7 @@ class Scene(Facts):
         check_packing(self)
 
     def _check_gravity(self) -> None:
+        """Check the acceleration; a zero vector counts as no gravity."""
         if self.gravity is None:
             return
         finite_vector("gravity", self.gravity, self.dimension)
@@ -137,7 +187,27 @@ class Scene(Facts):
             return
 
     def wall_at(self, position: tuple[float, ...], radius: float) -> str | None:
-        """The key of an interior wall that a particle at this position overlaps, if any."""
+        """Return the key of an interior wall that a particle overlaps; None if it overlaps no wall.
+
+        Parameters
+        ----------
+        position : tuple of float, shape (d,), [length]
+            Position of the particle.
+        radius : float, [length]
+            Radius of the particle.
+
+        Returns
+        -------
+        str or None
+            The key, such as "walls[0]".
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), walls=[gp.Wall((3.0, 1.0), (3.0, 8.0))])
+        >>> scene.wall_at((3.4, 5.0), radius=0.5)
+        'walls[0]'
+        """
         shifts = [
             (0.0, -length, length) if periodic else (0.0,)
             for length, periodic in zip(self.container.lengths, self.container.periodic, strict=True)
@@ -151,9 +221,11 @@ class Scene(Facts):
         return None
 
     def _fits(self, key: str, thing: Particle | Species) -> None:
+        """Raise SceneError if particles are larger than the container."""
         check_room(self.container, self.centres_to_walls, key, thing)
 
     def _check_particle(self, n: int, particle: Particle, earlier: Nearby) -> None:
+        """Raise SceneError for a particle that is not inside, or overlaps a wall or an earlier particle."""
         where = f"particles[{n}]"
         finite_vector(f"{where}.position", particle.position, self.dimension)
         finite_vector(f"{where}.velocity", particle.velocity, self.dimension)
@@ -175,7 +247,26 @@ class Scene(Facts):
                 raise SceneError(f"{where}.position", particle.position, f"overlaps particles[{m}]")
 
     def reach(self, radius: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """(d,), (d,): the lowest and highest coordinates of the centre of a particle of this radius."""
+        """Return the range of the coordinates of the centre of a particle.
+
+        Parameters
+        ----------
+        radius : float, [length]
+            Radius of the particle.
+
+        Returns
+        -------
+        lower : tuple of float, shape (d,), [length]
+            Lowest coordinates.
+        upper : tuple of float, shape (d,), [length]
+            Highest coordinates.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Scene(gp.Container((9.0, 9.0))).reach(radius=0.5)
+        ((0.5, 0.5), (8.5, 8.5))
+        """
         lower, upper = [], []
         for length, periodic in zip(self.container.lengths, self.container.periodic, strict=True):
             margin = 0.0 if periodic or self.centres_to_walls else radius
@@ -184,7 +275,27 @@ class Scene(Facts):
         return tuple(lower), tuple(upper)
 
     def separation(self, a: tuple[float, ...], b: tuple[float, ...]) -> float:
-        """Distance of two points, by the nearest image on periodic axes."""
+        """Return the distance between two points, to the nearest image on periodic axes.
+
+        Parameters
+        ----------
+        a : tuple of float, shape (d,), [length]
+            First point.
+        b : tuple of float, shape (d,), [length]
+            Second point.
+
+        Returns
+        -------
+        float
+            The distance, in [length].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+        >>> gp.Scene(box).separation((1.0, 1.0), (9.0, 1.0))
+        2.0
+        """
         square = 0.0
         for x, y, length, periodic in zip(a, b, self.container.lengths, self.container.periodic, strict=True):
             gap = abs(x - y)
@@ -192,20 +303,95 @@ class Scene(Facts):
         return math.sqrt(square)
 
     def with_particles(self, *particles: Particle) -> Scene:
-        """A new scene with these particles added."""
+        """Return a new scene with these particles added.
+
+        Parameters
+        ----------
+        *particles : Particle
+            Particles to add.
+
+        Returns
+        -------
+        Scene
+            The new scene.
+
+        Raises
+        ------
+        SceneError
+            If the new scene is impossible.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> disc = gp.Particle(position=(5.0, 5.0), velocity=(1.0, 0.0), radius=1.0)
+        >>> gp.Scene(gp.Container((9.0, 9.0))).with_particles(disc).count
+        1
+        """
         return replace(self, particles=(*self.particles, *particles))
 
     def with_species(self, *species: Species) -> Scene:
-        """A new scene with these species added."""
+        """Return a new scene with these species added.
+
+        Parameters
+        ----------
+        *species : Species
+            Species to add.
+
+        Returns
+        -------
+        Scene
+            The new scene.
+
+        Raises
+        ------
+        SceneError
+            If the new scene is impossible.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Scene(gp.Container((9.0, 9.0))).with_species(gp.Species(count=20, radius=0.2)).count
+        20
+        """
         return replace(self, species=(*self.species, *species))
 
     def with_walls(self, *walls: Wall | Plate) -> Scene:
-        """A new scene with these walls added."""
+        """Return a new scene with these interior walls added.
+
+        Parameters
+        ----------
+        *walls : Wall or Plate
+            Walls to add.
+
+        Returns
+        -------
+        Scene
+            The new scene.
+
+        Raises
+        ------
+        SceneError
+            If the new scene is impossible.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0))).with_walls(gp.Wall((3.0, 1.0), (3.0, 8.0)))
+        >>> len(scene.walls)
+        1
+        """
         return replace(self, walls=(*self.walls, *walls))
 
     @property
     def summary(self) -> str:
-        """The scene in one line: how many particles, how dense, in what container, and its features."""
+        """The scene in one line: number of particles, container, packing fraction and features.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(count=20, radius=0.2)]).summary
+        '20 discs in 9 x 9, packing fraction 0.031'
+        """
         kind = {2: "disc", 3: "sphere"}[self.dimension] + ("s" if self.count != 1 else "")
         sides = " x ".join(f"{length:g}" for length in self.container.lengths)
         text = f"{self.count} {kind} in {sides}, packing fraction {self.packing_fraction:.3g}"
@@ -213,7 +399,7 @@ class Scene(Facts):
         return text + (f"; {', '.join(FEATURES[name].meaning for name in present)}" if present else "")
 
     def _repr_html_(self) -> str:
-        """A picture of the scene at time 0, with its `summary` below it."""
+        """Return a picture of the scene at time 0, with its `summary` below it."""
         if self.count > DRAWN:
             return html.escape(self.summary)
         try:
@@ -222,7 +408,19 @@ class Scene(Facts):
             return html.escape(f"{self.summary}. {error}")
 
     def to_dict(self) -> dict:
-        """Plain lists and mappings, as in a scene file."""
+        """Return the scene as plain lists and mappings, as in a scene file.
+
+        Returns
+        -------
+        dict
+            Keys of the scene with their values.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Scene(gp.Container((9.0, 9.0))).to_dict()["container"]
+        {'lengths': [9.0, 9.0], 'boundary': ['wall', 'wall']}
+        """
 
         def plain(value: Any) -> Any:
             if is_dataclass(value):
@@ -236,7 +434,31 @@ class Scene(Facts):
 
     @classmethod
     def from_dict(cls, mapping: dict, file: str | None = None) -> Scene:
-        """The scene that `to_dict` describes. Raises SceneError, naming `file`, for anything else."""
+        """Return the scene that a mapping describes, the inverse of `to_dict`.
+
+        Parameters
+        ----------
+        mapping : dict
+            Keys of the scene with their values.
+        file : str, optional
+            Name of the file in messages.
+
+        Returns
+        -------
+        Scene
+            The scene.
+
+        Raises
+        ------
+        SceneError
+            If the mapping describes no scene; the message names `file`.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Scene.from_dict({"container": {"lengths": [9.0, 9.0]}}).container.boundary
+        ('wall', 'wall')
+        """
         try:
             if not isinstance(mapping, dict):
                 raise SceneError("scene", mapping, "must be a mapping of keys to values")
@@ -264,15 +486,67 @@ class Scene(Facts):
 
     @classmethod
     def from_file(cls, path: str | Path) -> Scene:
-        """Read a YAML scene file."""
+        """Read a YAML scene file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Scene
+            The scene.
+
+        Raises
+        ------
+        SceneError
+            If the file cannot be read, or describes no scene.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Scene(gp.Container((9.0, 9.0))).to_file("empty.yaml")
+        >>> gp.Scene.from_file("empty.yaml").container.lengths
+        (9.0, 9.0)
+        """
         return cls.from_dict(read_yaml(path), file=str(path))
 
     def to_file(self, path: str | Path) -> None:
-        """Write the scene as YAML."""
+        """Write the scene as YAML.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Raises
+        ------
+        SceneError
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Scene(gp.Container((9.0, 9.0))).to_file("empty.yaml")
+        >>> print(open("empty.yaml").read().splitlines()[0])
+        container:
+        """
         write_yaml(path, self.to_dict())
 
 
 def require_scene(value: object) -> None:
-    """Raise SceneError for what is no scene, such as the path of its file."""
+    """Raise SceneError for a value that is no scene, such as the path of its file.
+
+    Parameters
+    ----------
+    value : object
+        The value.
+
+    Raises
+    ------
+    SceneError
+        If the value is no scene.
+    """
     if not isinstance(value, Scene):
         raise SceneError("scene", value, "must be a Scene, such as Scene.from_file(path)")

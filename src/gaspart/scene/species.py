@@ -1,4 +1,4 @@
-"""What moves in a container: species and single particles."""
+"""Particles of a scene: species and single particles."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _SPIN: dict = {"type": ["number", "array"], "items": {"type": "number"}, "minIte
 
 
 def _check_matter(thing: Species | Particle) -> None:
-    """The rules for several keys that species and single particles have in common."""
+    """Check the rules for several keys that species and single particles have in common."""
     if thing.moment_of_inertia is not None:
         if not SMALLEST <= thing.moment_of_inertia / thing.mass / thing.radius**2 <= LARGEST:
             rule = f"must be from {SMALLEST:g} to {LARGEST:g} times the mass times the radius squared"
@@ -58,21 +58,71 @@ def _check_matter(thing: Species | Particle) -> None:
 
 @dataclass(frozen=True)
 class Species:
-    """`count` like particles, placed by the program.
+    """Identical particles, which the program places.
 
-    Velocities are isotropic: of one fixed `speed`, or Maxwellian at `temperature`; with neither the particles
-    start at rest. They are drawn: the kinetic temperature of N particles scatters about `temperature` by the
-    fraction sqrt(2 / (d N)), unless the species has an `exact_temperature`; all that have one are scaled
-    together. `arrangement` is "random" (sequential insertion, in a `region` if there is one), "lattice",
-    "slab": a lattice whose empty sites all lie in one half, so that this half melts, or "compressed": grown
-    to a density beyond that of insertion (see `compression`). A `fixed` particle with a `vibration` or a
-    `temperature` has one mode of vibration: a contact exchanges its energy with the normal energy of the
-    other particle.
+    Velocities have random directions. Their magnitudes are all equal to `speed`, or Maxwellian at
+    `temperature`; without either the particles start at rest.
 
-    With a `polydispersity` the radii differ: `radius` is their mean, and they are the equally probable
-    quantiles of a `radius_distribution` of that relative standard deviation, the largest first. They follow
-    from these numbers alone, not from the seed, so that every run has the same packing fraction. The mass is
-    the same for all.
+    Parameters
+    ----------
+    count : int
+        Number of particles.
+    radius : float, [length]
+        Radius; with a `polydispersity`, the mean radius.
+    mass : float, default 1.0, [mass]
+        Mass of each particle, also if the radii differ.
+    speed : float, [length/time], optional
+        Initial speed of every particle. Excludes `temperature`.
+    temperature : float, [energy], optional
+        Temperature k_B T of the initial velocities; for `fixed` particles, of their vibrations.
+    exact_temperature : bool, default False
+        Rescale the initial velocities to exactly `temperature`, after the mean velocity is subtracted along
+        axes on which momentum is conserved. All species with an exact temperature are rescaled together.
+    arrangement : {"random", "lattice", "slab", "compressed"}, default "random"
+        Initial positions. "random": sequential insertion. "slab": a lattice whose vacancies all lie in one
+        half, so that this half melts. "compressed": growth to a density that insertion cannot reach (see
+        `compress`).
+    region : sequence of two vectors, shape (2, d), [length], optional
+        Lower and upper corner of the box in which all particles start. Requires "random". Default: the
+        container.
+    moment_of_inertia : float, [mass length^2], optional
+        Moment of inertia. Default: the value of a uniform disc or sphere.
+    fixed : bool, default False
+        The particles never move: their mass is infinite.
+    vibration : float, [energy], optional
+        Initial vibrational energy of fixed particles. Excludes `temperature`.
+    polydispersity : float, [1], optional
+        Standard deviation of the radii divided by their mean. Default: all radii are equal.
+    radius_distribution : {"lognormal", "uniform"}, optional
+        Distribution of the radii, with a `polydispersity`. Default: "lognormal".
+
+    Raises
+    ------
+    SceneError
+        If a value is invalid, or two values contradict each other.
+
+    See Also
+    --------
+    Particle : A single particle at a given position.
+
+    Notes
+    -----
+    Initial velocities are random: the kinetic temperature of N particles in d dimensions fluctuates about
+    `temperature` with the relative standard deviation sqrt(2 / (d N)), unless `exact_temperature` is set.
+
+    A fixed particle with a `vibration` or a `temperature` has one mode of vibration. A contact exchanges its
+    energy with the normal energy of the other particle.
+
+    Radii of a polydisperse species are the equally probable quantiles of the distribution, in descending
+    order. They depend on these parameters alone and not on the seed, so that every run has the same packing
+    fraction.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> grains = gp.Species(count=500, radius=0.5, polydispersity=0.1, temperature=1.0)
+    >>> grains.radii[:2].round(4)
+    array([0.6772, 0.6544])
     """
 
     count: int = field(metadata=declared(count("number of particles", 0, maximum=MOST_PARTICLES)))
@@ -142,7 +192,7 @@ class Species:
         self._check_sizes()
 
     def _check_sizes(self) -> None:
-        """The rules of a polydisperse species."""
+        """Check the rules of a polydisperse species."""
         if self.polydispersity is None:
             if self.radius_distribution is not None:
                 raise SceneError("radius_distribution", self.radius_distribution, "needs a polydispersity")
@@ -155,12 +205,26 @@ class Species:
 
     @property
     def alike(self) -> bool:
-        """Whether its particles have one radius."""
+        """True if all particles have the same radius.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Species(count=10, radius=0.5).alike
+        True
+        """
         return self.polydispersity is None
 
     @property
     def radii(self) -> np.ndarray:
-        """(count,) radii of its particles."""
+        """Radii of the particles, shape (count,).
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Species(count=2, radius=0.5).radii
+        array([0.5, 0.5])
+        """
         import numpy as np
 
         if self.polydispersity is None:
@@ -170,27 +234,82 @@ class Species:
 
     @property
     def largest_radius(self) -> float:
-        """The largest of its radii."""
+        """Largest radius of a particle.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> round(gp.Species(count=500, radius=0.5, polydispersity=0.1).largest_radius, 4)
+        0.6772
+        """
         return self.radius if self.alike or not self.count else float(self.radii[0])
 
     @property
     def smallest_radius(self) -> float:
-        """The smallest of its radii."""
+        """Smallest radius of a particle.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Species(count=10, radius=0.5).smallest_radius
+        0.5
+        """
         return self.radius if self.alike or not self.count else float(self.radii[-1])
 
     def total_power(self, dimension: int) -> float:
-        """The sum of radius^dimension over its particles."""
+        """Return the sum of radius^dimension over the particles.
+
+        Parameters
+        ----------
+        dimension : {2, 3}
+            Exponent.
+
+        Returns
+        -------
+        float
+            The sum, in [length^dimension].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Species(count=10, radius=0.5).total_power(2)
+        2.5
+        """
         if self.alike:
             return self.count * self.radius**dimension
         return math.fsum(radius**dimension for radius in self.radii.tolist())
 
     @property
     def vibrates(self) -> bool:
-        """Whether its particles have a mode of vibration."""
+        """True if the particles have a mode of vibration.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Species(count=10, radius=0.5, fixed=True, vibration=1.0).vibrates
+        True
+        """
         return self.fixed and (self.vibration is not None or self.temperature is not None)
 
     def initial_temperature(self, dimension: int) -> float:
-        """m <v^2> / d of the distribution of initial velocities."""
+        """Return the temperature m <v^2> / d of the distribution of initial velocities.
+
+        Parameters
+        ----------
+        dimension : {2, 3}
+            Number of dimensions d.
+
+        Returns
+        -------
+        float
+            The temperature, in [energy].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Species(count=10, radius=0.5, speed=2.0).initial_temperature(2)
+        2.0
+        """
         if self.temperature is not None:
             return self.temperature
         return self.mass * (self.speed or 0.0) ** 2 / dimension
@@ -198,7 +317,43 @@ class Species:
 
 @dataclass(frozen=True)
 class Particle:
-    """One particle at a given position. In 2D its spin, the angular velocity, is a number, in 3D (3,)."""
+    """A single particle at a given position.
+
+    Parameters
+    ----------
+    position : sequence of float, shape (d,), [length]
+        Initial position of the centre.
+    velocity : sequence of float, shape (d,), [length/time]
+        Initial velocity.
+    radius : float, [length]
+        Radius.
+    mass : float, default 1.0, [mass]
+        Mass.
+    spin : float or sequence of float, shape (3,), [1/time], optional
+        Angular velocity: a number in 2D, a vector in 3D. Default: 0.
+    moment_of_inertia : float, [mass length^2], optional
+        Moment of inertia. Default: the value of a uniform disc or sphere.
+    fixed : bool, default False
+        The particle never moves: its mass is infinite.
+    vibration : float, [energy], optional
+        Initial vibrational energy of a fixed particle.
+
+    Raises
+    ------
+    SceneError
+        If a value is invalid, or two values contradict each other.
+
+    See Also
+    --------
+    Species : Identical particles, which the program places.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> disc = gp.Particle(position=(1.0, 2.0), velocity=(1.0, 0.0), radius=0.5, spin=3.0)
+    >>> disc.spin_vector
+    (0.0, 0.0, 3.0)
+    """
 
     count: ClassVar[int] = 1
     alike: ClassVar[bool] = True
@@ -234,30 +389,75 @@ class Particle:
 
     @property
     def radii(self) -> np.ndarray:
-        """(1,) its radius."""
+        """Radius of the particle as an array, shape (1,).
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Particle(position=(1.0, 2.0), velocity=(0.0, 0.0), radius=0.5).radii
+        array([0.5])
+        """
         import numpy as np
 
         return np.array([self.radius])
 
     @property
     def largest_radius(self) -> float:
-        """Its radius."""
+        """Radius of the particle.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Particle(position=(1.0, 2.0), velocity=(0.0, 0.0), radius=0.5).largest_radius
+        0.5
+        """
         return self.radius
 
     smallest_radius = largest_radius
 
     @property
     def vibrates(self) -> bool:
-        """Whether it has a mode of vibration."""
+        """True if the particle has a mode of vibration.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Particle(position=(1.0, 2.0), velocity=(0.0, 0.0), radius=0.5).vibrates
+        False
+        """
         return self.vibration is not None
 
     def initial_temperature(self, dimension: int) -> float:
-        """m v^2 / d of its initial velocity."""
+        """Return the temperature m v^2 / d of the initial velocity.
+
+        Parameters
+        ----------
+        dimension : {2, 3}
+            Number of dimensions d.
+
+        Returns
+        -------
+        float
+            The temperature, in [energy].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Particle(position=(1.0, 2.0), velocity=(2.0, 0.0), radius=0.5).initial_temperature(2)
+        2.0
+        """
         return self.mass * sum(component**2 for component in self.velocity) / dimension
 
     @property
     def spin_vector(self) -> tuple[float, ...]:
-        """(3,) the spin as a vector, which in 2D is normal to the plane."""
+        """Angular velocity as a vector, shape (3,); in 2D it is normal to the plane.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Particle(position=(1.0, 2.0), velocity=(0.0, 0.0), radius=0.5).spin_vector
+        (0.0, 0.0, 0.0)
+        """
         if self.spin is None:
             return 0.0, 0.0, 0.0
         return self.spin if isinstance(self.spin, tuple) else (0.0, 0.0, self.spin)

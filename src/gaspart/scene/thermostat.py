@@ -9,12 +9,44 @@ from gaspart.keys import declared, positive, validate
 
 @dataclass(frozen=True)
 class Thermostat:
-    """Random kicks of all particles at regular times, which let a dissipative gas reach a steady state
-    (Williams & MacKintosh, Phys. Rev. E 54, R9 (1996)).
+    """Random kicks of all particles at regular times.
 
+    A dissipative gas can reach a steady state with them [1]_.
+
+    Parameters
+    ----------
+    power : float, [energy/time]
+        Mean energy per time that a particle is given.
+    interval : float, [time]
+        Time between kicks: short compared with the time between contacts.
+
+    Raises
+    ------
+    SceneError
+        If a value is not positive.
+
+    Notes
+    -----
     At each multiple of `interval` every velocity component of a particle of mass m is changed by a normal
     random number of variance 2 power interval/(d m), and then all velocities by the same, so that the total
-    momentum is kept. For short intervals this is white noise of strength xi_0^2 = 2 power/(d m).
+    momentum is conserved. For short intervals this is white noise of strength xi_0^2 = 2 power/(d m).
+
+    References
+    ----------
+    .. [1] D. R. M. Williams and F. C. MacKintosh, Phys. Rev. E 54, R9 (1996).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> gas = gp.Species(count=100, radius=0.5, temperature=1.0)
+    >>> heated = gp.Scene(
+    ...     gp.Container((30.0, 30.0), boundary="periodic"),
+    ...     species=[gas],
+    ...     restitution=gp.Restitution(normal=0.9),
+    ...     thermostat=gp.Thermostat(power=0.1, interval=0.01),
+    ... )
+    >>> heated.thermostat.power
+    0.1
     """
 
     power: float = field(metadata=declared(positive("mean energy per time that a particle is given")))

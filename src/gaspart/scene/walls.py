@@ -22,9 +22,39 @@ WALL_RULE = "a Wall needs a container of two dimensions, a Plate one of three"
 
 @dataclass(frozen=True)
 class Wall:
-    """A straight wall inside a container of two dimensions, from `start` (2,) to `end` (2,): hit from both
-    sides, and at its ends, which are solid. With a `temperature` particles leave it as a `Thermal` face. With
-    a `mass` it moves: a piston between two gases, as `Plate` states."""
+    """A straight wall inside a container of two dimensions, which particles hit from both sides.
+
+    The ends of the wall are solid: particles hit them too.
+
+    Parameters
+    ----------
+    start : sequence of float, shape (2,), [length]
+        One end.
+    end : sequence of float, shape (2,), [length]
+        The other end.
+    temperature : float, [energy], optional
+        Temperature of the wall: particles leave it as a `Thermal` face. Default: the wall is hard.
+    mass : float, [mass], optional
+        Mass of a wall across the container, which particles move: a piston between two gases (see `Plate`).
+        Default: the wall is at rest.
+
+    Raises
+    ------
+    SceneError
+        If a value is invalid, or the wall has no length.
+
+    See Also
+    --------
+    Plate : A wall inside a container of three dimensions.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> wall = gp.Wall(start=(2.0, 0.0), end=(2.0, 6.0))
+    >>> scene = gp.Scene(gp.Container((10.0, 10.0)), walls=[wall])
+    >>> scene.walls[0].distance((5.0, 10.0))
+    5.0
+    """
 
     start: tuple[float, ...] = field(metadata=declared(vector("one end", 2, sized=False)))
     end: tuple[float, ...] = field(metadata=declared(vector("the other end", 2, sized=False)))
@@ -39,11 +69,35 @@ class Wall:
 
     @property
     def corners(self) -> dict[str, tuple[float, ...]]:
-        """Both ends, by their keys."""
+        """Both ends of the wall by their keys.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Wall(start=(2.0, 0.0), end=(2.0, 6.0)).corners
+        {'start': (2.0, 0.0), 'end': (2.0, 6.0)}
+        """
         return {"start": self.start, "end": self.end}
 
     def distance(self, point: tuple[float, ...]) -> float:
-        """Distance of a point from the wall, its ends included."""
+        """Return the distance of a point from the wall, its ends included.
+
+        Parameters
+        ----------
+        point : tuple of float, shape (2,), [length]
+            Coordinates of the point.
+
+        Returns
+        -------
+        float
+            The distance, in [length].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Wall(start=(2.0, 0.0), end=(2.0, 6.0)).distance((5.0, 3.0))
+        3.0
+        """
         (ax, ay), (bx, by), (x, y) = self.start, self.end, point
         s = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2)
         s = min(max(s, 0.0), 1.0)
@@ -52,14 +106,48 @@ class Wall:
 
 @dataclass(frozen=True)
 class Plate:
-    """A flat rectangular wall inside a container of three dimensions: a `corner` (3,), and the `edges` (2, 3)
-    that lead from it, at right angles. Hit from both sides, at its edges and its corners, which are solid.
-    With a `temperature` particles leave it as a `Thermal` face.
+    """A flat rectangular wall inside a container of three dimensions, which particles hit from both sides.
 
-    With a `mass` it is a piston between two gases, and must reach across the whole container at right angles
-    to an axis: it starts at rest, no force but that of particles moves it along that axis, and with each of
-    them it exchanges momentum without loss (Lieb, Physica A 263, 491 (1999)). It conducts no heat but by its
-    own motion. There is no other interior wall then, and both its sides have particles, smooth and elastic.
+    The edges and the corners of the plate are solid: particles hit them too.
+
+    Parameters
+    ----------
+    corner : sequence of float, shape (3,), [length]
+        One corner.
+    edges : sequence of two vectors, shape (2, 3), [length]
+        Vectors from this corner to the two neighbouring corners, at right angles.
+    temperature : float, [energy], optional
+        Temperature of the wall: particles leave it as a `Thermal` face. Default: the wall is hard.
+    mass : float, [mass], optional
+        Mass of a wall across the container, which particles move: a piston between two gases. Default: the
+        wall is at rest.
+
+    Raises
+    ------
+    SceneError
+        If a value is invalid, an edge has no length, or the edges are not at right angles.
+
+    See Also
+    --------
+    Wall : A wall inside a container of two dimensions.
+
+    Notes
+    -----
+    A plate with a `mass` must reach across the whole container at right angles to an axis. It starts at rest.
+    Only particles move it, along that axis, and it exchanges momentum with each particle without loss [1]_.
+    It conducts no heat except by its own motion. There is no other interior wall then, and both of its sides
+    have particles, smooth and elastic.
+
+    References
+    ----------
+    .. [1] E. H. Lieb, Physica A 263, 491 (1999).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> plate = gp.Plate(corner=(2.0, 0.0, 0.0), edges=((0.0, 4.0, 0.0), (0.0, 0.0, 4.0)))
+    >>> plate.distance((5.0, 2.0, 2.0))
+    3.0
     """
 
     corner: tuple[float, ...] = field(metadata=declared(vector("one corner", 3, sized=False)))
@@ -82,14 +170,40 @@ class Plate:
 
     @property
     def corners(self) -> dict[str, tuple[float, ...]]:
-        """The four corners, by the key that determines each."""
+        """The four corners by the keys that determine them.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> plate = gp.Plate(corner=(2.0, 0.0, 0.0), edges=((0.0, 4.0, 0.0), (0.0, 0.0, 4.0)))
+        >>> plate.corners["edges"]
+        (2.0, 4.0, 4.0)
+        """
         one, other = self.edges
         ends = {"edges[0]": (one,), "edges[1]": (other,), "edges": (one, other)}
         far = {key: tuple(map(sum, zip(self.corner, *edges, strict=True))) for key, edges in ends.items()}
         return {"corner": self.corner, **far}
 
     def distance(self, point: tuple[float, ...]) -> float:
-        """Distance of a point from the plate, its rim included."""
+        """Return the distance of a point from the plate, its rim included.
+
+        Parameters
+        ----------
+        point : tuple of float, shape (3,), [length]
+            Coordinates of the point.
+
+        Returns
+        -------
+        float
+            The distance, in [length].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> plate = gp.Plate(corner=(2.0, 0.0, 0.0), edges=((0.0, 4.0, 0.0), (0.0, 0.0, 4.0)))
+        >>> plate.distance((2.0, 7.0, 8.0))
+        5.0
+        """
         away = [x - y for x, y in zip(point, self.corner, strict=True)]
         for edge in self.edges:
             along = sum(x * y for x, y in zip(away, edge, strict=True)) / sum(x * x for x in edge)
@@ -99,7 +213,20 @@ class Plate:
 
 
 def box_of_walls(lower: tuple[float, ...], upper: tuple[float, ...]) -> tuple[Wall | Plate, ...]:
-    """The four walls of a rectangle, or the six of a cuboid, given two opposite corners."""
+    """Return the four walls of a rectangle, or the six walls of a cuboid.
+
+    Parameters
+    ----------
+    lower : tuple of float, shape (d,), [length]
+        Lower corner.
+    upper : tuple of float, shape (d,), [length]
+        Opposite corner.
+
+    Returns
+    -------
+    tuple of Wall or Plate
+        The walls.
+    """
     low = finite_vector("lower", lower)
     high = finite_vector("upper", upper, len(low))
     if len(low) == 2:
@@ -114,12 +241,34 @@ def box_of_walls(lower: tuple[float, ...], upper: tuple[float, ...]) -> tuple[Wa
 
 
 def wall_kind(container: Container) -> type[Wall] | type[Plate]:
-    """The kind of interior wall that such a container may have."""
+    """Return the class of the interior walls that a container may have.
+
+    Parameters
+    ----------
+    container : Container
+        The container.
+
+    Returns
+    -------
+    type
+        `Wall` in two dimensions, `Plate` in three.
+    """
     return Wall if container.dimension == 2 else Plate
 
 
 def check_walls(scene: Scene) -> None:
-    """Raise SceneError, with its key, for a wall that does not fit into the scene."""
+    """Raise SceneError for a wall that does not fit into the scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+
+    Raises
+    ------
+    SceneError
+        With the key of the wall.
+    """
     for n, wall in enumerate(scene.walls):
         if not isinstance(wall, wall_kind(scene.container)):
             raise SceneError(f"walls[{n}]", wall, WALL_RULE)

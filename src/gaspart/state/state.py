@@ -12,19 +12,64 @@ from gaspart.scene.faces import FLOW, GRADIENT
 
 @dataclass(repr=False)
 class State:
-    """All particles at one time.
+    """All particles at one time: the input and the output of engines.
 
-    time; positions (N, d), inside the container on periodic axes; velocities (N, d); images (N, d), how often
-    each particle has crossed the container on periodic axes; radii, masses (N,); species (N,), the index of
-    the particle's species, explicit particles being one more species after the others; lengths (d,); spins,
-    angular velocities, (N,) in 2D and (N, 3) in 3D; moments_of_inertia (N,); gravity (d,) or None;
-    well_energies (N,), the potential energy in the wells of the faces, and vibrations (N,), the energy of
-    each particle's vibration, or None; piston (2,), its place along its axis and its velocity, and
-    piston_face, the face of the container or the interior wall that it is, or None; of a sheared gas
-    displaced, how far images above the container are displaced along x, and shear_rate, du_x / dy of the flow
-    that the velocities include, or None; where faces are open, numbers (N,), which of the particles of the
-    run are inside, or None. The mass and moment of inertia of a fixed particle are infinite; they count in no
-    sum.
+    The mass and the moment of inertia of a fixed particle are infinite. They count in no sum.
+
+    Parameters
+    ----------
+    time : float, [time]
+        Time.
+    positions : ndarray, shape (N, d), [length]
+        Positions, inside the container on periodic axes.
+    velocities : ndarray, shape (N, d), [length/time]
+        Velocities.
+    images : ndarray of int, shape (N, d)
+        How often each particle has crossed the container on periodic axes.
+    radii : ndarray, shape (N,), [length]
+        Radii.
+    masses : ndarray, shape (N,), [mass]
+        Masses.
+    species : ndarray of int, shape (N,)
+        Index of the particle's species. Explicit particles are one more species after the others.
+    lengths : ndarray, shape (d,), [length]
+        Lengths of the container.
+    spins : ndarray, shape (N,) in 2D or (N, 3) in 3D, [1/time]
+        Angular velocities.
+    moments_of_inertia : ndarray, shape (N,), [mass length^2]
+        Moments of inertia.
+    gravity : ndarray, shape (d,), optional, [length/time^2]
+        Acceleration. None without gravity.
+    well_energies : ndarray, shape (N,), optional, [energy]
+        Potential energy in the wells of the faces. None without wells.
+    vibrations : ndarray, shape (N,), optional, [energy]
+        Energy of each particle's vibration. None if no particle vibrates.
+    piston : ndarray, shape (2,), optional, [length] and [length/time]
+        Position of the piston along its axis, and its velocity. None without a piston.
+    piston_face : str, optional
+        Face of the container or interior wall that is the piston.
+    displaced : float, optional, [length]
+        Displacement along x of images above the container. None unless the gas is sheared.
+    shear_rate : float, optional, [1/time]
+        Shear rate du_x / dy of the flow that the velocities include. None unless the gas is sheared.
+    numbers : ndarray of int, shape (N,), optional
+        Numbers of the particles inside among all particles of the run. None unless faces are open.
+
+    See Also
+    --------
+    Simulation : Advance a state in time.
+    last_state : Return the state at the end of a run.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> from gaspart.state.initial import initial_state
+    >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+    >>> state = initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1)
+    >>> state
+    <State of 1 discs at time 0>
+    >>> state.positions, state.moments_of_inertia
+    (array([[2., 5.]]), array([0.125]))
     """
 
     time: float
@@ -52,17 +97,47 @@ class State:
 
     @property
     def count(self) -> int:
-        """N, the number of particles."""
+        """Number N of particles.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).count
+        1
+        """
         return len(self.positions)
 
     @property
     def dimension(self) -> int:
-        """2 or 3."""
+        """Number of dimensions, 2 or 3.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).dimension
+        2
+        """
         return self.positions.shape[1]
 
     @property
     def unwrapped(self) -> np.ndarray:
-        """(N, d) positions continued across periodic faces."""
+        """Positions continued across periodic faces, shape (N, d), [length].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+        >>> state = initial_state(gp.Scene(box, particles=[disc]), seed=1)
+        >>> state.images[0] = 1, 0
+        >>> state.unwrapped
+        array([[12.,  5.]])
+        """
         places = self.positions + self.images * self.lengths
         if self.displaced is not None:
             places[:, FLOW] += self.images[:, GRADIENT] * self.displaced
@@ -70,24 +145,63 @@ class State:
 
     @property
     def speeds(self) -> np.ndarray:
-        """(N,) speeds."""
+        """Speeds of the particles, shape (N,), [length/time].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).speeds
+        array([5.])
+        """
         return np.sqrt((self.velocities**2).sum(axis=1))
 
     @property
     def kinetic_energies(self) -> np.ndarray:
-        """(N,) kinetic energies, of flight and spin together; 0 for a fixed particle."""
+        """Kinetic energies of flight and spin together, shape (N,), [energy]; 0 for a fixed particle.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).kinetic_energies
+        array([12.5])
+        """
         flight = _finite(self.masses) * (self.velocities**2).sum(axis=1)
         turning = _finite(self.moments_of_inertia) * self.spins.T**2
         return 0.5 * (flight + (turning if turning.ndim == 1 else turning.sum(axis=0)))
 
     @property
     def momentum(self) -> np.ndarray:
-        """(d,) total momentum."""
+        """Total momentum, shape (d,), [mass length/time].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).momentum
+        array([3., 4.])
+        """
         return (_finite(self.masses)[:, None] * self.velocities).sum(axis=0)  # not @: BLAS differs by machine
 
     @property
     def angular_momentum(self) -> np.ndarray | float:
-        """Total angular momentum about the container's origin, spins included: a number in 2D, (3,) in 3D."""
+        """Total angular momentum about the container's origin, spins included, [mass length^2/time].
+
+        It is a number in 2D and has the shape (3,) in 3D.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> state = initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1)
+        >>> float(state.angular_momentum)
+        -7.0
+        """
         orbital = np.cross(self.unwrapped, self.velocities) if self.dimension == 3 else _cross(self)
         return (_finite(self.masses) * orbital.T + _finite(self.moments_of_inertia) * self.spins.T).sum(
             axis=-1
@@ -95,33 +209,88 @@ class State:
 
     @property
     def translational_energy(self) -> float:
-        """Kinetic energy of flight, of all particles."""
+        """Kinetic energy of flight of all particles, [energy].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).translational_energy
+        12.5
+        """
         return 0.5 * float((_finite(self.masses)[:, None] * self.velocities**2).sum())
 
     @property
     def rotational_energy(self) -> float:
-        """Kinetic energy of spin, of all particles."""
+        """Kinetic energy of spin of all particles, [energy].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle((2.0, 5.0), (3.0, 4.0), radius=0.5, spin=2.0)
+        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).rotational_energy
+        0.25
+        """
         if not self.spins.any():  # those of smooth particles, at a fraction of the cost
             return 0.0
         return 0.5 * float((_finite(self.moments_of_inertia) * (self.spins**2).T).sum())
 
     @property
     def temperature(self) -> float:
-        """k_B T of a gas without walls: that of flight about the centre of mass, per degree of freedom.
-        Raises ZeroDivisionError for fewer than two particles."""
+        """Temperature k_B T of a gas without walls, [energy].
+
+        It is 2 E / (d (N - 1)), with the energy E of flight about the centre of mass: per degree of freedom.
+
+        Raises
+        ------
+        ZeroDivisionError
+            If there are fewer than 2 particles.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> first = gp.Particle(position=(2.0, 5.0), velocity=(1.0, 0.0), radius=0.5)
+        >>> second = gp.Particle(position=(7.0, 5.0), velocity=(-1.0, 0.0), radius=0.5)
+        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[first, second]), seed=1).temperature
+        1.0
+        """
         momentum = self.momentum
         whole = 0.5 * float((momentum**2).sum()) / float(_finite(self.masses).sum())
         return 2.0 * (self.translational_energy - whole) / (self.dimension * (self.count - 1))
 
     @property
     def kinetic_energy(self) -> float:
-        """Translational and rotational."""
+        """Kinetic energy of flight and spin of all particles, [energy].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).kinetic_energy
+        12.5
+        """
         return self.translational_energy + self.rotational_energy
 
     @property
     def potential_energy(self) -> float:
-        """The energy of all particles in wells and under gravity, 0 where their centres are at the origin; on
-        periodic axes it goes on falling from image to image."""
+        """Energy of all particles in wells and under gravity, [energy].
+
+        The energy under gravity is 0 if the centres are at the origin. On periodic axes it goes on falling
+        from image to image.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[disc], gravity=(0.0, -2.0))
+        >>> initial_state(scene, seed=1).potential_energy
+        10.0
+        """
         energy = 0.0 if self.well_energies is None else float(self.well_energies.sum())
         if self.gravity is not None:
             energy -= float((_finite(self.masses)[:, None] * self.unwrapped * self.gravity).sum())
@@ -129,23 +298,74 @@ class State:
 
     @property
     def vibrational_energy(self) -> float:
-        """The energy of the vibrations of all particles; 0 where none vibrates."""
+        """Energy of the vibrations of all particles, [energy]; 0 if no particle vibrates.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).vibrational_energy
+        0.0
+        """
         return 0.0 if self.vibrations is None else float(self.vibrations.sum())
 
     @property
     def energy(self) -> float:
-        """Kinetic, potential and vibrational."""
+        """Sum of the kinetic, potential and vibrational energy of all particles, [energy].
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[disc], gravity=(0.0, -2.0))
+        >>> initial_state(scene, seed=1).energy
+        22.5
+        """
         return self.kinetic_energy + self.potential_energy + self.vibrational_energy
 
     def copy(self) -> State:
-        """A state that shares no array with this one, to be changed and given to another simulation."""
+        """Return a state that shares no array with this state.
+
+        Returns
+        -------
+        State
+            Copy, to be changed and given to another simulation.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> state = initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1)
+        >>> reverse = state.copy()
+        >>> reverse.velocities *= -1.0
+        >>> state.momentum, reverse.momentum
+        (array([3., 4.]), array([-3., -4.]))
+        """
         arrays: dict[str, Any] = {
             key: value.copy() for key, value in vars(self).items() if isinstance(value, np.ndarray)
         }
         return replace(self, **arrays)
 
     def read_only(self) -> State:
-        """A state whose arrays cannot be changed: a change would not be that of the simulation."""
+        """Return a state whose arrays cannot be changed.
+
+        Returns
+        -------
+        State
+            State with read-only views of the same arrays: a change would not reach the simulation.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.state.initial import initial_state
+        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
+        >>> state = initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1)
+        >>> state.read_only().velocities.flags.writeable
+        False
+        """
         state = replace(self)
         for key, value in vars(self).items():
             if isinstance(value, np.ndarray):
@@ -156,8 +376,22 @@ class State:
 
 
 def by_number(state: State, values: np.ndarray, capacity: int) -> np.ndarray:
-    """(capacity, ...) values (N, ...) of the particles of a state, each at its number in the run; NaN where
-    there is no particle. The same values without open faces."""
+    """Return values of the particles of a state, each at its number in the run.
+
+    Parameters
+    ----------
+    state : State
+        State whose particles have the values.
+    values : ndarray, shape (N, ...)
+        Values of the particles inside.
+    capacity : int
+        Largest number of particles of the run.
+
+    Returns
+    -------
+    ndarray, shape (capacity, ...)
+        Values, NaN for a number without a particle. Without open faces these are `values` themselves.
+    """
     if state.numbers is None:
         return values
     every = np.full((capacity, *values.shape[1:]), np.nan)
@@ -166,11 +400,11 @@ def by_number(state: State, values: np.ndarray, capacity: int) -> np.ndarray:
 
 
 def _finite(values: np.ndarray) -> np.ndarray:
-    """Values with infinity replaced by 0."""
+    """Return values with infinity replaced by 0."""
     return np.where(np.isinf(values), 0.0, values)
 
 
 def _cross(state: State) -> np.ndarray:
-    """(N,) r x v in 2D."""
+    """Return r x v of each particle in 2D, (N,)."""
     r, v = state.unwrapped, state.velocities
     return r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0]

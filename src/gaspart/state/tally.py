@@ -13,8 +13,20 @@ SPEED, PRESSED, HEATED = "length/time", "mass length^(2-d)/time", "mass length^(
 
 
 def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]:
-    """The fields of `Tally` from the sums of the stress tensor, of its collisional part, each by rows, and of
-    the heat flux, (2 d^2 + d,), and from the velocity (d,) about which they are."""
+    """Return the fields of `Tally` for the fluxes of momentum and heat.
+
+    Parameters
+    ----------
+    sums : ndarray, shape (2 d^2 + d,)
+        Sums of the stress tensor and of its collisional part, each by rows, and of the heat flux.
+    drift : ndarray, shape (d,), [length/time]
+        Velocity about which the sums are.
+
+    Returns
+    -------
+    dict of str to ndarray
+        `stress_sum`, `collisional_stress_sum`, `heat_sum` and `flux_velocity`.
+    """
     dimension = len(drift)
     stress = sums[: 2 * dimension**2].reshape(2, dimension, dimension)
     heat = sums[2 * dimension**2 :]
@@ -24,48 +36,108 @@ def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]
 
 @dataclass
 class Tally:
-    """Counters of a simulation and other sums, since the last reset.
+    """Counters and sums of a simulation since the last reset.
 
-    time: simulated time covered; collisions of pairs; wall_hits and wall_impulse (2d + interior walls,), the
-    momentum given to each face (x low, x high, y low ...) and then to each interior wall; wall_energy, the
-    heat given to each of them by particles that it re-emitted thermally; virial_sum: sum of
-    |dr.dp| over collisions; pair_tests: pairs examined; box_visits: boxes searched; crossings of box
-    boundaries; worst_contact: largest |r^2/sigma^2 - 1| at a contact; dissipated_energy: energy lost in
-    inelastic contacts; elastic_contacts, of pairs and with walls, that were elastic since an earlier one of
-    the same particle had not ended (`Restitution.contact_duration`), and retained_energy, what they would
-    have dissipated; thermostat_energy: energy given by kicks.
+    F faces: the 2 d faces of the container (x low, x high, y low, ...), then the interior walls.
 
-    If a thermal face moves, or a force drives the gas along it, otherwise None: wall_shear (2d + interior
-    walls, d), the momentum along each axis given to each thermal face by particles that leave it with all
-    components drawn; wall_energy then includes the work that the face does.
+    Parameters
+    ----------
+    time : float, [time]
+        Simulated time.
+    collisions : int
+        Collisions of pairs.
+    wall_hits : ndarray of int, shape (F,)
+        Particles that hit each face. If faces are open: particles that have left there.
+    wall_impulse : ndarray, shape (F,), [mass length/time]
+        Momentum given to each face. If faces are open: the momentum along the normal that particles which
+        leave and enter carry through.
+    wall_energy : ndarray, shape (F,), [energy]
+        Heat given to each face by particles that it re-emitted thermally. It includes the work of the face if
+        there is a `wall_shear`. If faces are open: the energy of particles that have left less the energy of
+        particles that have entered.
+    virial_sum : float, [mass length^2/time]
+        Sum of abs(dr.dp) over collisions.
+    pair_tests : int
+        Pairs examined.
+    box_visits : int
+        Boxes searched.
+    fixed_collisions : int, default 0
+        Collisions with fixed particles, which are also among `collisions`.
+    crossings : int, default 0
+        Crossings of box boundaries.
+    worst_contact : float, default 0.0, [1]
+        Largest abs(r^2/sigma^2 - 1) at a contact.
+    dissipated_energy : float, default 0.0, [energy]
+        Energy lost in inelastic contacts.
+    elastic_contacts : int, default 0
+        Contacts of pairs and with walls that were elastic because an earlier contact of the same particle had
+        not ended (`Restitution.contact_duration`).
+    retained_energy : float, default 0.0, [energy]
+        Energy that these contacts would have dissipated.
+    thermostat_energy : float, default 0.0, [energy]
+        Energy given by kicks.
+    steps : int, default 0
+        Steps of the engine, if it has time steps.
+    overlaps_left : int, default 0
+        Pairs that still overlap and approach when a step ends: an error of the time-stepped engine.
+    deepest_overlap : float, default 0.0, [1]
+        Deepest overlap that occurred, as a fraction of the contact distance: an error of the time-stepped
+        engine.
+    multiple_contacts : int, default 0
+        Particles that met more than one other particle in a step: an error of the time-stepped engine.
+    rebuilds : int, default 0
+        Rebuilds of the neighbour list of the time-stepped engine.
+    wall_shear : ndarray, shape (F, d), optional, [mass length/time]
+        Momentum along each axis given to each thermal face by particles that leave it with all components
+        drawn. None unless a thermal face moves or a force drives the gas along it.
+    entries : ndarray of int, shape (F,), optional
+        Particles that have entered through each face. None unless faces are open.
+    momentum_per_area : ndarray, shape (F, d), optional, [mass length^(2-d)/time]
+        Momentum along each axis given to each face, outwards along its normal, with the momentum of each
+        particle divided by the area of the face that centres of its size can reach (`scene.accessible`), in
+        the container at the start. It is 0 for interior walls and for faces that an engine does not tally.
+        None unless particles of several sizes reach different areas of faces.
+    heat_per_area : ndarray, shape (F,), optional, [mass length^(3-d)/time^2]
+        Energy of `wall_energy`, divided in the same way, and with the same zeros. Absent without
+        `momentum_per_area`.
+    stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
+        Time integral of the stress tensor times the volume: of m v v and, at a collision, of r dp. Here r is
+        the vector from the second particle to the first, and dp the momentum that the first gains. None
+        unless requested.
+    collisional_stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
+        Collisional part of `stress_sum`.
+    heat_sum : ndarray, shape (d,), optional, [mass length^3/time^2]
+        Time integral of the heat flux times the volume: of E v and r dE [1]_.
+    flux_velocity : ndarray, shape (d,), optional, [length/time]
+        Velocity of the centre of mass, about which all velocities of these fluxes are; for a sheared gas
+        about the flow, at time 0.
+    momentum_flux_sum : ndarray, shape (species, bins), optional, [mass length/time]
+        Momentum of each species, and last of all single particles, along an axis that has flown through
+        planes across the axis with the particles themselves: m v^2 of particles that cross, times the time.
+        It is the mean over the planes of each bin. Under gravity the momentum that gravity has given to the
+        particles below is subtracted (`analysis.impulses`). None unless requested.
+    contact_impulse_sum : ndarray, shape (shells,), optional, [mass length^2/time]
+        Mean over each shell of k_B T g(r) times the time, from the pairs that collide
+        (`analysis.pair_impulses`). None unless requested.
+    other_impulse_sum : ndarray, shape (shells,), optional, [mass length^2/time]
+        Contribution of all other pairs to the same quantity.
 
-    If faces are open, otherwise None: entries (2d + interior walls,), of particles through each of them;
-    wall_hits are then those that have left there, wall_impulse the momentum along the normal that both carry
-    through, and wall_energy the energy of those that have left less that of those that have entered.
+    See Also
+    --------
+    Simulation : Simulation that has a tally.
 
-    If particles of several sizes reach other areas of faces, otherwise None: momentum_per_area (2d + interior
-    walls, d), the momentum along each axis given to each face, outwards along its normal, with that of each
-    particle divided by the area of the face that centres of its size can reach (`scene.accessible`), in the
-    container at the start; heat_per_area (2d + interior walls,), likewise of wall_energy. Those of interior
-    walls are 0, and those that an engine does not tally.
+    References
+    ----------
+    .. [1] E. Helfand, Phys. Rev. 119, 1 (1960).
 
-    If particles are fixed, fixed_collisions: the collisions with these, which are among `collisions`, too.
-
-    If they were asked for, otherwise None: stress_sum (d, d), the time integral of the stress tensor times
-    the volume, of m v v and, at a collision, of r dp, with r the vector from the second particle to the
-    first and dp the momentum that this gains; collisional_stress_sum (d, d), the latter alone; heat_sum
-    (d,), that of the heat flux times the volume, likewise of E v and r dE (Helfand, Phys. Rev. 119, 1
-    (1960)); flux_velocity (d,), that of the centre of mass, about which all these velocities are; of a
-    sheared gas about the flow, at time 0. momentum_flux_sum (species, bins): of each species, and last
-    of all single particles, the momentum along an axis that has flown through planes across it with the
-    particles themselves (m v^2 of those that cross, times the time), the mean over the planes of each bin;
-    under gravity less the momentum that this has given to the particles below (`analysis.impulses`).
-    contact_impulse_sum, other_impulse_sum (shells,): k_B T g(r) times the time, the mean over each shell, as
-    the pairs that collide give it, and what all other pairs add (`analysis.pair_impulses`).
-
-    The time-stepped engine also reports its errors: steps; overlaps_left, pairs that still overlap and
-    approach when a step ends; deepest_overlap met, as a fraction of the contact distance;
-    multiple_contacts, particles that met more than one other in a step; rebuilds of its neighbour list.
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> import numpy as np
+    >>> hits, impulse = np.array([0, 2, 1, 0]), np.array([0.0, 4.0, 2.0, 0.0])
+    >>> tally = gp.Tally(10.0, 3, hits, impulse, np.zeros(4), virial_sum=5.0, pair_tests=9, box_visits=0)
+    >>> tally.wall_impulse / tally.time
+    array([0. , 0.4, 0.2, 0. ])
     """
 
     time: float
@@ -124,5 +196,24 @@ class Tally:
 def compressibility_factor(
     virial: np.ndarray | float, count: int, dimension: int, temperature: float, time: np.ndarray | float
 ) -> np.ndarray:
-    """Z = 1 + sum |dr . dp| / (d N k_B T t) of N particles without walls, from the virial sum of a time t."""
+    """Compute the compressibility factor of particles without walls from their virial sum.
+
+    Parameters
+    ----------
+    virial : float or ndarray, [mass length^2/time]
+        Sum of abs(dr.dp) over the collisions in a time t.
+    count : int
+        Number N of particles.
+    dimension : {2, 3}
+        Discs or spheres.
+    temperature : float, [energy]
+        Temperature k_B T.
+    time : float or ndarray, [time]
+        Time t.
+
+    Returns
+    -------
+    ndarray, [1]
+        Z = 1 + sum abs(dr.dp) / (d N k_B T t).
+    """
     return np.asarray(1.0 + virial / (dimension * count * temperature * time))

@@ -1,4 +1,4 @@
-"""Checks that every formula of this package makes of its arguments, in one place."""
+"""Checks of the arguments of all formulas of this package."""
 
 import inspect
 import math
@@ -13,7 +13,7 @@ from gaspart.errors import SceneError
 Numbers: TypeAlias = float | np.ndarray
 """A number, or an array of them."""
 Values: TypeAlias = Any
-"""A result of `Numbers`: a number from numbers, an array of their shape from arrays."""
+"""Result of a function of `Numbers`: a number from numbers, an array of their shape from arrays."""
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -34,11 +34,22 @@ _RANGES = {
     "side_over_diameter": (1.0, math.inf, "must be finite and at least 1"),
     "count": (1.0, math.inf, "must be finite and at least 1"),
 }
-"""The smallest and the largest value of arguments, by name, and the rule in words."""
+"""Smallest and largest value of arguments, by name, and the rule in words."""
 
 
 def checked(function: Callable[P, R]) -> Callable[P, R]:
-    """`function`, which raises SceneError, a ValueError, for an argument out of the range of its name."""
+    """Return a function that raises SceneError for an argument out of the range of its name.
+
+    Parameters
+    ----------
+    function : callable
+        Formula, whose arguments have names of `_RANGES` or are not checked.
+
+    Returns
+    -------
+    callable
+        The formula with checks. SceneError is a ValueError.
+    """
     names = tuple(inspect.signature(function).parameters)
 
     @wraps(function)
@@ -52,7 +63,29 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def checked_range(name: str, value: Any, least: float, most: float, rule: str) -> np.ndarray:
-    """Return `value` as a float64 array; raise SceneError unless it is finite and within the range."""
+    """Return `value` as a float64 array, if it is finite and within the range.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument.
+    value : array_like
+        Number or numbers.
+    least, most : float
+        Ends of the range, which belong to it.
+    rule : str
+        Rule in words, for the message.
+
+    Returns
+    -------
+    ndarray, same shape as `value`
+        Numbers.
+
+    Raises
+    ------
+    SceneError
+        If a number is not finite or out of range.
+    """
     values = np.asarray(value, dtype=float)
     wrong = ~((values >= least) & (values <= most) & np.isfinite(values))
     if wrong.any():
@@ -61,13 +94,47 @@ def checked_range(name: str, value: Any, least: float, most: float, rule: str) -
 
 
 def checked_dimension(dimension: int) -> int:
-    """Return `dimension` if it is 2 or 3; raise SceneError otherwise."""
+    """Return `dimension`, if it is 2 or 3.
+
+    Parameters
+    ----------
+    dimension : int
+        Number of dimensions.
+
+    Returns
+    -------
+    int
+        The same number.
+
+    Raises
+    ------
+    SceneError
+        If it is another number.
+    """
     if dimension not in (2, 3):
         raise SceneError("dimension", dimension, "must be 2 or 3")
     return dimension
 
 
 def checked_packing_fraction(packing_fraction: Numbers, largest: float) -> np.ndarray:
-    """Return `packing_fraction` as a float64 array; raise SceneError outside [0, largest] (or NaN)."""
+    """Return `packing_fraction` as a float64 array, if it is in the range of a formula.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction.
+    largest : float, [1]
+        Upper end of the range, which begins at 0.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Packing fraction.
+
+    Raises
+    ------
+    SceneError
+        If a number is out of range or NaN.
+    """
     rule = f"this formula holds from 0 to {largest:g}"
     return checked_range("packing_fraction", packing_fraction, 0.0, largest, rule)

@@ -1,4 +1,4 @@
-"""Gases at walls that hold particles: a step well, a hard layer in it, and the flux from a wall.
+"""Gases at walls that hold particles: step well, hard layer in it, flux from a wall.
 
 Energies are in k_B T unless a temperature is among the arguments. A well of width w holds a particle whose
 centre is within w of the lowest position that it can reach.
@@ -12,27 +12,81 @@ from gaspart.theory.geometry import particle_volume
 from gaspart.theory.potential import packing_fraction_at
 
 _EXACT = np.sqrt(0.75)
-"""Height above a layer of spheres of diameter 1 from which on a point is near one of them at most."""
+"""Height above a layer of spheres of diameter 1 above which a point is near one sphere at most."""
 
 
 @checked
 def well_ratio(depth: Numbers, width: Numbers, outside: Numbers) -> Values:
-    """N_ads / N_gas = (w / outside) e^{depth / k_B T} of an ideal gas in equilibrium (exact).
+    """Compute N_ads / N_gas of an ideal gas in equilibrium with a step well.
 
-    `outside`: the volume that centres can reach outside the well, over its area. Langmuir's formula
-    N_ads / N_gas = (A lambda / V) e^{depth / k_B T} (Frederickx and Meerts 2010, section 4.5) with the width
-    of the well where the thermal wavelength lambda is there.
+    Parameters
+    ----------
+    depth : array_like, [1]
+        Depth of the well in k_B T.
+    width : float or ndarray, [length]
+        Width w of the well.
+    outside : float or ndarray, [length]
+        Volume that centres can reach outside the well, divided by its area.
+
+    Returns
+    -------
+    float or ndarray, [1]
+        Number of particles in the well divided by the number outside.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    (w / outside) e^{depth / k_B T} (exact). This is Langmuir's formula N_ads / N_gas = (A lambda / V)
+    e^{depth / k_B T} [1]_ with the width of the well instead of the thermal wavelength lambda.
+
+    References
+    ----------
+    .. [1] R. Frederickx and P. Meerts (2010), section 4.5.
+
+    Examples
+    --------
+    >>> from gaspart.theory.adsorption import well_ratio
+    >>> round(float(well_ratio(depth=3.0, width=0.1, outside=10.0)), 4)
+    0.2009
     """
     return width / outside * np.exp(depth)
 
 
 @checked
 def excess_in_well(held: Numbers, free: Numbers, diameter: float, width: float, outside: float) -> Values:
-    """ln of N_ads / N_gas of spheres over that of an ideal gas, to first order in the densities.
+    """Compute ln of N_ads / N_gas of spheres divided by the ratio of an ideal gas.
 
-    held, free: number densities in the well and outside, both of uniform thickness, `width` and `outside`,
-    of at least a diameter. A sphere's ball of radius sigma, 4 pi sigma^3 / 3, is closed to other centres;
-    beyond a plane at a random distance within a layer of thickness t lies pi sigma^4 / (4 t) of it (exact).
+    Parameters
+    ----------
+    held : float or ndarray, [1/length^3]
+        Number density in the well.
+    free : float or ndarray, [1/length^3]
+        Number density outside.
+    diameter : float, [length]
+        Diameter sigma of a sphere.
+    width : float, [length]
+        Uniform thickness of the well, at least a diameter.
+    outside : float, [length]
+        Uniform thickness of the space outside, at least a diameter.
+
+    Returns
+    -------
+    float or ndarray, [1]
+        Logarithm of the ratio, to first order in the densities.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    A sphere's ball of radius sigma, 4 pi sigma^3 / 3, is closed to other centres. Beyond a plane at a random
+    distance within a layer of thickness t lies the volume pi sigma^4 / (4 t) of this ball (exact).
     """
     ball, beyond = particle_volume(3, 2.0 * diameter), 0.25 * np.pi * diameter**4
     in_well = held * (ball - 2.0 * beyond / width) + free * beyond / width
@@ -42,45 +96,148 @@ def excess_in_well(held: Numbers, free: Numbers, diameter: float, width: float, 
 
 @checked
 def length_in_langmuirs_formula(ratio: Numbers, depth: Numbers, outside: Numbers) -> Values:
-    """The length in the place of lambda in N_ads / N_gas = (A lambda / V) e^{depth / k_B T} (identity)."""
+    """Compute the length that replaces lambda in Langmuir's formula, from a ratio N_ads / N_gas.
+
+    Parameters
+    ----------
+    ratio : float or ndarray, [1]
+        Ratio N_ads / N_gas.
+    depth : array_like, [1]
+        Depth of the well in k_B T.
+    outside : float or ndarray, [length]
+        Volume V that centres can reach outside the well, divided by its area A.
+
+    Returns
+    -------
+    float or ndarray, [length]
+        Length lambda of N_ads / N_gas = (A lambda / V) e^{depth / k_B T} (identity).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    """
     return ratio * outside * np.exp(-np.asarray(depth, dtype=float))
 
 
 @checked
 def planck_constant(length: Numbers, mass: Numbers, temperature: Numbers) -> Values:
-    """h for which `length` is the thermal wavelength: length sqrt(2 pi m k_B T) (definition)."""
+    """Compute the constant h for which a length is the thermal wavelength.
+
+    Parameters
+    ----------
+    length : float or ndarray, [length]
+        Thermal wavelength.
+    mass : float or ndarray, [mass]
+        Mass m of a particle.
+    temperature : array_like, [energy]
+        Temperature times k_B.
+
+    Returns
+    -------
+    float or ndarray, [energy time]
+        Planck's constant h = length sqrt(2 pi m k_B T) (definition).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    """
     return length * np.sqrt(2.0 * np.pi * mass * np.asarray(temperature, dtype=float))
 
 
 def scaled_particle_activity(packing_fraction: Numbers) -> Values:
-    """Discs: eta / (1 - eta) exp[(3 eta - 2 eta^2) / (1 - eta)^2], scaled-particle theory.
+    """Compute the activity of hard discs by scaled-particle theory.
 
-    It is z w e^{depth / k_B T} pi sigma^2 / 4 of a layer of coverage eta whose gas has the activity z. From
-    Z = 1 / (1 - eta)^2 (Helfand, Frisch and Lebowitz, J. Chem. Phys. 34, 1037 (1961); tested to the
-    second order).
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, (coverage) of the discs, from 0 to 0.70.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Activity z w e^{depth / k_B T} pi sigma^2 / 4 of a layer of coverage eta, whose gas has the activity
+        z.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    eta / (1 - eta) exp[(3 eta - 2 eta^2) / (1 - eta)^2], from Z = 1 / (1 - eta)^2 [1]_ (tested to the second
+    order).
+
+    References
+    ----------
+    .. [1] E. Helfand, H. L. Frisch and J. L. Lebowitz, J. Chem. Phys. 34, 1037 (1961).
+
+    Examples
+    --------
+    >>> from gaspart.theory.adsorption import scaled_particle_activity
+    >>> round(float(scaled_particle_activity(0.3)), 4)
+    1.8628
     """
     eta = checked_packing_fraction(packing_fraction, STABLE_DISCS)
     return eta / (1.0 - eta) * np.exp((3.0 * eta - 2.0 * eta**2) / (1.0 - eta) ** 2)
 
 
 def layer_diameter(width: Numbers) -> Values:
-    """Diameter of the hard discs that spheres of diameter 1 are in a layer of this width, sqrt(1 - w^2 / 6).
+    """Compute the diameter of the hard discs that represent spheres in a layer.
 
-    The centres' heights are uniform and independent, so their difference has the mean square w^2 / 6 (to
-    first order in w^2, where neighbours touch).
+    Parameters
+    ----------
+    width : array_like, [1]
+        Width w of the layer, in diameters of the spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `width`, [1]
+        Diameter of the discs, in diameters of the spheres.
+
+    Notes
+    -----
+    sqrt(1 - w^2 / 6). The heights of the centres are uniform and independent, so the mean square of their
+    difference is w^2 / 6 (to first order in w^2, where neighbours touch).
     """
     return np.sqrt(1.0 - np.asarray(width, dtype=float) ** 2 / 6.0)
 
 
 def excluded_in_front(packing_fraction: float, width: float) -> float:
-    """The volume in front of a layer that each further sphere, of diameter 1, closes to the gas's centres.
+    """Compute the volume in front of a layer that a sphere closes to the gas.
 
-    Of a single sphere it is the part of its ball of radius 1 that lies in front of the layer, 2 pi / 3 where
-    that is thin; of more it is less, since their balls overlap. At the height h above the layer's middle a
-    sphere of the gas needs a circle without discs of the radius R = sqrt(1 - h^2): its probability is exact
-    up to R = 1/2, and scaled-particle theory's beyond (Helfand, Frisch and Lebowitz, J. Chem. Phys. 34, 1037
-    (1961)); the volume is the derivative of what is closed with respect to the number of discs. Raises
-    SceneError beyond the stable discs.
+    It is the volume that each further sphere of diameter 1 in the layer closes to the centres of the gas.
+
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Coverage eta of the layer, from 0 to 0.70, the stable discs.
+    width : float, [1]
+        Width of the layer, in diameters of the spheres.
+
+    Returns
+    -------
+    float, [1]
+        Volume per sphere, in units of the cubed diameter.
+
+    Raises
+    ------
+    SceneError
+        If the coverage is above the highest of stable discs.
+
+    Notes
+    -----
+    For a single sphere it is the part of its ball of radius 1 that lies in front of the layer, 2 pi / 3 if
+    the layer is thin. For more spheres it is less, since their balls overlap. At the height h above the
+    layer's middle a sphere of the gas needs a circle of radius R = sqrt(1 - h^2) without discs. The
+    probability of such a circle is exact up to R = 1/2; beyond, it is scaled-particle theory's [1]_. The
+    volume is the derivative of the closed volume by the number of discs.
+
+    References
+    ----------
+    .. [1] E. Helfand, H. L. Frisch and J. L. Lebowitz, J. Chem. Phys. 34, 1037 (1961).
     """
     eta = float(checked_packing_fraction(packing_fraction, STABLE_DISCS))
     nodes, weights = np.polynomial.legendre.leggauss(32)
@@ -99,24 +256,63 @@ def excluded_in_front(packing_fraction: float, width: float) -> float:
 
 
 def layer_activity(activity: Numbers, packing_fraction: float, gas_density: float, width: float) -> Values:
-    """The activity of the hard discs that spheres of diameter 1 are in a well of this width.
+    """Compute the activity of the hard discs that represent spheres in a well.
 
-    activity: beta P w e^{depth / k_B T} pi / 4 of the gas, whose pressure P is the density at contact with a
-    hard wall; it is right for a single sphere in a thin well. To first order in the gas's density: a sphere
-    closes less of the gas's room where others do so already, see `excluded_in_front`.
+    Parameters
+    ----------
+    activity : float or ndarray, [1]
+        beta P w e^{depth / k_B T} pi / 4 of the gas, whose pressure P is the density at contact with a hard
+        wall.
+    packing_fraction : float, [1]
+        Coverage eta of the layer, from 0 to 0.70.
+    gas_density : float or ndarray, [1]
+        Number density of the gas, in units of the diameter of the spheres.
+    width : float, [1]
+        Width w of the well, in diameters of the spheres.
+
+    Returns
+    -------
+    float or ndarray, [1]
+        Activity of the discs.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    `activity` is right for a single sphere in a thin well. The correction is of first order in the gas's
+    density: a sphere closes less of the space of the gas where other spheres close it already, see
+    `excluded_in_front`.
     """
     gained = 2.0 * np.pi / 3.0 - excluded_in_front(packing_fraction, width)
     return activity * layer_diameter(width) ** 2 * np.exp(gas_density * gained)
 
 
 def excess_of_few(activity: float, held: float, others: float) -> float:
-    """By what part a layer of hard discs holds more, on average, than one in equilibrium with a large gas.
+    """Compute the relative excess of discs in a layer in equilibrium with a small gas.
 
-    The gas with which it exchanges has on average `others` particles, and its activity goes down with each
-    that the layer gains. To the first order beyond Gaussian fluctuations, with the cumulants kappa_n of the
-    number of discs under a large gas, whose mean is `held`, that is (kappa_2 - kappa_3) / (2 (others +
-    kappa_2)) discs; kappa_2 = S held, kappa_3 = (S^2 + S') held, S = d ln eta / d ln z, S' = dS / d ln z.
-    An ideal layer has no such excess (exact: the number is binomial).
+    Parameters
+    ----------
+    activity : float, [1]
+        Activity of the discs.
+    held : float
+        Mean number of discs in the layer under a large gas.
+    others : float
+        Mean number of particles of the gas with which the layer exchanges.
+
+    Returns
+    -------
+    float, [1]
+        Mean excess of the number of discs, divided by the number under a large gas.
+
+    Notes
+    -----
+    The activity of the gas decreases with each particle that the layer gains. To the first order beyond
+    Gaussian fluctuations, with the cumulants kappa_n of the number of discs under a large gas, the excess is
+    (kappa_2 - kappa_3) / (2 (others + kappa_2)) discs; kappa_2 = S held, kappa_3 = (S^2 + S') held, S = d ln
+    eta / d ln z, S' = dS / d ln z. An ideal layer has no such excess (exact: the number is binomial).
     """
     step = 0.05
     lower, middle, upper = np.log(
@@ -128,21 +324,71 @@ def excess_of_few(activity: float, held: float, others: float) -> float:
 
 @checked
 def langmuir_coverage(activity: Numbers) -> Values:
-    """K / (1 + K): places that each hold one particle (Langmuir, J. Am. Chem. Soc. 40, 1361
-    (1918))."""
+    """Compute the coverage of independent sites by Langmuir's isotherm.
+
+    Parameters
+    ----------
+    activity : array_like, [1]
+        Product K of equilibrium constant and pressure.
+
+    Returns
+    -------
+    float or ndarray, same shape as `activity`, [1]
+        Fraction K / (1 + K) of the sites, which hold one particle each, that are occupied.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    References
+    ----------
+    .. [1] I. Langmuir, J. Am. Chem. Soc. 40, 1361 (1918).
+    """
     activity = np.asarray(activity, dtype=float)
     return activity / (1.0 + activity)
 
 
 @checked
 def flux_density(speed: Numbers) -> Values:
-    """Density of the normal speeds, in units of sqrt(k_B T / m), with which particles leave a wall in
-    equilibrium: v e^{-v^2 / 2} (exact)."""
+    """Compute the probability density of the normal speeds of particles that leave a wall.
+
+    Parameters
+    ----------
+    speed : array_like, [1]
+        Normal speed v in units of sqrt(k_B T / m).
+
+    Returns
+    -------
+    float or ndarray, same shape as `speed`, [1]
+        Probability density v e^{-v^2 / 2} in equilibrium (exact).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    """
     speed = np.asarray(speed, dtype=float)
     return speed * np.exp(-0.5 * speed**2)
 
 
 @checked
 def slow_flux_share(speed: Numbers) -> Values:
-    """Share of those particles that leave more slowly than this: 1 - e^{-v^2 / 2} (exact)."""
+    """Compute the fraction of the particles leaving a wall that are slower than a normal speed.
+
+    Parameters
+    ----------
+    speed : array_like, [1]
+        Normal speed v in units of sqrt(k_B T / m).
+
+    Returns
+    -------
+    float or ndarray, same shape as `speed`, [1]
+        Fraction 1 - e^{-v^2 / 2} in equilibrium (exact).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    """
     return -np.expm1(-0.5 * np.asarray(speed, dtype=float) ** 2)

@@ -1,8 +1,8 @@
-r"""The linearised Boltzmann operator of hard discs and spheres, in Sonine polynomials of velocity.
+"""Linearised Boltzmann operator of hard discs and spheres, in Sonine polynomials of velocity.
 
 Chapman and Cowling, The Mathematical Theory of Non-uniform Gases (1970). Velocities are in sqrt(k_B T / m),
-frequencies per n sigma^(d-1) of them unless stated. The collision integrals are exact quadratures, so that
-the numbers of kinetic theory follow to as many digits as polynomials give. In the equation of Enskog a
+frequencies per n sigma^(d-1) of them unless stated. The collision integrals are exact quadratures, so the
+numbers of kinetic theory follow to as many digits as polynomials give. In the equation of Enskog a
 homogeneous gas relaxes by the same operator, times the contact value: rates in collisions of a particle do
 not depend on density.
 """
@@ -19,15 +19,32 @@ from gaspart.theory.geometry import unit_sphere_surface
 _FLUXES = {"viscosity": (2, 0), "conductivity": (1, 1)}
 """Rank of the harmonic tensor and order of the Sonine polynomial of the stress and of the heat flux."""
 _ORDERS = 5
-"""Polynomials of a flux: a sixth changes the integral of its correlation by 3e-5."""
+"""Number of polynomials of a flux: a sixth changes the integral of its correlation by 3e-5."""
 
 
 def collisions(
     dimension: int, nodes: int, restitution: float = 1.0
 ) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """All collisions of two Maxwellian particles, in which max(g.n, 0) counts: weights (Q,), and the
-    velocities (d, Q) of both before and of both after it.
+    """Return quadrature weights and velocities of all collisions of two Maxwellian particles.
 
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs or spheres.
+    nodes : int
+        Number of nodes for each component of the velocities.
+    restitution : float, default 1.0, [1]
+        Coefficient of normal restitution.
+
+    Returns
+    -------
+    weights : ndarray, shape (Q,), [1]
+        Weights, in which max(g.n, 0) counts.
+    velocities : tuple of ndarray, shape (d, Q), [1]
+        Velocities of both particles before, and of both after the collision.
+
+    Notes
+    -----
     The normal is the last axis: integrands are scalars, on which its direction has no influence. Exact for
     polynomials of a degree below 2 nodes in each component.
     """
@@ -57,9 +74,24 @@ def brackets(
     met: tuple[np.ndarray, tuple[np.ndarray, ...]],
     tagged: bool = False,
 ) -> np.ndarray:
-    """(K, K) collision integrals between S_k(v^2/2) times the harmonic tensor of this rank, contracted, for
-    Sonine polynomials of the given orders; met: of `collisions`; tagged: of one particle in a gas, by default
-    of the gas."""
+    """Compute the collision integrals between Sonine polynomials times a harmonic tensor.
+
+    Parameters
+    ----------
+    rank : int
+        Rank of the harmonic tensor.
+    orders : range
+        Orders k of the Sonine polynomials S_k(v^2/2), K of them.
+    met : tuple
+        Weights and velocities of `collisions`.
+    tagged : bool, default False
+        True for one particle in a gas, False for the gas itself.
+
+    Returns
+    -------
+    ndarray, shape (K, K), [1]
+        Collision integrals, with the tensors contracted.
+    """
     from scipy.special import eval_genlaguerre
 
     weights, velocities = met
@@ -78,7 +110,11 @@ def brackets(
 
 
 def _contraction(rank: int, v: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """|v|^l |w|^l P_l of their angle, in two dimensions cos(l angle)."""
+    """Return the contraction of two harmonic tensors of velocities.
+
+    It is v^l w^l P_l of the cosine of their angle, with v and w their sizes; in two dimensions cos(l angle)
+    instead of P_l.
+    """
     from scipy.special import eval_legendre
 
     size = np.sqrt((v**2).sum(axis=0) * (w**2).sum(axis=0))
@@ -89,13 +125,31 @@ def _contraction(rank: int, v: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 @lru_cache
 def flux_relaxation(quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """How the kinetic part of a flux of discs relaxes: rates (K,), per collisions of a particle, and weights
-    (K,), of sum 1, of its correlation sum w exp(-rate s) after s collisions of a particle.
+    """Compute rates and weights of the relaxation of the kinetic part of a flux of discs.
 
-    quantity: "viscosity", of which the flux is the shear stress, or "conductivity", the heat flux. The
-    spectrum of the operator is continuous: rates and weights are those of its Gauss quadrature, which gives
-    the correlation's integral and mean time to 1e-4. The integrals are the Sonine factors over the first
-    rate; the heat flux of discs relaxes half as fast as their stress. Raises KeyError for another quantity.
+    Parameters
+    ----------
+    quantity : {"viscosity", "conductivity"}
+        Transport coefficient, whose flux is the shear stress or the heat flux.
+
+    Returns
+    -------
+    rates : ndarray, shape (K,), [1]
+        Decay rates, per collision of a particle.
+    weights : ndarray, shape (K,), [1]
+        Weights, whose sum is 1.
+
+    Raises
+    ------
+    KeyError
+        If the quantity is unknown.
+
+    Notes
+    -----
+    The correlation of the flux after s collisions of a particle is sum w exp(-rate s). The spectrum of the
+    operator is continuous. Rates and weights belong to its Gauss quadrature, which gives the correlation's
+    integral and mean time to 1e-4. The integrals are the Sonine factors divided by the first rate; the heat
+    flux of discs relaxes half as fast as their stress.
     """
     rank, first = _FLUXES[quantity]
     orders = range(first, first + _ORDERS)

@@ -1,7 +1,6 @@
-"""A large particle in a dilute gas: friction, diffusion, and the Langevin equation's mean-squared
-displacement.
+"""Brownian motion of a large particle in a dilute gas: friction, diffusion and the Langevin equation.
 
-k_B = 1. Times, lengths and masses in any consistent units.
+k_B = 1. Times, lengths and masses have any consistent units.
 """
 
 import math
@@ -11,7 +10,7 @@ import numpy as np
 from gaspart.theory._arguments import Numbers, Values, checked
 
 SONINE_EQUAL_MASSES = 1.01895
-"""D of a particle as heavy as the gas's, over the first Sonine approximation k_B T / (M rate) (derived
+"""D of a particle as heavy as the gas's, divided by the first Sonine approximation k_B T / (M rate) (derived
 again, as in `enskog`)."""
 
 
@@ -23,11 +22,45 @@ def friction_rate(
     gas_mass: float = 1.0,
     temperature: Numbers = 1.0,
 ) -> Values:
-    """Initial decay rate of a sphere's velocity autocorrelation: (8/3) n a^2 sqrt(2 pi mu k_B T) / M.
+    """Compute the initial decay rate of the velocity autocorrelation of a sphere in a gas.
 
-    Unit 1 / time. Exact for a dilute gas in equilibrium whose mean free path is much longer than the contact
-    distance a (sum of the two radii); mu is the reduced mass of particle (`mass`, M) and gas particle.
-    Chapman and Cowling.
+    Parameters
+    ----------
+    number_density : float or ndarray, [1/length^3]
+        Number density n of the gas.
+    contact_distance : float, [length]
+        Distance a of the centres at contact, the sum of the two radii.
+    mass : float or ndarray, [mass]
+        Mass M of the particle.
+    gas_mass : float, default 1.0, [mass]
+        Mass of a particle of the gas.
+    temperature : array_like, default 1.0, [energy]
+        Temperature times k_B.
+
+    Returns
+    -------
+    float or ndarray, [1/time]
+        Friction rate.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    (8/3) n a^2 sqrt(2 pi mu k_B T) / M, with mu the reduced mass of particle and gas particle [1]_. Exact for
+    a dilute gas in equilibrium whose mean free path is much longer than the contact distance.
+
+    References
+    ----------
+    .. [1] S. Chapman and T. G. Cowling, The Mathematical Theory of Non-uniform Gases (1970).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.friction_rate(0.01, contact_distance=3.0, mass=100.0)), 6)
+    0.005986
     """
     reduced = mass * gas_mass / (mass + gas_mass)
     momentum = np.sqrt(2.0 * math.pi * reduced * np.asarray(temperature))
@@ -36,10 +69,42 @@ def friction_rate(
 
 @checked
 def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperature: float = 1.0) -> Values:
-    """D = k_B T / (M rate), the Langevin equation's; times 1.01895 for a particle as heavy as the gas's.
+    """Compute the diffusion coefficient of a particle from its friction rate.
 
-    For other masses the correction lies below this one, and vanishes as the particle becomes heavy. Unit
-    length^2 / time.
+    Parameters
+    ----------
+    rate : float or ndarray, [1/time]
+        Friction rate, see `friction_rate`.
+    mass : float, [mass]
+        Mass M of the particle.
+    gas_mass : float, default 1.0, [mass]
+        Mass of a particle of the gas.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+
+    Returns
+    -------
+    float or ndarray, [length^2/time]
+        Diffusion coefficient D.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    D = k_B T / (M rate) by the Langevin equation, times 1.01895 for a particle as heavy as the gas's. For
+    other masses the true correction lies below this one, and it vanishes as the particle becomes heavy: it is
+    left out.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.tagged_diffusion(rate=0.5, mass=100.0)
+    0.02
+    >>> theory.tagged_diffusion(rate=0.5, mass=1.0)
+    2.0379
     """
     factor = SONINE_EQUAL_MASSES if mass == gas_mass else 1.0
     return factor * temperature / (mass * rate)
@@ -47,9 +112,39 @@ def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperat
 
 @checked
 def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: int = 3) -> Values:
-    """2 d D [t - (1 - exp(-g t)) / g], of a particle in equilibrium (Ornstein and Fuerth; length^2).
+    """Compute the mean-squared displacement of a Brownian particle in equilibrium.
 
-    From an exponential velocity autocorrelation of rate g: ballistic at short times, 2 d D t at long ones.
+    Parameters
+    ----------
+    time : array_like, [time]
+        Time t.
+    diffusion : float or ndarray, [length^2/time]
+        Diffusion coefficient D.
+    rate : float or ndarray, [1/time]
+        Friction rate g.
+    dimension : int, default 3
+        Dimension d.
+
+    Returns
+    -------
+    float or ndarray, [length^2]
+        Mean-squared displacement.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    2 d D [t - (1 - exp(-g t)) / g], Ornstein and Fuerth's. It follows from an exponential velocity
+    autocorrelation of rate g: ballistic at short times, 2 d D t at long times.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.langevin_msd([0.0, 1.0, 100.0], diffusion=1.0, rate=1.0).round(4)
+    array([  0.    ,   2.2073, 594.    ])
     """
     scaled = rate * np.asarray(time, dtype=float)
     # t - (1 - exp(-g t)) / g loses its digits at small g t: its series there, g t^2 / 2 (1 - g t / 3 + ...).
@@ -60,10 +155,39 @@ def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: in
 
 @checked
 def langevin_msd_from_rest(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: int = 3) -> Values:
-    """2 d D [t - 2 (1 - exp(-g t)) / g + (1 - exp(-2 g t)) / (2 g)]: the same of a particle that starts at
-    rest.
+    """Compute the mean-squared displacement of a Brownian particle that starts at rest.
 
-    Begins as 2 d D g^2 t^3 / 3 (length^2).
+    Parameters
+    ----------
+    time : array_like, [time]
+        Time t since the particle was at rest.
+    diffusion : float or ndarray, [length^2/time]
+        Diffusion coefficient D.
+    rate : float or ndarray, [1/time]
+        Friction rate g.
+    dimension : int, default 3
+        Dimension d.
+
+    Returns
+    -------
+    float or ndarray, [length^2]
+        Mean-squared displacement.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    2 d D [t - 2 (1 - exp(-g t)) / g + (1 - exp(-2 g t)) / (2 g)], by the same equation as `langevin_msd`. It
+    begins as 2 d D g^2 t^3 / 3.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.langevin_msd_from_rest([0.0, 1.0, 100.0], diffusion=1.0, rate=1.0).round(4)
+    array([  0.    ,   1.0085, 591.    ])
     """
     scaled = rate * np.asarray(time, dtype=float)
     shape = scaled + 2.0 * np.expm1(-scaled) - 0.5 * np.expm1(-2.0 * scaled)

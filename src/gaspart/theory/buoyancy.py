@@ -1,8 +1,9 @@
-"""What a large disc displaces in a fluid of small ones: scaled-particle theory of the work of insertion.
+"""Buoyancy of a large disc in a fluid of small discs, by scaled-particle theory.
 
-In equilibrium the work of inserting a hard disc depends on where it is through the chemical potential of the
-fluid there, mu(z) = const - m g z; so the upward force on it is m g dW/dmu = m g (number of small discs
-displaced). That is Archimedes's principle: nothing but the fluid that is missing counts, adsorption included.
+The theory gives the work of insertion. In equilibrium the work of inserting a hard disc depends on the height
+through the chemical potential of the fluid there, mu(z) = const - m g z. The upward force on the disc is
+therefore m g dW/dmu = m g (number of small discs displaced). That is Archimedes's principle: only the missing
+fluid counts, adsorption included.
 """
 
 import numpy as np
@@ -14,11 +15,40 @@ _HIGHEST = 0.7
 
 @checked
 def insertion_work(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
-    """W / (k_B T) of a hard disc in a fluid of discs 1 / size_ratio as large (scaled-particle theory).
+    """Compute the work of inserting a hard disc into a fluid of smaller discs.
 
-    -ln(1 - eta) + 2 s eta / (1 - eta) + s^2 eta / (1 - eta)^2: Helfand, Frisch and Lebowitz, J. Chem. Phys.
-    34, 1037 (1961) (tested against the equation of state at s = 1). Its last term is the pressure
-    times the disc's own area, so the second is the line tension of its edge.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, of the fluid, from 0 to 0.7.
+    size_ratio : array_like, [1]
+        Radius s of the inserted disc divided by the radius of a disc of the fluid.
+
+    Returns
+    -------
+    ndarray, [1]
+        Work W divided by k_B T.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    -ln(1 - eta) + 2 s eta / (1 - eta) + s^2 eta / (1 - eta)^2, scaled-particle theory [1]_ (tested against
+    the equation of state at s = 1). The last term is the pressure times the disc's own area, so the second
+    term is the line tension of its edge.
+
+    References
+    ----------
+    .. [1] E. Helfand, H. L. Frisch and J. L. Lebowitz, J. Chem. Phys. 34, 1037 (1961).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.insertion_work(0.3, size_ratio=5.0)), 4)
+    19.9485
     """
     eta = checked_packing_fraction(packing_fraction, _HIGHEST)
     s = np.asarray(size_ratio, dtype=float)
@@ -27,11 +57,36 @@ def insertion_work(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
 
 @checked
 def displaced_area(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
-    """Area of fluid displaced over the area of a small disc, (dW/dmu) / eta (scaled-particle theory).
+    """Compute the area of fluid that a large disc displaces.
 
-    s^2 + 2 s (1 - eta) / (1 + eta) + (1 - eta)^2 / (1 + eta): (s + 1)^2 in a dilute gas, whose centres are
-    kept off the radius R + r; less in a dense fluid, which is drawn to the disc's edge and fills part of
-    that margin again.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, of the fluid, from 0 to 0.7.
+    size_ratio : array_like, [1]
+        Radius s of the large disc divided by the radius of a disc of the fluid.
+
+    Returns
+    -------
+    ndarray, [1]
+        Area of fluid displaced divided by the area of a small disc, (dW/dmu) / eta.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    s^2 + 2 s (1 - eta) / (1 + eta) + (1 - eta)^2 / (1 + eta), scaled-particle theory (see `insertion_work`).
+    In a dilute gas it is (s + 1)^2: centres are kept off the radius R + r. In a dense fluid it is less,
+    because the fluid is drawn to the disc's edge and fills a part of that margin again.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.displaced_area([0.0, 0.3], size_ratio=5.0).round(4)
+    array([36.    , 30.7615])
     """
     eta = checked_packing_fraction(packing_fraction, _HIGHEST)
     s = np.asarray(size_ratio, dtype=float)

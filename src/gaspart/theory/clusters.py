@@ -1,13 +1,13 @@
-"""Cluster integrals of hard discs and spheres in a box, by Monte Carlo: what walls take off the places of
-clusters.
+"""Cluster integrals of hard discs and spheres in a box, by Monte Carlo.
 
-The grand partition function of centres in a box with sides l is, exactly,
+They state what walls take off the positions of clusters. The grand partition function of centres in a box
+with sides l is, exactly,
 
     ln Xi = sum over n of z^n / n!  <U_n (l_1 - e_1) (l_2 - e_2) ...>,
 
-an integral over the relative places of n centres: U_n is Ursell's function of them, and e_k their extent
-along axis k. Its terms without e are the bulk's; with one e those of the walls, with two of the edges
-between them, with three of the corners. This program computes the numbers that stand in `walls`.
+an integral over the relative positions of n centres: U_n is Ursell's function of them, and e_k their extent
+along axis k. The terms without e belong to the bulk, the terms with one e to the walls, with two to the edges
+between them, with three to the corners. This program computes the numbers that stand in `walls`.
 """
 
 import math
@@ -21,12 +21,35 @@ from gaspart.theory.homogeneous import directions
 
 
 def cluster_integrals(order: int, dimension: int, samples: int, seed: int = 0) -> np.ndarray:
-    """Integrals (d + 1,) of U_n / n!, n the `order`, times 1, e_1, e_1 e_2 (and e_1 e_2 e_3); diameter 1.
+    """Compute the cluster integrals of bulk, walls, edges and corners by Monte Carlo.
 
-    Averages over so many samples. The first one is known: it is the coefficient of z^n in P / k_B T. A tree
-    on n centres is drawn uniformly and its neighbours are placed within a diameter of each other. A
-    configuration whose overlaps contain T of the n^(n-2) trees is T times as likely as one with a single
-    tree, so it counts for U_n / T.
+    Parameters
+    ----------
+    order : int
+        Number n of centres.
+    dimension : {2, 3}
+        Discs or spheres.
+    samples : int
+        Number of random configurations.
+    seed : int, default 0
+        Seed of the random numbers.
+
+    Returns
+    -------
+    ndarray, shape (d + 1,), [1]
+        Integrals of U_n / n! times 1, e_1, e_1 e_2 (and e_1 e_2 e_3), for the diameter 1.
+
+    Raises
+    ------
+    SceneError
+        If the dimension is neither 2 nor 3.
+
+    Notes
+    -----
+    The first integral is known: it is the coefficient of z^n in P / k_B T. A tree on n centres is drawn
+    uniformly and its neighbours are placed within a diameter of each other. A configuration whose overlaps
+    contain T of the n^(n-2) trees is T times as likely as a configuration with a single tree, so it counts
+    for U_n / T.
     """
     d, rng = checked_dimension(dimension), np.random.default_rng(seed)
     ursell, trees = _graphs(order)
@@ -50,9 +73,10 @@ def cluster_integrals(order: int, dimension: int, samples: int, seed: int = 0) -
 
 @cache
 def _graphs(order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Ursell's function and the number of spanning trees of each graph of overlaps, a bit for each pair.
+    """Return Ursell's function and the number of spanning trees of each graph of overlaps.
 
-    U_n is the sum of (-1)^edges over the connected subgraphs that contain all n, and a tree is one of n - 1.
+    A graph has a bit for each pair. U_n is the sum of (-1)^edges over the connected subgraphs that contain
+    all n, and a tree is a connected subgraph of n - 1 edges.
     """
     pairs = list(combinations(range(order), 2))
     graphs = np.arange(1 << len(pairs))
@@ -78,8 +102,11 @@ def _graphs(order: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _random_trees(rng: np.random.Generator, order: int, samples: int) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Edges of trees, uniform among the labelled ones (Pruefer's code): leaf and parent (samples,) each,
-    such that the parent is placed before the leaf, but for the first one, whose parent is the origin."""
+    """Return the edges of random trees, uniform among the labelled trees (Pruefer's code).
+
+    Each edge is a leaf and its parent, both of shape (samples,). The parent is placed before the leaf, except
+    for the first leaf, whose parent is the origin.
+    """
     code = rng.integers(0, order, (samples, order - 2))
     rows = np.arange(samples)
     degree = np.ones((samples, order), dtype=np.int64)

@@ -40,12 +40,40 @@ YEH_HUMMER_CONSTANT = 2.837297
 
 
 def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
-    """Spheres: D / D_Enskog = 1 + 0.05403 y + 6.3656 y^2 - 10.9425 y^3, y = rho sigma^3 / sqrt 2.
+    """Compute the self-diffusion coefficient of spheres divided by Enskog's.
 
-    Erpenbeck and Wood, Phys. Rev. A 43, 4254 (1991). The coefficients were not read in the paper; the values
-    differ by 0.7 % at most up to eta = 0.45, and by 2 % at 0.487, from the table of D of Pieprzyk, Bannerman,
-    Branka, Chudak and Heyes, Phys. Chem. Chem. Phys. 21, 6886 (2019), as a public script quotes it (tested).
-    Range: the fluid, eta <= 0.4915. Infinite system. Dimensionless.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.4915, the fluid.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        D / D_Enskog of the infinite system.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    1 + 0.05403 y + 6.3656 y^2 - 10.9425 y^3 with y = rho sigma^3 / sqrt 2 [1]_. The coefficients were not
+    read in the paper. The values differ from the table of D in [2]_, as a public script quotes it, by 0.7 %
+    at most up to eta = 0.45, and by 2 % at 0.487 (tested).
+
+    References
+    ----------
+    .. [1] J. J. Erpenbeck and W. W. Wood, Phys. Rev. A 43, 4254 (1991).
+    .. [2] S. Pieprzyk, M. N. Bannerman, A. C. Branka, M. Chudak and D. M. Heyes, Phys. Chem. Chem. Phys. 21,
+       6886 (2019).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.erpenbeck_wood_ratio(0.3)), 4)
+    1.3391
     """
     eta = checked_packing_fraction(packing_fraction, ERPENBECK_WOOD_HIGHEST)
     y = number_density(eta, 3) / math.sqrt(2.0)
@@ -56,17 +84,73 @@ def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
 def erpenbeck_wood_diffusion(
     packing_fraction: Numbers, diameter: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:
-    """Spheres: D of the infinite system, `erpenbeck_wood_ratio` times Enskog's (length^2 / time)."""
+    """Compute the self-diffusion coefficient of spheres in the infinite system.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.4915, the fluid.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [length^2/time]
+        Self-diffusion coefficient D.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    `erpenbeck_wood_ratio` times `enskog_diffusion`.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.erpenbeck_wood_diffusion(0.3)), 4)
+    0.2026
+    """
     enskog = enskog_diffusion(packing_fraction, 3, diameter, temperature, mass)
     return erpenbeck_wood_ratio(packing_fraction) * enskog
 
 
 @checked
 def viscosity_ratio(packing_fraction: Numbers) -> Values:
-    """Spheres: the shear viscosity over Enskog's, as measured by this program (dimensionless).
+    """Compute the shear viscosity of spheres divided by Enskog's.
 
-    Straight lines between the rows of `data/viscosity_3d.csv`; 1 up to 0.3, where 1.00(1) was measured.
-    Uncertain by `VISCOSITY_RATIO_UNCERTAINTY`, and by some 2 % more between the rows. Range: eta <= 0.4915.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.4915, the fluid.
+
+    Returns
+    -------
+    float or ndarray, same shape as `packing_fraction`, [1]
+        Ratio of the viscosities.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Measured by this program: straight lines between the rows of `data/viscosity_3d.csv`, and 1 up to eta =
+    0.3, where 1.00(1) was measured. The uncertainty is `VISCOSITY_RATIO_UNCERTAINTY`, and some 2 % more
+    between the rows.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.viscosity_ratio([0.1, 0.4]).round(3)
+    array([1.   , 1.122])
     """
     eta = checked_packing_fraction(packing_fraction, ERPENBECK_WOOD_HIGHEST)
     path = Path(__file__).parent / "data" / "viscosity_3d.csv"
@@ -76,12 +160,42 @@ def viscosity_ratio(packing_fraction: Numbers) -> Values:
 
 @checked
 def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) -> Values:
-    """Spheres: D_infinity - D_L = 2.837297 k_B T / (6 pi viscosity L): to be added to D_L (length^2 / time).
+    """Compute the correction of the self-diffusion coefficient of spheres for a finite periodic cube.
 
-    Yeh and Hummer, J. Phys. Chem. B 108, 15873 (2004), abstract. `length`: side of the cubic periodic
-    container; `viscosity`: shear viscosity, `enskog.enskog_viscosity` times `viscosity_ratio`. Hydrodynamics:
-    holds where the mean free path is much smaller than L. Modes of the velocity field that decay with nu + D
-    instead of nu, as in a gas, are those of a viscosity larger by rho D.
+    Parameters
+    ----------
+    length : float or ndarray, [length]
+        Side L of the cubic periodic container.
+    viscosity : float or ndarray, [mass/(length time)]
+        Shear viscosity: `enskog_viscosity` times `viscosity_ratio`.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+
+    Returns
+    -------
+    float or ndarray, [length^2/time]
+        D_infinity - D_L, to be added to D_L.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    2.837297 k_B T / (6 pi viscosity L) [1]_. This is hydrodynamics: it holds if the mean free path is much
+    shorter than L. In a gas, modes of the velocity field decay with nu + D instead of nu. They are the modes
+    of a viscosity that is larger by rho D.
+
+    References
+    ----------
+    .. [1] I.-C. Yeh and G. Hummer, J. Phys. Chem. B 108, 15873 (2004), abstract.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.yeh_hummer(length=10.0, viscosity=2.0), 6)
+    0.007526
     """
     return YEH_HUMMER_CONSTANT * temperature / (6.0 * math.pi * viscosity * length)
 
@@ -94,12 +208,46 @@ def diffusion_in_cube(
     temperature: float = 1.0,
     mass: float = 1.0,
 ) -> tuple[float, float]:
-    """Spheres: D in a periodic cube of side `length`, and its standard uncertainty (length^2 / time).
+    """Compute the self-diffusion coefficient of spheres in a periodic cube, and its uncertainty.
 
-    `erpenbeck_wood_diffusion` less `yeh_hummer`, of modes that decay with nu + D, with the viscosity of
-    `viscosity_ratio`. The shift is uncertain by 5 % of it, and by two mean free paths over the side for
-    containers that are not long beside these, at most by half (49 values of 1372 to 530604 spheres by
-    another program, tested).
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.4915, the fluid.
+    length : float, [length]
+        Side of the cube.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+
+    Returns
+    -------
+    value : float, [length^2/time]
+        Self-diffusion coefficient D.
+    uncertainty : float, [length^2/time]
+        Standard uncertainty of D.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    `erpenbeck_wood_diffusion` minus `yeh_hummer`, of modes that decay with nu + D, with the viscosity of
+    `viscosity_ratio`. The shift is uncertain by a fraction of 5 % plus two mean free paths divided by the
+    side, but at most by a half. The second term counts in containers that are not much longer than a mean
+    free path. (Tested with 49 values of 1372 to 530604 spheres by another program.)
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> value, uncertainty = theory.diffusion_in_cube(0.3, length=12.0)
+    >>> round(value, 4), round(uncertainty, 4)
+    (0.1878, 0.0018)
     """
     infinite = float(erpenbeck_wood_diffusion(packing_fraction, diameter, temperature, mass))
     viscosity = float(enskog_viscosity(packing_fraction, 3, diameter, temperature, mass))
@@ -121,9 +269,44 @@ def velocity_decay_rate(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Initial decay rate of the velocity autocorrelation, 2 nu / d (exact in equilibrium; 1 / time).
+    """Compute the initial decay rate of the velocity autocorrelation.
 
-    nu is `enskog.collision_rate`; k_B T / (m rate) is Enskog's D in the first Sonine approximation.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+    contact : array_like, [1], optional
+        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
+        value; 1 in a gas of points.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1/time]
+        Decay rate.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    2 nu / d, with nu of `collision_rate` (exact in equilibrium). k_B T / (m rate) is Enskog's D in the first
+    Sonine approximation.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.velocity_decay_rate(0.3, dimension=3)), 4)
+    6.7341
     """
     rate = collision_rate(packing_fraction, dimension, diameter, temperature, mass, contact)
     return 2.0 / dimension * rate
@@ -139,12 +322,48 @@ def enskog_mean_squared_displacement(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Mean-squared displacement 2 d int (t - s) C(s) ds, C(s) = (k_B T / m) sum w exp(-r s) (length^2).
+    """Compute the mean-squared displacement of Enskog theory.
 
-    The velocity autocorrelation is that of the linear Boltzmann equation at Enskog's collision rate, with the
-    rates r and weights w of five Sonine polynomials: at long times, where it is 2 d D t, to 6e-5 of Enskog's
-    D (2D) or 1e-5 (3D), before that to less. No correlated collisions and no long-time tail. `time`
-    broadcasts with eta.
+    Parameters
+    ----------
+    time : array_like, [time]
+        Time t; it broadcasts with `packing_fraction`.
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+    contact : array_like, [1], optional
+        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
+        value; 1 in a gas of points.
+
+    Returns
+    -------
+    ndarray, [length^2]
+        Mean-squared displacement.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    2 d int (t - s) C(s) ds with C(s) = (k_B T / m) sum w exp(-r s). The velocity autocorrelation C is the
+    solution of the linear Boltzmann equation at Enskog's collision rate, with the rates r and weights w of
+    five Sonine polynomials. At long times, where the result is 2 d D t, this is accurate to 6e-5 of Enskog's
+    D (2D) or 1e-5 (3D); before that, to less. There are no correlated collisions and no long-time tail.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.enskog_mean_squared_displacement([0.1, 10.0], 0.3, dimension=3).round(4)
+    array([0.0243, 8.9393])
     """
     frequency = collision_rate(packing_fraction, dimension, diameter, temperature, mass, contact)
     total: Values = 0.0
@@ -157,7 +376,7 @@ def enskog_mean_squared_displacement(
 def _spreading(
     packing_fraction: Numbers, dimension: int, diameter: float, temperature: float, mass: float
 ) -> tuple[Values, Values]:
-    """Number density, and diffusion coefficient plus kinematic viscosity, both Enskog's."""
+    """Return the number density, and Enskog's diffusion coefficient plus kinematic viscosity."""
     density = number_density(np.asarray(packing_fraction, dtype=float), dimension, diameter)
     diffusion = enskog_diffusion(packing_fraction, dimension, diameter, temperature, mass)
     viscosity = enskog_viscosity(packing_fraction, dimension, diameter, temperature, mass)
@@ -173,11 +392,48 @@ def velocity_autocorrelation_tail(
     temperature: float = 1.0,
     mass: float = 1.0,
 ) -> Values:
-    """Long-time tail of <v(0).v(t)> / <v^2>: ((d-1) / (d rho)) [4 pi (D + nu) t]^(-d/2) (dimensionless).
+    """Compute the long-time tail of the velocity autocorrelation.
 
-    Mode coupling, Ernst, Hauge and van Leeuwen (1970); the integral over the shear modes of `modes`. D and
-    the kinematic viscosity nu are Enskog's. Range: after 15 to 30 mean free times and before sound has
-    crossed the container.
+    Parameters
+    ----------
+    time : array_like, [time]
+        Time t.
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+
+    Returns
+    -------
+    ndarray, [1]
+        The mean of v(0).v(t) divided by the mean of v^2.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    ((d-1) / (d rho)) [4 pi (D + nu) t]^(-d/2), by mode coupling [1]_: the integral over the shear modes of
+    `modes`. D and the kinematic viscosity nu are Enskog's. Range: after 15 to 30 mean free times and before
+    sound has crossed the container.
+
+    References
+    ----------
+    .. [1] M. H. Ernst, E. H. Hauge and J. M. J. van Leeuwen (1970).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.velocity_autocorrelation_tail(5.0, 0.3, dimension=3)), 6)
+    0.001367
     """
     density, spreading = _spreading(packing_fraction, dimension, diameter, temperature, mass)
     amplitude = (dimension - 1) / (dimension * density)
@@ -188,11 +444,40 @@ def velocity_autocorrelation_tail(
 def logarithmic_slope(
     packing_fraction: Numbers, diameter: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:
-    """Discs: dD(t) / d ln t = k_B T / (8 pi m rho (D + nu)), D(t) the integral of the tail (length^2 / time).
+    """Compute the slope of the integrated velocity autocorrelation of discs against ln t.
 
-    In 2D the tail falls as 1/t, so D(t) grows without limit and no diffusion coefficient exists. Range and
-    provenance of `velocity_autocorrelation_tail`, of which it is the integral; the very long times, where
-    D(t) in turn changes the slope, are out of reach of a simulation.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [length^2/time]
+        Slope dD(t) / d ln t, with D(t) the integral of the tail.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    k_B T / (8 pi m rho (D + nu)), the integral of `velocity_autocorrelation_tail`, which has the range and
+    the source. In 2D the tail falls as 1/t, so D(t) grows without limit and no diffusion coefficient exists.
+    At very long times D(t) changes the slope itself; a simulation does not reach these times.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.logarithmic_slope(0.3)), 4)
+    0.0603
     """
     density, spreading = _spreading(packing_fraction, 2, diameter, temperature, mass)
     return temperature / (8.0 * math.pi * mass * density * spreading)

@@ -1,14 +1,14 @@
-"""Electrons among scatterers with modes, between two walls: their Boltzmann equation, by direct simulation.
+"""Boltzmann equation of electrons among scatterers with modes, between two walls, by direct simulation.
 
-Electrons in two dimensions do not collide with each other. One that hits a scatterer, along a normal n,
-gives its energy along n to the scatterer's mode, and takes the mode's; its velocity across n remains.
-Scatterers are met at random after a mean free path, the unit of length here, which is molecular chaos: it
-needs scatterers far from each other. What leaves a wall has its temperature.
+Electrons in two dimensions do not collide with each other. An electron that hits a scatterer, along a normal
+n, gives its energy along n to the scatterer's mode, and takes the mode's energy; its velocity across n
+remains. Scatterers are met at random after a mean free path, the unit of length here. This is molecular
+chaos, which requires scatterers far from each other. Electrons that leave a wall have its temperature.
 
 This program computes `heat.METAL_BEND`, by which the electrons' temperature deviates from a straight line.
-Among scatterers that only deflect, n sqrt(T) is uniform, and T linear where electrons have forgotten the
+Among scatterers that only deflect, n sqrt(T) is uniform, and T is linear where electrons have forgotten the
 walls. Here a fast electron loses its speed at a hit and not its direction alone; n T^0.65 is uniform (by
-correlations in equilibrium), so T^0.85 is linear, up to flights that are not short beside the gap.
+correlations in equilibrium), so T^0.85 is linear, up to flights that are not short compared with the gap.
 """
 
 from __future__ import annotations
@@ -18,17 +18,38 @@ import numpy as np
 _CELLS = 100
 """Number of cells of the gap: within one of them electrons hit the same modes."""
 _PER_CELL = 1.0
-"""Modes over electrons: a steady state does not depend on it."""
+"""Number of modes divided by the number of electrons: a steady state does not depend on it."""
 _STEP = 0.2
-"""Time in which all electrons are moved at once, mean free paths over sqrt(cold): flights are exact, but hits
-of different electrons in it have no order."""
+"""Time step of all electrons, in mean free paths divided by sqrt(cold): flights are exact, but hits of
+different electrons in a step have no order."""
 
 
 class MetalSlab:
-    """Electrons between walls of the temperatures hot, at 0, and cold = 1, at `gap` mean free paths.
+    """Electrons between a hot and a cold wall.
 
-    place (N,), velocity (N, 2), modes (C, M): the energies of those in each of C cells of the gap. All begin
-    at the mean temperature.
+    Parameters
+    ----------
+    hot : float
+        Temperature of the wall at 0; the other wall has the temperature 1.
+    gap : float
+        Distance of the walls in mean free paths.
+    count : int
+        Number N of electrons.
+    seed : int, default 0
+        Seed of the random numbers.
+
+    Attributes
+    ----------
+    place : ndarray, shape (N,)
+        Positions, in mean free paths.
+    velocity : ndarray, shape (N, 2)
+        Velocities, in units of sqrt(cold).
+    modes : ndarray, shape (C, M)
+        Energies of the modes in each of C cells of the gap.
+
+    Notes
+    -----
+    All begin at the mean temperature.
     """
 
     def __init__(self, hot: float, gap: float, count: int, seed: int = 0) -> None:
@@ -39,7 +60,20 @@ class MetalSlab:
         self.modes = self.rng.exponential(mean, (_CELLS, round(_PER_CELL * count / _CELLS)))
 
     def profile(self, duration: float, bins: int) -> np.ndarray:
-        """(2, bins) sums over times, and over electrons in each bin: of v^2 / 2, and their number."""
+        """Advance the electrons and sum their energies and numbers in bins over times.
+
+        Parameters
+        ----------
+        duration : float
+            Time, in mean free paths divided by sqrt(cold).
+        bins : int
+            Number of bins of the gap.
+
+        Returns
+        -------
+        ndarray, shape (2, bins)
+            Sums over times and over electrons in each bin: of v^2 / 2, and of their number.
+        """
         sums = np.zeros((2, bins))
         for _ in range(round(duration / _STEP)):
             self._advance()
@@ -49,6 +83,7 @@ class MetalSlab:
         return sums
 
     def _advance(self) -> None:
+        """Advance all electrons by a step."""
         moving, left = np.arange(len(self.place)), np.full(len(self.place), _STEP)
         while moving.size:
             across = self.velocity[moving, 0]
@@ -65,7 +100,10 @@ class MetalSlab:
             moving = moving[stopped]
 
     def _leave_wall(self, which: np.ndarray) -> None:
-        """Diffusely, with the temperature of the wall: along the normal that of a flux."""
+        """Draw new velocities at the wall, diffusely at its temperature.
+
+        Along the normal they have the distribution of a flux.
+        """
         at_cold = self.velocity[which, 0] > 0.0
         thermal = np.sqrt(np.where(at_cold, 1.0, self.hot))
         normal = np.sqrt(2.0 * self.rng.exponential(size=which.size))
@@ -73,7 +111,10 @@ class MetalSlab:
         self.velocity[which, 1] = thermal * self.rng.standard_normal(which.size)
 
     def _swap(self, which: np.ndarray) -> None:
-        """Exchange of the energy along the normal with one mode of the cell each, none of them twice."""
+        """Exchange the energy along the normal with one mode of the cell each.
+
+        No mode is taken twice.
+        """
         cell = np.minimum((self.place[which] * (_CELLS / self.gap)).astype(int), _CELLS - 1)
         order = np.argsort(cell, kind="stable")
         which, cell = which[order], cell[order]

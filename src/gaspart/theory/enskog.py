@@ -1,12 +1,12 @@
 """Enskog theory of the dense gas: collision rate, mean free path and transport coefficients.
 
-All take `packing_fraction` (number or array), dimension 2 or 3, and the particles' diameter, temperature (k_B
-= 1) and mass; time is in units of diameter sqrt(mass / temperature). chi is `contact`, the pair distribution
-at contact, by default `state.contact_value`: of another equation of state it is that one's, 1 in a gas of
-points.
-Literature: Chapman and Cowling (1970) for spheres; Gass, J. Chem. Phys. 54, 1898 (1971) for discs. Range:
-that of the reference equation of state; the collision rate is exact, the transport coefficients neglect
-correlated collisions (see `diffusion`).
+All functions take `packing_fraction` (number or array), dimension 2 or 3, and the particles' diameter,
+temperature (k_B = 1) and mass; time is in units of diameter sqrt(mass / temperature). chi is `contact`, the
+pair distribution at contact, by default `state.contact_value`. If another equation of state holds, chi is the
+value of that equation; it is 1 in a gas of points.
+Literature: Chapman and Cowling (1970) for spheres; Gass, J. Chem. Phys. 54, 1898 (1971) for discs. The range
+is the range of the reference equation of state. The collision rate is exact; the transport coefficients
+neglect correlated collisions (see `diffusion`).
 """
 
 import math
@@ -29,6 +29,7 @@ _DILUTE_CONDUCTIVITY = {2: 1.16192, 3: 0.67783}
 def _density_and_contact(
     packing_fraction: Numbers, dimension: int, diameter: float, contact: Numbers | None
 ) -> tuple[Values, Values]:
+    """Return the number density and the contact value, by default of the reference fluid."""
     density = number_density(np.asarray(packing_fraction, dtype=float), dimension, diameter)
     return density, contact_value(packing_fraction, dimension) if contact is None else contact
 
@@ -36,20 +37,72 @@ def _density_and_contact(
 def _kinetic(
     dilute: float, factor: float, packing_fraction: Numbers, dimension: int, contact: Numbers | None
 ) -> Values:
-    """(dilute / chi) [1 + factor b chi / (d+2)]^2, b = 2^(d-1) times the packing fraction."""
+    """Return (dilute / chi) [1 + factor b chi / (d+2)]^2.
+
+    b is 2^(d-1) times the packing fraction.
+    """
     _, contact = _density_and_contact(packing_fraction, dimension, 1.0, contact)
     excess = 2.0 ** (dimension - 1) * np.asarray(packing_fraction) * contact
     return dilute / contact * (1.0 + factor * excess / (dimension + 2)) ** 2
 
 
 def kinetic_viscosity(packing_fraction: Numbers, dimension: int, contact: Numbers | None = None) -> Values:
-    """The part of `enskog_viscosity` that the kinetic stress makes, the first term, which relaxes within some
-    collisions. Units: diameter = mass = k_B T = 1."""
+    """Compute the part of `enskog_viscosity` that is due to the kinetic stress.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    contact : array_like, [1], optional
+        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
+        value; 1 in a gas of points.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Kinetic part of the viscosity, in units of diameter = mass = k_B T = 1.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    The first term of `enskog_viscosity`. The kinetic stress relaxes within some collisions.
+    """
     return _kinetic(_DILUTE_VISCOSITY[dimension], 2.0, packing_fraction, dimension, contact)
 
 
 def kinetic_conductivity(packing_fraction: Numbers, dimension: int, contact: Numbers | None = None) -> Values:
-    """Likewise that of `enskog_conductivity`."""
+    """Compute the part of `enskog_conductivity` that is due to the kinetic heat flux.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    contact : array_like, [1], optional
+        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
+        value; 1 in a gas of points.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Kinetic part of the conductivity, in units of diameter = mass = k_B T = 1.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    The first term of `enskog_conductivity`. The kinetic heat flux relaxes within some collisions.
+    """
     return _kinetic(_DILUTE_CONDUCTIVITY[dimension], 3.0, packing_fraction, dimension, contact)
 
 
@@ -62,11 +115,45 @@ def collision_rate(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Collisions of one particle per time, nu = S rho sigma^(d-1) chi sqrt(k_B T / (pi m)).
+    """Compute the number of collisions of a particle per time.
 
-    S = 2 pi (2D), 4 pi (3D), so 2 rho sigma chi sqrt(pi k_B T / m) and 4 rho sigma^2 chi sqrt(pi k_B T / m).
-    Exact in equilibrium (velocities independent of positions), with the accuracy of chi. In a run: 2 N_coll /
-    (N t). Unit 1 / time.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+    contact : array_like, [1], optional
+        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
+        value; 1 in a gas of points.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1/time]
+        Collision rate nu.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    nu = S rho sigma^(d-1) chi sqrt(k_B T / (pi m)) with S = 2 pi (2D), 4 pi (3D): 2 rho sigma chi sqrt(pi k_B
+    T / m) and 4 rho sigma^2 chi sqrt(pi k_B T / m). Exact in equilibrium (velocities are independent of
+    positions), with the accuracy of chi. In a run of N particles, nu = 2 N_coll / (N t).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.collision_rate(0.3, dimension=3)), 4)
+    10.1012
     """
     density, contact = _density_and_contact(packing_fraction, dimension, diameter, contact)
     speed = math.sqrt(temperature / (math.pi * mass))
@@ -75,10 +162,37 @@ def collision_rate(
 
 @checked
 def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int, count: int) -> Values:
-    """nu_N / nu of `count` particles in a periodic container, fixed energy, total momentum zero.
+    """Compute the collision rate of a finite number of particles divided by the infinite system's.
 
-    Contacts: the canonical Z_N - 1 over Z - 1 (to O(1/N), see `state.finite_size_correction`).
-    Speeds: see `approach_factor`.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    count : int
+        Number N of particles in a periodic container, with a fixed energy and zero total momentum.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Ratio nu_N / nu.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Contacts: the canonical Z_N - 1 divided by Z - 1, to first order in 1/N (see `finite_size_correction`).
+    Speeds: see `enskog.approach_factor`.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.collision_rate_finite_size_factor(0.3, dimension=3, count=100)), 5)
+    1.00188
     """
     speeds = approach_factor(dimension, count)
     eta = np.maximum(packing_fraction, 1e-6)  # the ratio's limit, where the excess itself vanishes
@@ -87,18 +201,67 @@ def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int,
 
 
 def approach_factor(dimension: int, count: int) -> float:
-    """<|v_12 . n|> of `count` particles with a fixed energy E and no total momentum over Maxwell's at the
-    temperature 2 E / (d N): sqrt(d N / 2) Gamma(D/2) / Gamma((D+1)/2), of velocities uniform on the sphere in
-    D = d (N-1) dimensions (exact)."""
+    """Compute the mean speed of approach of few particles divided by its Maxwellian value.
+
+    Parameters
+    ----------
+    dimension : int
+        Dimension d.
+    count : int
+        Number N of particles, with a fixed energy E and no total momentum.
+
+    Returns
+    -------
+    float, [1]
+        The mean of abs(v_12 . n), divided by Maxwell's at the temperature 2 E / (d N).
+
+    Notes
+    -----
+    sqrt(d N / 2) Gamma(D/2) / Gamma((D+1)/2), for velocities uniform on the sphere in D = d (N-1) dimensions
+    (exact).
+
+    Examples
+    --------
+    >>> from gaspart.theory.enskog import approach_factor
+    >>> round(approach_factor(dimension=3, count=10), 5)
+    1.0639
+    """
     return math.sqrt(count / (count - 1.0)) * mean_speed_factor(dimension * (count - 1))
 
 
 @checked
 def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 1.0) -> Values:
-    """Mean path between collisions, <v> / nu.
+    """Compute the mean path of a particle between collisions.
 
-    1 / (sqrt 2 pi rho sigma^2 chi) in 3D, 1 / (2 sqrt 2 rho sigma chi) in 2D.
-    Exact in equilibrium, with the accuracy of chi; infinite at zero density. Unit length.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [length]
+        Mean free path; infinite at zero density.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Mean speed divided by the collision rate: 1 / (sqrt 2 pi rho sigma^2 chi) in 3D, 1 / (2 sqrt 2 rho sigma
+    chi) in 2D. Exact in equilibrium, with the accuracy of chi.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.mean_free_path(0.3, dimension=3)), 4)
+    0.158
     """
     with np.errstate(divide="ignore"):
         return mean_speed(dimension) / collision_rate(packing_fraction, dimension, diameter)
@@ -113,11 +276,45 @@ def enskog_diffusion(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Self-diffusion coefficient of Enskog theory, D = c sqrt(k_B T / (pi m)) / (rho sigma^(d-1) chi).
+    """Compute the self-diffusion coefficient of Enskog theory.
 
-    c = (3/8) 1.01895 in 3D, (1/2) 1.02710 in 2D (Sonine factors). 3D: exact at zero density;
-    `diffusion` has the correction at higher density. 2D: D of the Enskog equation only; the true one does not
-    exist (it grows like ln t). Unit length^2 / time.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+    contact : array_like, [1], optional
+        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
+        value; 1 in a gas of points.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [length^2/time]
+        Self-diffusion coefficient D; infinite at zero density.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    D = c sqrt(k_B T / (pi m)) / (rho sigma^(d-1) chi), with c = (3/8) 1.01895 in 3D and (1/2) 1.02710 in 2D
+    (Sonine factors). 3D: exact at zero density; `diffusion` has the correction at higher density. 2D: D of
+    the Enskog equation only. The true D does not exist, because it grows like ln t.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.enskog_diffusion(0.3, dimension=3)), 4)
+    0.1513
     """
     density, contact = _density_and_contact(packing_fraction, dimension, diameter, contact)
     first = {2: 0.5, 3: 0.375}[dimension]
@@ -136,11 +333,45 @@ def enskog_bulk_viscosity(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Bulk viscosity of Enskog theory, (S / d^2) rho^2 sigma^(d+1) chi sqrt(m k_B T / pi).
+    """Compute the bulk viscosity of Enskog theory.
 
-    S = 2 pi (2D), 4 pi (3D). Exact within the theory: the first-order change of the collisional pressure
-    under uniform expansion, in which a pair at contact has the mean normal velocity sigma div(u) / d.
-    Unit mass length^(2-d) / time.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+    contact : array_like, [1], optional
+        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
+        value; 1 in a gas of points.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [mass length^(2-d)/time]
+        Bulk viscosity.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    (S / d^2) rho^2 sigma^(d+1) chi sqrt(m k_B T / pi), with S = 2 pi (2D), 4 pi (3D). Exact within the
+    theory: it is the first-order change of the collisional pressure under uniform expansion, in which a pair
+    at contact has the mean normal velocity sigma div(u) / d.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.enskog_bulk_viscosity(0.3, dimension=3)), 4)
+    0.6431
     """
     density, contact = _density_and_contact(packing_fraction, dimension, diameter, contact)
     thermal = math.sqrt(mass * temperature / math.pi)
@@ -157,11 +388,46 @@ def enskog_viscosity(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Shear viscosity of Enskog theory, (eta_0 / chi) [1 + 2 b chi / (d+2)]^2 + bulk viscosity d / (d+2).
+    """Compute the shear viscosity of Enskog theory.
 
-    b = 2^(d-1) times the packing fraction, eta_0 the dilute value (0.17913 in 3D, 0.28829 in 2D, times
-    sqrt(m k_B T) / sigma^(d-1)). 3D: eta_0 [1/chi + 0.8 b + 0.7615 b^2 chi]; 2D: eta_0 [1/chi + b + 0.8729
-    b^2 chi] (Gass). Good to a few per cent to eta = 0.3 (3D), too low beyond. Unit mass length^(2-d) / time.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+    contact : array_like, [1], optional
+        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
+        value; 1 in a gas of points.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [mass length^(2-d)/time]
+        Shear viscosity.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    (eta_0 / chi) [1 + 2 b chi / (d+2)]^2 + bulk viscosity d / (d+2), where b is 2^(d-1) times the packing
+    fraction and eta_0 the dilute value, 0.17913 in 3D and 0.28829 in 2D, times sqrt(m k_B T) / sigma^(d-1).
+    3D: eta_0 [1/chi + 0.8 b + 0.7615 b^2 chi]; 2D: eta_0 [1/chi + b + 0.8729 b^2 chi] (Gass). It is good to a
+    few per cent up to a packing fraction of 0.3 (3D), and too low beyond.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.enskog_viscosity(0.3, dimension=3)), 4)
+    0.7325
     """
     unit = math.sqrt(mass * temperature) / diameter ** (checked_dimension(dimension) - 1)
     kinetic = unit * kinetic_viscosity(packing_fraction, dimension, contact)
@@ -177,10 +443,41 @@ def enskog_longitudinal_viscosity(
     temperature: float = 1.0,
     mass: float = 1.0,
 ) -> Values:
-    """Viscosity against a flow along one axis that changes along it, 2 (d-1)/d shear + bulk viscosity.
+    """Compute the longitudinal viscosity of Enskog theory.
 
-    Of sound, and of a gas between a wall and a piston, where it makes heat of longitudinal viscosity times
-    (du/dx)^2 in a volume and time. Unit mass length^(2-d) / time.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [mass length^(2-d)/time]
+        Viscosity against a flow along an axis that changes along this axis.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    2 (d-1)/d shear viscosity + bulk viscosity. It acts on sound, and on a gas between a wall and a piston,
+    where it produces heat: longitudinal viscosity times (du/dx)^2 per volume and time.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.enskog_longitudinal_viscosity(0.3, dimension=3)), 4)
+    1.6197
     """
     shear = enskog_viscosity(packing_fraction, dimension, diameter, temperature, mass)
     bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
@@ -196,11 +493,45 @@ def enskog_conductivity(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Conductivity of heat, (lambda_0 / chi) [1 + 3 b chi / (d+2)]^2 + d / (2m) bulk viscosity (Enskog).
+    """Compute the thermal conductivity of Enskog theory.
 
-    b = 2^(d-1) times the packing fraction, lambda_0 the dilute value (0.67783 in 3D, 1.16192 in 2D, times
-    sqrt(T / m) / sigma^(d-1)). 3D: lambda_0 [1/chi + 1.2 b + 0.7574 b^2 chi]; 2D: lambda_0 [1/chi + 1.5 b +
-    0.8716 b^2 chi]. Unit 1 / (length^(d-2) time), with k_B = 1.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+    contact : array_like, [1], optional
+        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
+        value; 1 in a gas of points.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1/(length^(d-2) time)]
+        Thermal conductivity, with k_B = 1.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    (lambda_0 / chi) [1 + 3 b chi / (d+2)]^2 + d / (2m) bulk viscosity, where b is 2^(d-1) times the packing
+    fraction and lambda_0 the dilute value, 0.67783 in 3D and 1.16192 in 2D, times sqrt(T / m) / sigma^(d-1).
+    3D: lambda_0 [1/chi + 1.2 b + 0.7574 b^2 chi]; 2D: lambda_0 [1/chi + 1.5 b + 0.8716 b^2 chi].
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.enskog_conductivity(0.3, dimension=3)), 4)
+    3.087
     """
     unit = math.sqrt(temperature / mass) / diameter ** (checked_dimension(dimension) - 1)
     kinetic = unit * kinetic_conductivity(packing_fraction, dimension, contact)
@@ -210,12 +541,38 @@ def enskog_conductivity(
 
 @checked
 def transport_finite_size_factor(count: int, dimension: int, quantity: str) -> float:
-    """A coefficient of a dilute gas of N particles at a fixed energy without total momentum, over that of an
-    infinite one; quantity: "viscosity" or "conductivity".
+    """Compute a transport coefficient of few dilute particles divided by the infinite gas's.
 
-    With D = d (N - 1), the mean square of the stress is lower by (1 - 1/N) D / (D + 2), that of the heat flux
-    by (1 - 1/N)^3 D^2 / ((D + 2)(D + 4)) (moments of the uniform distribution on a sphere; to O(1/N^2)), and
-    both last longer by 1 / (1 - 1/N), since a particle has N - 1 partners.
+    Parameters
+    ----------
+    count : int
+        Number N of particles, with a fixed energy and no total momentum.
+    dimension : int
+        Dimension d.
+    quantity : {"viscosity", "conductivity"}
+        Transport coefficient.
+
+    Returns
+    -------
+    float, [1]
+        Ratio of the coefficients.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    With D = d (N - 1), the mean square of the stress is lower by (1 - 1/N) D / (D + 2), the mean square of
+    the heat flux by (1 - 1/N)^3 D^2 / ((D + 2)(D + 4)) (moments of the uniform distribution on a sphere; to
+    O(1/N^2)). Both fluxes last longer by 1 / (1 - 1/N), since a particle has N - 1 partners.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.transport_finite_size_factor(100, dimension=3, quantity="viscosity"), 5)
+    0.99331
     """
     share, freedom = 1.0 - 1.0 / count, dimension * (count - 1.0)
     if quantity == "viscosity":

@@ -12,26 +12,64 @@ from gaspart.theory.geometry import packing_fraction
 
 _RADIUS = 0.5
 _MIXING = 0.015
-"""Part of a change that is made far from the solution: more oscillates without end in slits of less than two
-diameters."""
+"""Fraction of a change that is made far from the solution: a larger one oscillates without end in slits of
+less than two diameters."""
 _NEAR, _NEAR_MIXING, _REMEMBERED = 0.3, 0.05, 5
-"""Largest change, in bulk densities, near the solution; the part that is made there, and how many changes are
-remembered."""
+"""Largest change, in bulk densities, near the solution; the fraction that is made there, and the number of
+changes that are remembered."""
 
 
 @checked
 def white_bear_slit(
     bulk_density: float, width: float, spacing: float = 0.01, tolerance: float = 1e-8
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Density profile in a slit in equilibrium with a fluid of `bulk_density`: places (n,) of centres above
-    the lower wall's contact plane, from 0 to H - 1, and densities (n,).
+    """Compute the density profile of hard spheres in a slit in equilibrium with a bulk fluid.
 
-    White Bear functional: Roth, Evans, Lang and Kahl, J. Phys.: Condens. Matter 14, 12063 (2002),
-    solved by damped iteration, near the solution with the mixing of Anderson, J. ACM 12, 547 (1965). Its
-    bulk is Carnahan and Starling's, 0.3 % low at eta = 0.35; it obeys the contact theorem exactly, so rho(0)
-    is its pressure on the walls. `spacing` is adapted to divide the width and the radius.
+    Parameters
+    ----------
+    bulk_density : float, [1]
+        Number density of the bulk, in 1 / sigma^3.
+    width : float, [1]
+        Distance H of the walls' surfaces, in diameters, above 1.
+    spacing : float, default 0.01, [1]
+        Spacing of the grid, in diameters; adapted to divide the width and the radius.
+    tolerance : float, default 1e-8, [1]
+        Largest change of the density at the solution, divided by the bulk density.
 
-    Raises ValueError if the width leaves no room, and RuntimeError if the iteration does not converge.
+    Returns
+    -------
+    position : ndarray, shape (n,), [1]
+        Positions of centres above the contact plane of the lower wall, from 0 to H - 1.
+    density : ndarray, shape (n,), [1]
+        Densities at these positions, in 1 / sigma^3.
+
+    Raises
+    ------
+    SceneError
+        If the bulk density is outside the range of the equation of state, or another argument is out of
+        range.
+    ValueError
+        If the width leaves no space for centres.
+    RuntimeError
+        If the iteration does not converge.
+
+    Notes
+    -----
+    White Bear functional [1]_, solved by damped iteration, near the solution with Anderson's mixing [2]_. Its
+    bulk is Carnahan and Starling's, 0.3 % low at eta = 0.35. It obeys the contact theorem exactly, so rho(0)
+    is its pressure on the walls.
+
+    References
+    ----------
+    .. [1] R. Roth, R. Evans, A. Lang and G. Kahl, J. Phys.: Condens. Matter 14, 12063 (2002).
+    .. [2] D. G. Anderson, J. ACM 12, 547 (1965).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> position, density = theory.white_bear_slit(0.1, width=3.0, spacing=0.05)
+    >>> density[[0, 20]].round(4)
+    array([0.124 , 0.0982])
     """
     if not width > 1.0:
         raise ValueError(f"width: {width} (must be larger than a diameter)")
@@ -77,7 +115,10 @@ def white_bear_slit(
 
 
 def _anderson(moves: list[np.ndarray], changes: list[np.ndarray]) -> np.ndarray:
-    """The next move: the changes wanted after the last moves, taken as linear, are combined to the least."""
+    """Return the next step towards the solution, by Anderson's mixing.
+
+    The changes wanted after the last steps, taken as linear, are combined so that they are smallest.
+    """
     if not moves:
         return _NEAR_MIXING * changes[-1]
     differences = np.diff(changes, axis=0).T
@@ -88,18 +129,44 @@ def _anderson(moves: list[np.ndarray], changes: list[np.ndarray]) -> np.ndarray:
 
 @checked
 def white_bear_pressure(bulk_density: float) -> float:
-    """The functional's bulk pressure, Carnahan and Starling's (k_B T / sigma^3)."""
+    """Compute the bulk pressure of the White Bear functional.
+
+    Parameters
+    ----------
+    bulk_density : float, [1]
+        Number density of the bulk, in 1 / sigma^3.
+
+    Returns
+    -------
+    float, [1]
+        Pressure in k_B T / sigma^3, Carnahan and Starling's.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.white_bear_pressure(0.5), 4)
+    1.6312
+    """
     return bulk_density * float(carnahan_starling(packing_fraction(bulk_density, 3)))
 
 
 def _bulk_measures(density: float) -> tuple[float, float]:
+    """Return n_3 and n_2 of a homogeneous fluid."""
     return density * np.pi / 6.0, density * np.pi
 
 
 def _derivatives(
     n3: np.ndarray, n2: np.ndarray, vector: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Derivatives of the free energy density by n_3, n_2 and n_V2, the lower measures expressed by these."""
+    """Return the derivatives of the free energy density by n_3, n_2 and n_V2.
+
+    The lower measures are expressed by these.
+    """
     void = 1.0 - n3
     logarithm = np.log(void)
     small = n3 < 1e-4

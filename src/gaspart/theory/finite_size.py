@@ -1,4 +1,6 @@
-r"""Pairs of few particles in a periodic square or cube: closed form, table and expansion with its remainder.
+r"""Pairs of few particles in a periodic container: closed form, table, expansion with its remainder.
+
+The container is a square or a cube.
 
 All quantities of N equal particles at fixed energy and zero total momentum that depend on pairs in contact
 follow from one number, the contact value g_N. It is the density of pairs at contact, averaged over all
@@ -178,8 +180,8 @@ def finite_contact_value(
     In a square or cube, two particles have a closed form (`pair_contact_value`), and the numbers in the table
     (`small_systems`) are interpolated in eta: linearly, as a factor of the expansion, uncertain by the
     difference from a parabola. Otherwise, and if it is sharper, the expansion in 1/N holds
-    (`finite_size_correction`). Its uncertainty is that of the equation of state, `finite_size_remainder`, and
-    the square of the relative correction for the next order in 1/N.
+    (`finite_size_correction`). Its uncertainty is made up of the uncertainty of the equation of state,
+    `finite_size_remainder`, and the square of the relative correction for the next order in 1/N.
 
     Examples
     --------
@@ -209,7 +211,7 @@ def finite_contact_value(
 def insertion_potential(
     packing_fraction: float, dimension: int, count: int, side: float
 ) -> tuple[float, float]:
-    """Compute -ln P of the chance P that a random position is free for one more particle.
+    """Compute -ln P of the probability P that a further particle fits at a random position.
 
     Parameters
     ----------
@@ -290,7 +292,10 @@ def _expansion(eta: float, dimension: int, count: int, side: float) -> tuple[flo
 
 
 def _interpolated(eta: float, dimension: int, count: int) -> list[tuple[float, float]]:
-    """Return the contact value between rows of the table, and its uncertainty; [] outside of the rows."""
+    """Return the contact value between rows of the table, and its uncertainty.
+
+    The list is empty outside of the rows.
+    """
     fractions, factors, errors = _factors(dimension, count)
     if len(fractions) < 3 or eta > fractions[-1]:
         return []

@@ -1,11 +1,11 @@
-"""Free flights of a particle between its collisions: how their times are distributed.
+"""Free flights of a particle between its collisions: distribution of their times.
 
-All take `packing_fraction`, dimension 2 or 3, and the particles' diameter, temperature (k_B = 1) and mass.
-Range: the collision rate at a speed is exact in equilibrium at zero density, and Enskog's, by the factor
-chi, beyond; the distribution assumes that consecutive collisions are independent (molecular chaos), which
-holds at low density: at a packing fraction of 0.05 there are 2 % fewer of the shortest flights (events of
-1000 and of 4000 spheres). Literature: Chapman and Cowling, The mathematical theory of non-uniform gases
-(1970), chapter 5, for spheres.
+All functions take `packing_fraction`, dimension 2 or 3, and the particles' diameter, temperature (k_B = 1)
+and mass. Range: the collision rate at a speed is exact in equilibrium at zero density; beyond, it is
+Enskog's, by the factor chi. The distribution assumes that consecutive collisions are independent (molecular
+chaos), which holds at low density: at a packing fraction of 0.05 there are 2 % fewer of the shortest flights
+(events of 1000 and of 4000 spheres). Literature: Chapman and Cowling, The mathematical theory of non-uniform
+gases (1970), chapter 5, for spheres.
 """
 
 import math
@@ -18,9 +18,9 @@ from gaspart.theory.enskog import collision_rate
 from gaspart.theory.speeds import maxwell_pdf, mean_speed
 
 _SPEEDS = 160
-"""Points of the quadrature over speeds."""
+"""Number of points of the quadrature over speeds."""
 _FASTEST = 8.0
-"""In thermal speeds: faster are fewer than exp(-32) of all particles."""
+"""Highest speed of the quadrature, in thermal speeds: fewer than exp(-32) of all particles are faster."""
 
 
 @checked
@@ -32,12 +32,47 @@ def collision_rate_at_speed(
     temperature: float = 1.0,
     mass: float = 1.0,
 ) -> Values:
-    """Collisions per time of a particle that flies at this speed, nu(v) = nu <|v - v'|>' / <|v - v'|>.
+    """Compute the number of collisions per time of a particle at a given speed.
 
-    <>' is the mean over the velocity v' of a partner, which is Maxwell's, and nu = `collision_rate`. With c =
-    v / sqrt(2 k_B T / m), in units of that speed: <|v - v'|>' = exp(-c^2) / sqrt(pi) + (c + 1 / (2 c)) erf(c)
-    in 3D; sqrt(pi)/2 exp(-c^2 / 2) [(1 + c^2) I_0(c^2 / 2) + c^2 I_1(c^2 / 2)] in 2D, the mean of Rice's
-    distribution. The mean over all speeds is nu. Unit 1 / time.
+    Parameters
+    ----------
+    speed : array_like, [length/time]
+        Speed v of the particle.
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+
+    Returns
+    -------
+    ndarray, same shape as `speed`, [1/time]
+        Collision rate nu(v).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    nu(v) is `collision_rate` times the mean relative speed u at this speed, divided by the mean relative
+    speed of all pairs. The mean u is over the velocity of a partner, which is Maxwell's. With c = v / sqrt(2
+    k_B T / m), and u in units of that speed, u = exp(-c^2) / sqrt(pi) + (c + 1 / (2 c)) erf(c) in 3D, and u =
+    sqrt(pi)/2 exp(-c^2 / 2) [(1 + c^2) I_0(c^2 / 2) + c^2 I_1(c^2 / 2)] in 2D, the mean of Rice's
+    distribution. The mean of nu(v) over all speeds is nu. Exact in equilibrium at zero density; beyond,
+    Enskog's, by the factor chi.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.collision_rate_at_speed([0.0, 1.0, 3.0], 0.1, dimension=3).round(4)
+    array([1.2486, 1.447 , 2.6081])
     """
     gas = {"diameter": diameter, "temperature": temperature, "mass": mass}
     thermal = math.sqrt(2.0 * temperature / mass)
@@ -61,12 +96,47 @@ def free_time_pdf(
     temperature: float = 1.0,
     mass: float = 1.0,
 ) -> Values:
-    """Probability density of the time between two collisions of a particle, int f nu(v)^2 exp(-nu(v) t) dv /
-    nu, f Maxwell's distribution and nu(v) `collision_rate_at_speed`.
+    """Compute the probability density of the time between two collisions of a particle.
 
-    Speeds after a collision are distributed as f(v) nu(v), those before one being so and the motion
-    reversible. Its mean is 1 / nu; it falls more slowly than an exponential, since slow particles collide
-    less often. By quadrature of Gauss and Legendre, to 1e-9. Unit 1 / time.
+    Parameters
+    ----------
+    time : array_like, [time]
+        Time t of the free flight.
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    temperature : float, default 1.0, [energy]
+        Temperature times k_B.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+
+    Returns
+    -------
+    ndarray, same shape as `time`, [1/time]
+        Probability density.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    int f nu(v)^2 exp(-nu(v) t) dv / nu, with f Maxwell's distribution and nu(v) of `collision_rate_at_speed`.
+    Speeds before a collision are distributed as f(v) nu(v), and so are the speeds after it, because the
+    motion is reversible. The mean of the distribution is 1 / nu. It falls more slowly than an exponential,
+    since slow particles collide less often. By quadrature of Gauss and Legendre, to 1e-9. Consecutive
+    collisions are assumed to be independent: at a packing fraction of 0.05 there are 2 % fewer of the
+    shortest flights.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.free_time_pdf([0.0, 1.0], 0.1, dimension=3).round(4)
+    array([1.8404, 0.2909])
     """
     gas = {"diameter": diameter, "temperature": temperature, "mass": mass}
     points, weights = np.polynomial.legendre.leggauss(_SPEEDS)

@@ -1,4 +1,4 @@
-"""Where hard discs and spheres freeze, and the pressure of their crystals.
+"""Freezing of hard discs and spheres, and the pressure of their crystals.
 
 Diameter 1 and k_B T = 1: number densities in 1 / sigma^d, pressures in k_B T / sigma^d.
 """
@@ -34,12 +34,38 @@ LOWEST_CRYSTAL = {2: 0.70, 3: 0.49}
 
 
 def coexistence_packing_fractions(dimension: int) -> np.ndarray:
-    """Packing fractions of the freezing fluid and of the melting ordered phase, (2,)."""
+    """Compute the packing fractions of the coexisting fluid and ordered phase.
+
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, shape (2,), [1]
+        Packing fractions of the freezing fluid and of the melting ordered phase.
+
+    Raises
+    ------
+    SceneError
+        If the dimension is neither 2 nor 3.
+
+    Notes
+    -----
+    From `COEXISTENCE_DENSITY`, which states the sources.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.coexistence_packing_fractions(3).round(4)
+    array([0.4917, 0.5432])
+    """
     return packing_fraction(np.array(COEXISTENCE_DENSITY[checked_dimension(dimension)]), dimension)
 
 
 def _expansion(eta: Numbers, dimension: int) -> np.ndarray:
-    """alpha = V / V_closest - 1, after the check of the range."""
+    """Return alpha = V / V_closest - 1, after the check of the range."""
     eta = np.asarray(eta, dtype=float)
     if not np.all((eta >= LOWEST_CRYSTAL[dimension]) & (eta < CLOSE_PACKING[dimension])):
         low, high = LOWEST_CRYSTAL[dimension], CLOSE_PACKING[dimension]
@@ -48,35 +74,122 @@ def _expansion(eta: Numbers, dimension: int) -> np.ndarray:
 
 
 def speedy_crystal(packing_fraction: Numbers) -> Values:
-    """Face-centred cubic crystal of spheres: Z = 3/(1-z) - 0.5921 (z - 0.7072)/(z - 0.601), z = eta / eta_c.
+    """Compute Z of the face-centred cubic crystal of spheres by Speedy's equation.
 
-    Speedy, J. Phys.: Condens. Matter 10, 4387 (1998), by SklogWiki's table of its coefficients. From
-    LOWEST_CRYSTAL to close packing.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0.49 (`LOWEST_CRYSTAL`) to below close packing, 0.7405.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Compressibility factor Z.
+
+    Raises
+    ------
+    ValueError
+        If the packing fraction is out of range.
+
+    Notes
+    -----
+    Z = 3/(1-z) - 0.5921 (z - 0.7072)/(z - 0.601) with z = eta / eta_c [1]_, by SklogWiki's table of its
+    coefficients.
+
+    References
+    ----------
+    .. [1] R. J. Speedy, J. Phys.: Condens. Matter 10, 4387 (1998).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.speedy_crystal(0.6)), 4)
+    15.5215
     """
     z = 1.0 / (1.0 + _expansion(packing_fraction, 3))
     return 3.0 / (1.0 - z) - 0.5921 * (z - 0.7072) / (z - 0.601)
 
 
 def etomica_crystal(packing_fraction: Numbers) -> Values:
-    """Face-centred cubic crystal of spheres without vacancies: Z = 3/x + c_0 + c_1 x + ... + c_9 x^9.
+    """Compute Z of the face-centred cubic crystal of spheres without vacancies by etomica's fit.
 
-    x = 1 - eta / eta_c. The coefficients that etomica fits to simulations of its authors from 0.524 on
-    (github.com/etomica/etomica, HardSphereSolid.java, commit b6fc002). From 0.527 to 0.545 it is within
-    ETOMICA_CRYSTAL_UNCERTAINTY of runs of DynamO with 1.1e6 spheres, errors 3 to 6e-6 (`theory.literature`,
-    tested), below which Speedy's equation is by 2 to 5e-4. From LOWEST_CRYSTAL to close packing.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0.49 (`LOWEST_CRYSTAL`) to below close packing, 0.7405.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Compressibility factor Z.
+
+    Raises
+    ------
+    ValueError
+        If the packing fraction is out of range.
+
+    Notes
+    -----
+    Z = 3/x + c_0 + c_1 x + ... + c_9 x^9 with x = 1 - eta / eta_c. The coefficients are those that etomica
+    fits to simulations of its authors from 0.524 on [1]_. From 0.527 to 0.545 it is within
+    `ETOMICA_CRYSTAL_UNCERTAINTY` of runs of DynamO with 1.1e6 spheres, whose errors are 3 to 6e-6
+    (`literature`, tested). Speedy's equation is below these runs by 2 to 5e-4.
+
+    References
+    ----------
+    .. [1] github.com/etomica/etomica, HardSphereSolid.java, commit b6fc002.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.etomica_crystal(0.6)), 4)
+    15.5226
     """
     x = 1.0 - 1.0 / (1.0 + _expansion(packing_fraction, 3))
     return 3.0 / x + np.polynomial.polynomial.polyval(x, _ETOMICA)
 
 
 def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Values:
-    """Z = d/alpha + a_0 + a_1 alpha + ..., alpha = V / V_c - 1: the free-volume limit and a fit beyond it.
+    """Compute Z of a crystal by its free-volume limit and a fit beyond it.
 
-    Alder, Hoover and Young, J. Chem. Phys. 49, 3688 (1968). Discs on the triangular lattice: 2/alpha
-    + 1.90(1) + 0.67(7) alpha (by SklogWiki) + 1.5 alpha^2 (not verified; 0.4 % below CRYSTAL_OF_1024_DISCS,
-    1.2 % without it); spheres, face-centred cubic: 3/alpha + 2.566 + 0.55 alpha (2.56 and 0.56 by SklogWiki)
-    - 1.19 alpha^2 + 5.95 alpha^3 (not verified; within 0.15 % of Speedy's fit). The free-volume term is exact
-    at close packing; the fits are good to some 0.3 %. To be drawn: no claim depends on them.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0.70 for discs, 0.49 for spheres (`LOWEST_CRYSTAL`), to below close
+        packing.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Compressibility factor Z.
+
+    Raises
+    ------
+    SceneError
+        If the dimension is neither 2 nor 3.
+    ValueError
+        If the packing fraction is out of range.
+
+    Notes
+    -----
+    Z = d/alpha + a_0 + a_1 alpha + ... with alpha = V / V_c - 1 [1]_. Discs on the triangular lattice:
+    2/alpha + 1.90(1) + 0.67(7) alpha (by SklogWiki) + 1.5 alpha^2 (not verified; 0.4 % below
+    `CRYSTAL_OF_1024_DISCS`, 1.2 % without this term). Spheres, face-centred cubic: 3/alpha + 2.566 + 0.55
+    alpha (2.56 and 0.56 by SklogWiki) - 1.19 alpha^2 + 5.95 alpha^3 (not verified; within 0.15 % of Speedy's
+    fit). The free-volume term is exact at close packing; the fits are good to some 0.3 %. An equation to
+    draw: no claim depends on it.
+
+    References
+    ----------
+    .. [1] B. J. Alder, W. G. Hoover and D. A. Young, J. Chem. Phys. 49, 3688 (1968).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.alder_hoover_young_crystal(0.8, dimension=2)), 4)
+    16.9836
     """
     alpha = _expansion(packing_fraction, checked_dimension(dimension))
     series = {2: (1.90, 0.67, 1.5), 3: (2.566, 0.55, -1.19, 5.95)}[dimension]
@@ -85,10 +198,36 @@ def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Val
 
 @checked
 def crystal_finite_size_correction(compressibility_factor: Values, count: Values) -> Values:
-    """Z_N - Z_infinity = -(Z - 1) / N of a periodic crystal of N particles, its centre of mass free.
+    """Compute the difference between Z of a finite periodic crystal and of the infinite one.
 
-    The centre of mass explores the complete volume V, the other N - 1 particles their free volumes: Q_N ~ V
-    v_f^(N-1), so Z_N = 1/N + (1 - 1/N) Z. Exact towards close packing; elsewhere further terms of order 1/N
-    are not known, of the order of V / V_c - 1 times this one.
+    Parameters
+    ----------
+    compressibility_factor : float or ndarray, [1]
+        Z of the infinite crystal.
+    count : int or ndarray
+        Number N of particles.
+
+    Returns
+    -------
+    float or ndarray, [1]
+        Z_N - Z_infinity.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    -(Z - 1) / N, for a crystal whose centre of mass is free. The centre of mass explores the complete volume
+    V, the other N - 1 particles explore their free volumes: Q_N ~ V v_f^(N-1), so Z_N = 1/N + (1 - 1/N) Z.
+    Exact towards close packing. Elsewhere there are further, unknown terms of order 1/N, about V / V_c - 1
+    times this term.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.crystal_finite_size_correction(11.0, count=500)
+    -0.02
     """
     return -(compressibility_factor - 1.0) / count

@@ -1,8 +1,8 @@
-"""Inelastic and rough particles: Haff's law of cooling, and how rotation and translation share energy.
+"""Inelastic and rough particles: Haff's law of cooling, and energies of rotation and translation.
 
-Time is counted in collisions per particle, s = 2 N_coll / N, in which the collision rate, and with it the
-density, has no part. Homogeneous gases, velocities nearly Maxwellian and particles uncorrelated: dilute, and
-before clustering.
+Time is counted in collisions per particle, s = 2 N_coll / N. The collision rate, and with it the density,
+then has no influence. Gases are homogeneous, velocities nearly Maxwellian and particles uncorrelated: dilute
+gases before clustering.
 """
 
 from functools import cache
@@ -14,17 +14,48 @@ from gaspart.theory._arguments import Numbers, Values, checked, checked_dimensio
 from gaspart.theory.enskog import collision_rate
 
 DISCHARGE_EXPONENT = 1.5
-"""Exponent of the width of an orifice, less some diameters of the grains, in the rate of their flow through
-it in two dimensions: the width times the speed of a free fall from an arch as wide. In three it is 5/2
+"""Exponent of the width of an orifice, minus some diameters of the grains, in the flow rate of grains in two
+dimensions: the width times the speed of a free fall from an arch as wide. In three dimensions it is 5/2
 (Beverloo, Leniger & van de Velde, Chem. Eng. Sci. 15, 260 (1961))."""
 
 
 def fourth_cumulant(restitution: Numbers, dimension: int) -> Values:
-    """a2 = d <v^4> / ((d + 2) <v^2>^2) - 1 of the smooth inelastic gas that cools homogeneously.
+    """Compute the fourth cumulant of the smooth inelastic gas that cools homogeneously.
 
-    a2 = 16 (1-e) (1-2e^2) / (9 + 24 d + (8d - 41) e + 30 e^2 (1-e)); van Noije and Ernst, Granular Matter 1,
-    57 (1998). First order in a2, to which quadrature of the collision integral gives the same (tested); 0.01
-    or so below direct-simulation results at e < 0.6.
+    Parameters
+    ----------
+    restitution : array_like, [1]
+        Coefficient of normal restitution e, from 0 to 1.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `restitution`, [1]
+        Cumulant a2 = d <v^4> / ((d + 2) <v^2>^2) - 1.
+
+    Raises
+    ------
+    SceneError
+        If the dimension is neither 2 nor 3.
+    ValueError
+        If the restitution is out of range.
+
+    Notes
+    -----
+    a2 = 16 (1-e) (1-2e^2) / (9 + 24 d + (8d - 41) e + 30 e^2 (1-e)) [1]_, to first order in a2. Quadrature of
+    the collision integral gives the same to this order (tested). The value is 0.01 or so below results of
+    direct simulation at e < 0.6.
+
+    References
+    ----------
+    .. [1] T. P. C. van Noije and M. H. Ernst, Granular Matter 1, 57 (1998).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.fourth_cumulant(0.9, dimension=3)), 5)
+    -0.01456
     """
     e, d = _checked_restitution(restitution), checked_dimension(dimension)
     return (
@@ -36,10 +67,42 @@ def fourth_cumulant(restitution: Numbers, dimension: int) -> Values:
 
 
 def cooling_rate(restitution: Numbers, dimension: int) -> Values:
-    """- d ln T / ds of the smooth inelastic gas: (1 - e^2) / d (1 + a2 / 4).
+    """Compute the decrease of ln T per collision of a particle in a cooling smooth gas.
 
-    The factor 1 - e^2 over d is exact for Maxwellian velocities, which the gas leaves within some collisions;
-    dissipation per time is 1 + 3 a2 / 16 times theirs, collisions per time 1 - a2 / 16 (van Noije & Ernst).
+    Parameters
+    ----------
+    restitution : array_like, [1]
+        Coefficient of normal restitution e, from 0 to 1.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `restitution`, [1]
+        - d ln T / ds, with s collisions of a particle.
+
+    Raises
+    ------
+    SceneError
+        If the dimension is neither 2 nor 3.
+    ValueError
+        If the restitution is out of range.
+
+    Notes
+    -----
+    (1 - e^2) / d (1 + a2 / 4), with a2 of `fourth_cumulant`. The factor (1 - e^2) / d is exact for Maxwellian
+    velocities, which the gas leaves within some collisions. The dissipation per time is 1 + 3 a2 / 16 times
+    the Maxwellian one, collisions per time are 1 - a2 / 16 times the Maxwellian ones [1]_.
+
+    References
+    ----------
+    .. [1] T. P. C. van Noije and M. H. Ernst, Granular Matter 1, 57 (1998).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.cooling_rate(0.9, dimension=3)), 5)
+    0.0631
     """
     e = _checked_restitution(restitution)
     return (1.0 - e**2) / dimension * (1.0 + 0.25 * fourth_cumulant(e, dimension))
@@ -47,11 +110,37 @@ def cooling_rate(restitution: Numbers, dimension: int) -> Values:
 
 @checked
 def cooling_rate_finite_size_factor(count: Numbers, dimension: int) -> Values:
-    """`cooling_rate` of N particles over that of many: d N / (d (N - 1) + 1), T about the centre of mass.
+    """Compute the cooling rate of few particles divided by the cooling rate of many.
 
-    Relative velocities have the variance 2T N / (N - 1); and at one energy, all velocities being uniform on a
-    sphere in D = d (N - 1) dimensions, a contact takes D / (D + 1) of the energy that it takes of Maxwellian
-    ones (exact for contacts that are nearly elastic, which leave the velocities so distributed).
+    Parameters
+    ----------
+    count : array_like
+        Number N of particles.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `count`, [1]
+        Factor of `cooling_rate`.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    d N / (d (N - 1) + 1), with the temperature T about the centre of mass. Relative velocities have the
+    variance 2T N / (N - 1). At a fixed energy all velocities are uniform on a sphere in D = d (N - 1)
+    dimensions. A contact then takes D / (D + 1) of the energy that it takes at Maxwellian velocities (exact
+    for nearly elastic contacts, which leave the velocities so distributed).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.cooling_rate_finite_size_factor(100, dimension=3)), 5)
+    1.00671
     """
     freedoms = checked_dimension(dimension) * (np.asarray(count, dtype=float) - 1.0)
     return (freedoms + dimension) / (freedoms + 1.0)
@@ -59,24 +148,89 @@ def cooling_rate_finite_size_factor(count: Numbers, dimension: int) -> Values:
 
 @checked
 def haff_time(restitution: Numbers, dimension: int, collision_rate: Numbers) -> Values:
-    """t_H of Haff's law T = T_0 / (1 + t / t_H)^2; `collision_rate`: per particle, of the elastic gas at T_0.
+    """Compute the characteristic time of Haff's law of cooling.
 
-    T falls by d ln T = -`cooling_rate` ds, and collisions become as rare as sqrt(T): 1 / t_H is half of
-    `cooling_rate` times the rate, itself 1 - a2 / 16 of the elastic one. Haff, J. Fluid Mech. 134, 401
-    (1983).
+    Parameters
+    ----------
+    restitution : array_like, [1]
+        Coefficient of normal restitution e, from 0 to 1.
+    dimension : {2, 3}
+        Discs or spheres.
+    collision_rate : float or ndarray, [1/time]
+        Collision rate of a particle of the elastic gas at the initial temperature T_0.
+
+    Returns
+    -------
+    float or ndarray, [time]
+        Time t_H of T = T_0 / (1 + t / t_H)^2.
+
+    Raises
+    ------
+    SceneError
+        If the dimension or the collision rate is out of range.
+    ValueError
+        If the restitution is out of range.
+
+    Notes
+    -----
+    T decreases by d ln T = -`cooling_rate` ds, and collisions become rarer in proportion to sqrt(T) [1]_. So
+    1 / t_H is half of `cooling_rate` times the collision rate, which is 1 - a2 / 16 of the elastic rate.
+
+    References
+    ----------
+    .. [1] P. K. Haff, J. Fluid Mech. 134, 401 (1983).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.haff_time(0.9, dimension=3, collision_rate=2.0)), 4)
+    15.8328
     """
     slowed = 1.0 - fourth_cumulant(restitution, dimension) / 16.0
     return 2.0 / (cooling_rate(restitution, dimension) * slowed * collision_rate)
 
 
 def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
-    """a2 of the smooth inelastic gas that white noise heats, in its steady state; of few particles see
-    `finite_size_cumulant`.
+    """Compute the fourth cumulant of the smooth inelastic gas in the steady state under white noise.
 
-    a2 = 16 (1-e) (1-2e^2) / (73 + 56 d - (24 d + 105) e + 30 e^2 (1-e)); van Noije and Ernst, Granular Matter
-    1, 57 (1998). Derived again (tested): the moments mu_2 ~ 1 + 3 a2/16 and mu_4 ~ d + 3/2 + e^2 + a2
-    (3 (10 d + 39 + 10 e^2)/32 + (d-1)/(1-e)) give it from mu_4 = (d+2) mu_2, and `fourth_cumulant` from mu_4
-    = (d+2) (1 + a2) mu_2.
+    Parameters
+    ----------
+    restitution : array_like, [1]
+        Coefficient of normal restitution e, from 0 to 1.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `restitution`, [1]
+        Cumulant a2, as defined in `fourth_cumulant`.
+
+    Raises
+    ------
+    SceneError
+        If the dimension is neither 2 nor 3.
+    ValueError
+        If the restitution is out of range.
+
+    See Also
+    --------
+    finite_size_cumulant : Fourth cumulant of few particles.
+
+    Notes
+    -----
+    a2 = 16 (1-e) (1-2e^2) / (73 + 56 d - (24 d + 105) e + 30 e^2 (1-e)) [1]_. Derived again (tested): the
+    moments mu_2 ~ 1 + 3 a2/16 and mu_4 ~ d + 3/2 + e^2 + a2 (3 (10 d + 39 + 10 e^2)/32 + (d-1)/(1-e)) give it
+    from mu_4 = (d+2) mu_2, and `fourth_cumulant` from mu_4 = (d+2) (1 + a2) mu_2.
+
+    References
+    ----------
+    .. [1] T. P. C. van Noije and M. H. Ernst, Granular Matter 1, 57 (1998).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.driven_cumulant(0.9, dimension=3)), 5)
+    -0.01179
     """
     e, d = _checked_restitution(restitution), checked_dimension(dimension)
     below = 73.0 + 56.0 * d - (24.0 * d + 105.0) * e + 30.0 * e**2 * (1.0 - e)
@@ -85,11 +239,38 @@ def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
 
 @checked
 def finite_size_cumulant(cumulant: Numbers, count: Numbers, dimension: int) -> Values:
-    """(1 + a2) D / (D + 2) - 1, D = d (N - 1): what d <v^4> / ((d + 2) <(v^2)^2>) - 1 is of N particles.
+    """Compute the fourth cumulant that few particles have.
 
-    `cumulant`: a2 of many. <(v^2)^2> is the mean over time of the square of the mean of v^2 over the
-    particles, and the velocities are those about the centre of mass. Exact for a2 = 0: at one energy all
-    velocities are uniform on a sphere in D dimensions; corrections are a2/N.
+    Parameters
+    ----------
+    cumulant : array_like, [1]
+        Fourth cumulant a2 of many particles.
+    count : array_like
+        Number N of particles.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, [1]
+        Cumulant d <v^4> / ((d + 2) <(v^2)^2>) - 1 of N particles.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    (1 + a2) D / (D + 2) - 1 with D = d (N - 1). <(v^2)^2> is the mean over time of the square of the mean of
+    v^2 over the particles; velocities are about the centre of mass. Exact for a2 = 0: at a fixed energy all
+    velocities are uniform on a sphere in D dimensions. Corrections are of the order a2/N.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.finite_size_cumulant(0.0, count=100, dimension=3)), 5)
+    -0.00669
     """
     freedoms = checked_dimension(dimension) * (np.asarray(count, dtype=float) - 1.0)
     return (1.0 + np.asarray(cumulant)) * freedoms / (freedoms + 2.0) - 1.0
@@ -99,18 +280,53 @@ def finite_size_cumulant(cumulant: Numbers, count: Numbers, dimension: int) -> V
 def driven_temperature(
     restitution: Numbers, dimension: int, power: Numbers, packing_fraction: Numbers
 ) -> Values:
-    """The steady temperature of such a gas of mass 1 and diameter 1, if each particle is given `power`.
+    """Compute the steady temperature of the smooth inelastic gas that white noise heats.
 
-    Contacts take (1 - e^2)/2 nu T (1 + 3 a2/16) per particle and time, nu = nu_1 sqrt(T) Enskog's rate of the
-    elastic gas: T^(3/2) = 2 power / ((1 - e^2) nu_1 (1 + 3 a2/16)). Infinite for e = 1.
+    Parameters
+    ----------
+    restitution : array_like, [1]
+        Coefficient of normal restitution e, from 0 to 1.
+    dimension : {2, 3}
+        Discs or spheres.
+    power : array_like, [1]
+        Power that each particle receives, in units of mass = diameter = 1.
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
 
-    Of N particles too, T about the centre of mass of N - 1: kicks that keep the momentum give them power (1 -
-    1/N) each, and each has N - 1 partners instead of N (dilute; the energy fluctuates by 0.8 to 1.2 times as
-    much as at equilibrium, which changes the mean of T^(3/2) by 0.1/N at most). Molecular chaos:
-    velocities are uncorrelated before contacts. Kicks let pairs that have just collided, and lost their
-    relative velocity, meet again, and drive long waves, which renormalise T (van Noije, Ernst, Trizac &
-    Pagonabarraga, Phys. Rev. E 59, 4326 (1999)): T is 1 % higher for discs of e = 0.4 at a packing fraction
-    of 0.01, and less than can be measured, 0.2 %, at 0.001.
+    Returns
+    -------
+    ndarray, [1]
+        Temperature T of the gas of mass 1 and diameter 1; infinite for e = 1.
+
+    Raises
+    ------
+    SceneError
+        If the dimension or the packing fraction is out of range.
+    ValueError
+        If the restitution is out of range.
+
+    Notes
+    -----
+    Contacts take (1 - e^2)/2 nu T (1 + 3 a2/16) per particle and time, where nu = nu_1 sqrt(T) is Enskog's
+    rate of the elastic gas: T^(3/2) = 2 power / ((1 - e^2) nu_1 (1 + 3 a2/16)).
+
+    It holds for N particles too, with T about the centre of mass of N - 1: kicks that keep the momentum give
+    them power (1 - 1/N) each, and each has N - 1 partners instead of N (dilute; the energy fluctuates by 0.8
+    to 1.2 times as much as at equilibrium, which changes the mean of T^(3/2) by 0.1/N at most). Molecular
+    chaos: velocities are uncorrelated before contacts. Kicks let pairs collide again that have just collided
+    and lost their relative velocity. They also drive long waves, which renormalise T [1]_. T is 1 % higher
+    for discs of e = 0.4 at a packing fraction of 0.01. At 0.001 the difference is below 0.2 %, which cannot
+    be measured.
+
+    References
+    ----------
+    .. [1] T. P. C. van Noije, M. H. Ernst, E. Trizac and I. Pagonabarraga, Phys. Rev. E 59, 4326 (1999).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.driven_temperature(0.9, dimension=3, power=1.0, packing_fraction=0.1)), 4)
+    3.2925
     """
     rate = collision_rate(packing_fraction, dimension)
     e = _checked_restitution(restitution)
@@ -119,12 +335,45 @@ def driven_temperature(
 
 
 def rough_matrix(inertia: float, tangential: float, normal: float = 1.0) -> np.ndarray:
-    """M (2, 2) of d(T_tr, T_rot)/ds = M (T_tr, T_rot), rough discs; inertia: q = I / (m R^2).
+    """Compute the matrix of the exchange of energy between translation and rotation of rough discs.
 
+    Parameters
+    ----------
+    inertia : float, [1]
+        Reduced moment of inertia q = I / (m R^2), positive.
+    tangential : float, [1]
+        Coefficient of tangential restitution, from -1 (smooth) to 1 (perfectly rough).
+    normal : float, default 1.0, [1]
+        Coefficient of normal restitution, from 0 to 1.
+
+    Returns
+    -------
+    ndarray, shape (2, 2), [1]
+        M of d(T_tr, T_rot)/ds = M (T_tr, T_rot), with s collisions of a particle.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range.
+
+    Notes
+    -----
     M = [[-2A, 2B], [4B, -4C]] with A = (1 - normal^2)/4 + h (1 - h)/2, B = h^2 / 2q, C = h (1 - h/q) / 2q and
-    h = q (1 + tangential) / (2q + 2). Huthmann and Zippelius, Phys. Rev. E 56, R6275 (1997), Luding et al.,
-    Phys. Rev. E 58, 3416 (1998) (exact averages over Maxwellian velocities and spins, tested).
-    T_tr = m <v^2> / 2, T_rot = I <w^2>. Perfectly rough: T_tr - T_rot decays at 3q / (1+q)^2.
+    h = q (1 + tangential) / (2q + 2) [1]_ [2]_ (exact averages over Maxwellian velocities and spins, tested).
+    T_tr = m <v^2> / 2, T_rot = I <w^2>. In a perfectly rough gas T_tr - T_rot decays at the rate 3q /
+    (1+q)^2.
+
+    References
+    ----------
+    .. [1] M. Huthmann and A. Zippelius, Phys. Rev. E 56, R6275 (1997).
+    .. [2] S. Luding and others, Phys. Rev. E 58, 3416 (1998).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.rough_matrix(inertia=0.5, tangential=1.0).round(4)
+    array([[-0.2222,  0.2222],
+           [ 0.4444, -0.4444]])
     """
     q = float(inertia)
     if not q > 0.0:
@@ -147,7 +396,42 @@ def rough_temperatures(
     normal: float = 1.0,
     start: tuple[float, float] = (1.0, 0.0),
 ) -> np.ndarray:
-    """T_tr and T_rot (2, ...) after s collisions per particle, from `start`; `rough_matrix` integrated."""
+    """Compute the temperatures of translation and rotation of rough discs after some collisions.
+
+    Parameters
+    ----------
+    collisions : array_like, [1]
+        Number s of collisions of a particle.
+    inertia : float, [1]
+        Reduced moment of inertia q = I / (m R^2), positive.
+    tangential : float, [1]
+        Coefficient of tangential restitution, from -1 (smooth) to 1 (perfectly rough).
+    normal : float, default 1.0, [1]
+        Coefficient of normal restitution, from 0 to 1.
+    start : tuple of float, default (1.0, 0.0), [energy]
+        T_tr and T_rot at s = 0.
+
+    Returns
+    -------
+    ndarray, shape (2, ...), [energy]
+        T_tr and T_rot, each of the shape of `collisions`.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range.
+
+    Notes
+    -----
+    `rough_matrix` integrated.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.rough_temperatures([0.0, 1.0, 10.0], inertia=0.5, tangential=1.0).round(4)
+    array([[1.    , 0.8378, 0.6671],
+           [0.    , 0.3244, 0.6658]])
+    """
     values, vectors = np.linalg.eig(rough_matrix(inertia, tangential, normal))
     weights = np.linalg.solve(vectors, np.asarray(start, dtype=float))
     s = np.asarray(collisions, dtype=float)
@@ -155,9 +439,37 @@ def rough_temperatures(
 
 
 def rough_ratio(inertia: float, tangential: float, normal: float = 1.0) -> float:
-    """T_rot / T_tr that rough discs tend to, cooling or not; 1 if they are elastic and perfectly rough.
+    """Compute the ratio of the temperatures of rotation and translation that rough discs approach.
 
-    The slower eigenvector of `rough_matrix`. Raises ValueError for smooth discs, whose spins never change.
+    Parameters
+    ----------
+    inertia : float, [1]
+        Reduced moment of inertia q = I / (m R^2), positive.
+    tangential : float, [1]
+        Coefficient of tangential restitution, above -1 and at most 1 (perfectly rough).
+    normal : float, default 1.0, [1]
+        Coefficient of normal restitution, from 0 to 1.
+
+    Returns
+    -------
+    float, [1]
+        T_rot / T_tr, cooling or not; 1 if the discs are elastic and perfectly rough.
+
+    Raises
+    ------
+    ValueError
+        If the discs are smooth, so that their spins never change, or if an argument is out of range.
+
+    Notes
+    -----
+    The slower eigenvector of `rough_matrix`. For rough discs that cool it is right to 5 % only;
+    `rough_cooling` has values of direct simulation.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.rough_ratio(inertia=0.5, tangential=0.5, normal=0.9), 4)
+    0.7904
     """
     if tangential == -1.0:
         raise ValueError("tangential: -1 (smooth discs do not exchange energy with their spins)")
@@ -168,26 +480,69 @@ def rough_ratio(inertia: float, tangential: float, normal: float = 1.0) -> float
 
 @cache
 def rough_cooling() -> np.ndarray:
-    """T_rot / T_tr of rough discs that cool, which `rough_ratio` gives to 5 % only: (n, 5), in each row
-    inertia, tangential and normal restitution, the ratio, and its standard uncertainty.
+    """Return the ratio of the temperatures of rough discs that cool, by direct simulation.
 
-    Velocities and spins are not Maxwellian there, and not independent. Computed by direct simulation of the
-    homogeneous Boltzmann equation (`homogeneous.rough_discs`).
+    Returns
+    -------
+    ndarray, shape (n, 5), [1]
+        In each row inertia, tangential and normal restitution, T_rot / T_tr, and its standard uncertainty.
+
+    Notes
+    -----
+    `rough_ratio` gives this ratio to 5 % only. Velocities and spins are not Maxwellian there, and not
+    independent. Computed by direct simulation of the homogeneous Boltzmann equation
+    (`homogeneous.rough_discs`).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.rough_cooling().shape[1]
+    5
     """
     return np.loadtxt(Path(__file__).parent / "data" / "rough_cooling.csv", delimiter=",", skiprows=1)
 
 
 ROUGH_START_UNCERTAINTY = 0.002
-"""Standard uncertainty of `rough_start_excess`, statistical: of two gases of 100 000 discs."""
+"""Standard uncertainty of `rough_start_excess` (statistical, from two gases of 100 000 discs)."""
 
 
 @checked
 def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
-    """T_tr - T_rot of perfectly rough discs whose spins are 0 at first, over the temperature of the start,
-    minus exp(-3 q s / (1 + q)^2), which Maxwellian velocities would give (Huthmann and Zippelius 1997).
+    """Return the deviation of rough discs from Maxwellian exchange of energy, after a start without spin.
 
-    s: collisions of a particle; NaN where it was not computed, by direct simulation of the homogeneous
-    Boltzmann equation (`homogeneous.rough_start`). Uncertain by ROUGH_START_UNCERTAINTY.
+    Parameters
+    ----------
+    inertia : float, [1]
+        Reduced moment of inertia q = I / (m R^2).
+    collisions : array_like, [1]
+        Number s of collisions of a particle.
+
+    Returns
+    -------
+    ndarray, same shape as `collisions`, [1]
+        T_tr - T_rot of perfectly rough discs divided by the initial temperature, minus exp(-3 q s / (1 +
+        q)^2); NaN where it was not computed.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    The exponential is the result of Maxwellian velocities [1]_. Computed by direct simulation of the
+    homogeneous Boltzmann equation (`homogeneous.rough_start`). The standard uncertainty is
+    `ROUGH_START_UNCERTAINTY`.
+
+    References
+    ----------
+    .. [1] M. Huthmann and A. Zippelius, Phys. Rev. E 56, R6275 (1997).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> abs(float(theory.rough_start_excess(0.5, collisions=2.0))) < 0.05
+    True
     """
     table = np.loadtxt(Path(__file__).parent / "data" / "rough_start.csv", delimiter=",", skiprows=1)
     s, excess = table[np.isclose(table[:, 0], inertia), 1:].T
@@ -198,15 +553,46 @@ def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
 
 @checked
 def rough_wall_difference(time: Numbers, inertia: float) -> Values:
-    """(T_par - T_rot) / T_par(0) of perfectly rough particles without spin at first, which meet nothing but
-    two parallel rough walls; time: t sqrt(k_B T / m) / h, h the distance between the walls for centres.
+    """Compute the difference of temperatures of rough particles that collide with two rough walls only.
 
-    By Spencer 2022, Eq. 40, a hit turns the pair (v, sqrt(q) R w) of a tangential velocity and its spin, seen
-    from the wall, by the angle a, cos a = (1 - q)/(1 + q), inertia: q = I / (m R^2). After K hits v is v(0)
-    cos(K a), and the difference the mean of cos(2 K a). For uniform positions its mean at a given normal
-    speed is linear between the times of integer K; as a Fourier series, and averaged over Maxwellian normal
-    velocities: sum over integers j of (sin a / (a + pi j))^2 exp(-2 (a + pi j)^2 time^2). Exact; the sum ends
-    at j = 1000, which matters (2e-4) only for times below 0.002.
+    Parameters
+    ----------
+    time : array_like, [1]
+        Reduced time t sqrt(k_B T / m) / h, with h the distance between the walls for centres.
+    inertia : float, [1]
+        Reduced moment of inertia q = I / (m R^2), positive.
+
+    Returns
+    -------
+    ndarray, same shape as `time`, [1]
+        (T_par - T_rot) / T_par(0).
+
+    Raises
+    ------
+    SceneError
+        If a time is out of range.
+    ValueError
+        If the inertia is not positive.
+
+    Notes
+    -----
+    The particles are perfectly rough and have no spin at first; the walls are parallel. A wall hit turns the
+    pair (v, sqrt(q) R w) of a tangential velocity and its spin, seen from the wall, by the angle a, cos a =
+    (1 - q)/(1 + q) [1]_. After K hits v is v(0) cos(K a), and the difference is the mean of cos(2 K a). For
+    uniform positions its mean at a given normal speed is linear between the times of integer K. As a Fourier
+    series, and averaged over Maxwellian normal velocities, it is the sum over integers j of (sin a / (a + pi
+    j))^2 exp(-2 (a + pi j)^2 time^2). Exact; the sum ends at j = 1000, which matters (2e-4) only for times
+    below 0.002.
+
+    References
+    ----------
+    .. [1] Spencer 2022, Eq. 40.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.rough_wall_difference([0.1, 1.0], inertia=0.5).round(4)
+    array([0.8582, 0.0285])
     """
     q = float(inertia)
     if not q > 0.0:
@@ -217,6 +603,7 @@ def rough_wall_difference(time: Numbers, inertia: float) -> Values:
 
 
 def _checked_restitution(restitution: Numbers) -> np.ndarray:
+    """Return the restitution as an array; raise ValueError outside [0, 1]."""
     e = np.asarray(restitution, dtype=float)
     if not np.all((e >= 0.0) & (e <= 1.0)):
         raise ValueError(f"restitution: {restitution} (must be from 0 to 1)")

@@ -1,7 +1,8 @@
-"""Gases under gravity: the ideal gas in a box of finite height, and hydrostatics of dense discs and spheres.
+"""Gases under gravity: ideal gas in a box of finite height, hydrostatics of discs and spheres.
 
-Heights z are those of the particles' centres, from the lowest place that a centre can reach; `height` is the
-highest. A field is given by w = m g / (k_B T) of a particle, one over its scale height (1 / length).
+Discs and spheres are dense fluids. Heights z are the heights of the particles' centres above the lowest
+position that a centre can reach; `height` is the highest. A field is given by w = m g / (k_B T) of a
+particle, the inverse of its scale height (1 / length).
 """
 
 import math
@@ -16,7 +17,37 @@ from gaspart.theory.potential import packing_fraction_at
 
 @checked
 def ideal_profile(z: Numbers, height: float, weight: float) -> Values:
-    """Chance per length of finding a particle at z: w e^{-w z} / (1 - e^{-w height}) (exact; canonical)."""
+    """Compute the probability density of the height of a particle of an ideal gas.
+
+    Parameters
+    ----------
+    z : array_like, [length]
+        Height of the centre.
+    height : float, [length]
+        Largest height that a centre can reach.
+    weight : float, [1/length]
+        Reduced weight w = m g / (k_B T).
+
+    Returns
+    -------
+    ndarray, same shape as `z`, [1/length]
+        Probability density.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    w e^{-w z} / (1 - e^{-w height}) (exact; canonical).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.ideal_profile([0.0, 1.0], height=10.0, weight=0.5).round(4)
+    array([0.5034, 0.3053])
+    """
     z = np.asarray(z, dtype=float)
     if weight == 0.0:
         return np.full_like(z, 1.0 / height)
@@ -25,7 +56,35 @@ def ideal_profile(z: Numbers, height: float, weight: float) -> Values:
 
 @checked
 def ideal_mean_height(height: float, weight: Numbers) -> Values:
-    """<z> = 1/w - height / (e^x - 1), x = w height (exact; canonical). Without a field, height / 2."""
+    """Compute the mean height of the particles of an ideal gas.
+
+    Parameters
+    ----------
+    height : float, [length]
+        Largest height that a centre can reach.
+    weight : array_like, [1/length]
+        Reduced weight w = m g / (k_B T).
+
+    Returns
+    -------
+    ndarray, same shape as `weight`, [length]
+        Mean height; height / 2 without a field.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    1/w - height / (e^x - 1) with x = w height (exact; canonical).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.ideal_mean_height(10.0, [0.0, 0.5]).round(4)
+    array([5.    , 1.9322])
+    """
     x = np.asarray(weight, dtype=float) * height
     small = np.abs(x) < 1e-4  # where the two terms cancel; next is x^3 / 720
     safe = np.where(small, 1.0, x)
@@ -34,9 +93,35 @@ def ideal_mean_height(height: float, weight: Numbers) -> Values:
 
 @checked
 def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
-    """C_V / (N k_B) = d/2 + 1 - x^2 e^x / (e^x - 1)^2, x = m g height / (k_B T) (exact; canonical).
+    """Compute the heat capacity of an ideal gas under gravity in a box.
 
-    d/2 without gravity; d/2 + 1 in a box far higher than the gas, whose potential energy grows with T too.
+    Parameters
+    ----------
+    x : array_like, [1]
+        Reduced height x = m g height / (k_B T).
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `x`, [1]
+        C_V / (N k_B).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    d/2 + 1 - x^2 e^x / (e^x - 1)^2 (exact; canonical): d/2 without gravity, and d/2 + 1 in a box far higher
+    than the gas, whose potential energy increases with T too.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.ideal_heat_capacity([0.0, 2.0, 100.0], dimension=3).round(4)
+    array([1.5   , 1.7759, 2.5   ])
     """
     x = np.asarray(x, dtype=float)
     half = np.where(x == 0.0, 1.0, 0.5 * x)
@@ -47,16 +132,52 @@ def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
 def ideal_energy_moments(
     energy: float, count: int, height: float, force: float, dimension: int, points: int = 2**14
 ) -> tuple[float, float]:
-    """<K> and the variance of the kinetic energy K of an ideal gas at fixed total energy (exact).
+    """Compute mean and variance of the kinetic energy of an ideal gas at fixed total energy.
 
-    energy: kinetic and potential, of `count` particles that weigh `force` = m g each, floor at 0. The number
-    of states with potential energy U is proportional to p(U) (E - U)^{dN/2 - 1}, p the density of a sum of N
-    independent potential energies, each uniform between 0 and force * height (walls all around: no momentum
-    is conserved). p is found as the N-fold convolution, by Fourier transform, of one e^{-bU}, which puts its
-    peak where it is wanted; the factor e^{bU} is put back afterwards.
+    Parameters
+    ----------
+    energy : float, [energy]
+        Kinetic and potential energy of all particles, with the floor at 0.
+    count : int
+        Number N of particles.
+    height : float, [length]
+        Largest height that a centre can reach.
+    force : float, [energy/length]
+        Weight m g of a particle.
+    dimension : {2, 3}
+        Discs or spheres.
+    points : int, default 2**14
+        Number of points of the grid of potential energies.
 
-    Returns (mean, variance). From them follow T = 2 <K> / (dN) and, in the limit of many particles, the heat
-    capacity `lebowitz_percus_verlet`. Raises ValueError unless 0 < energy <= d/2 N force height.
+    Returns
+    -------
+    mean : float, [energy]
+        Mean kinetic energy <K>.
+    variance : float, [energy^2]
+        Variance of the kinetic energy.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    ValueError
+        If the energy is not positive.
+
+    Notes
+    -----
+    Exact. The number of states with potential energy U is proportional to p(U) (E - U)^{dN/2 - 1}, where p is
+    the density of a sum of N independent potential energies, each uniform between 0 and force * height. There
+    are walls on all sides, so no momentum is conserved. p is computed as the N-fold convolution, by Fourier
+    transform, of a single density times e^{-bU}, which puts its peak at the right energy; the factor e^{bU}
+    is put back afterwards. From both moments follow T = 2 <K> / (dN) and, in the limit of many particles, the
+    heat capacity, `lebowitz_percus_verlet`.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> mean, variance = theory.ideal_energy_moments(100.0, count=50, height=10.0, force=0.5, dimension=2)
+    >>> round(mean, 3), round(variance, 3)
+    (50.848, 23.264)
     """
     top = force * height
     freedom = 0.5 * checked_dimension(dimension) * count
@@ -85,7 +206,10 @@ def ideal_energy_moments(
 
 
 def _canonical_temperature(energy: float, top: float, dimension: int) -> float:
-    """T at which a particle of an ideal gas has this mean energy, by bisection; `top`: m g height."""
+    """Return the temperature at which a particle of an ideal gas has this mean energy.
+
+    By bisection; `top` is m g height.
+    """
     half = 0.5 * dimension
     low, high = 0.5 * energy / (half + 1.0), energy / half
     for _ in range(60):
@@ -99,10 +223,42 @@ def _canonical_temperature(energy: float, top: float, dimension: int) -> float:
 
 @checked
 def lebowitz_percus_verlet(mean: Numbers, variance: Numbers, count: int, dimension: int) -> Values:
-    """C_V / (N k_B) from the kinetic energy's mean and variance at fixed total energy.
+    """Compute the heat capacity from the fluctuations of the kinetic energy at fixed total energy.
 
-    <dK^2> = (d/2) N T^2 (1 - (d/2) N k_B / C_V), to leading order in 1/N; Lebowitz, Percus and Verlet,
-    Phys. Rev. 153, 250 (1967) (tested against an exact case).
+    Parameters
+    ----------
+    mean : float or ndarray, [energy]
+        Mean of the kinetic energy K.
+    variance : float or ndarray, [energy^2]
+        Variance of the kinetic energy.
+    count : int
+        Number N of particles.
+    dimension : int
+        Dimension d.
+
+    Returns
+    -------
+    float or ndarray, [1]
+        C_V / (N k_B).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    <dK^2> = (d/2) N T^2 (1 - (d/2) N k_B / C_V), to leading order in 1/N [1]_ (tested against an exact case).
+
+    References
+    ----------
+    .. [1] J. L. Lebowitz, J. K. Percus and L. Verlet, Phys. Rev. 153, 250 (1967).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.lebowitz_percus_verlet(mean=50.0, variance=25.0, count=50, dimension=2)
+    2.0
     """
     half = 0.5 * dimension
     relative = variance / (half * count * (mean / (half * count)) ** 2)
@@ -113,15 +269,47 @@ def lebowitz_percus_verlet(mean: Numbers, variance: Numbers, count: int, dimensi
 def hydrostatic_profiles(
     z: np.ndarray, numbers: ArrayLike, weights: ArrayLike, dimension: int, diameter: float = 1.0
 ) -> np.ndarray:
-    """Densities of species of one size at heights z, hydrostatics with the reference equation of state.
+    """Compute the density profiles of species of equal size by hydrostatics.
 
-    Every species' chemical potential is uniform, ln eta_i + mu_excess(eta) + w_i z = c_i, where eta is the
-    packing fraction of all particles; summed, that is dP/dz = -sum of m_i g rho_i. A local approximation:
-    good where the density changes little over a diameter (error of order (w diameter)^2).
+    Parameters
+    ----------
+    z : ndarray, shape (Z,), [length]
+        Evenly spaced heights.
+    numbers : array_like, shape (S,), [1/length^(d-1)]
+        Particles of each species per area (length in 2D) of the column between the first and the last height.
+    weights : array_like, shape (S,), [1/length]
+        Reduced weight w_i = m_i g / (k_B T) of a particle of each species.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
 
-    z: (Z,) evenly spaced heights; numbers: (S,) particles of each species per area (length in 2D) of the
-    column between the first and the last; weights: (S,) m_i g / (k_B T). Returns (S, Z) number densities, of
-    which each integrates (trapezoids) to its number.
+    Returns
+    -------
+    ndarray, shape (S, Z), [1/length^d]
+        Number densities, of which each integrates (trapezoids) to its number.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    ValueError
+        If there is no such column.
+
+    Notes
+    -----
+    The chemical potential of every species is uniform, ln eta_i + mu_excess(eta) + w_i z = c_i, where eta is
+    the packing fraction of all particles and mu_excess belongs to the reference equation of state. The sum of
+    these equations is dP/dz = -sum of m_i g rho_i. It is a local approximation: good where the density
+    changes little over a diameter (error of order (w diameter)^2).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from gaspart import theory
+    >>> z = np.linspace(0.0, 20.0, 41)
+    >>> theory.hydrostatic_profiles(z, [2.0], [0.5], dimension=2)[0, [0, 20]].round(4)
+    array([0.4312, 0.0255])
     """
     z = np.asarray(z, dtype=float)
     numbers, weights = np.asarray(numbers, dtype=float), np.asarray(weights, dtype=float)

@@ -1,7 +1,7 @@
-"""Heat between two walls: a gas from free flight to Fourier's law, and electrons among vibrating scatterers.
+"""Heat between walls: gas from free flight to Fourier's law, electrons among vibrating scatterers.
 
 The walls are diffuse with full accommodation unless said otherwise; k_B = 1. Fluxes are energies per area (in
-2D per length) and time, from the hot wall to the cold one.
+2D per length) and time, from the hot wall to the cold wall.
 """
 
 from dataclasses import dataclass
@@ -14,17 +14,17 @@ from gaspart.theory.geometry import number_density, packing_fraction
 from gaspart.theory.state import compressibility_factor
 
 TEMPERATURE_JUMP = 2.127
-"""T_gas - T_wall over l_0 dT/dn at a diffuse wall, hard spheres, l_0 = 1 / (sqrt 2 pi n sigma^2): 2.4001
-sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989). Moments of the linearised Boltzmann
-equation, derived again, come within 0.5 % of it and converge (tested)."""
+"""T_gas - T_wall divided by l_0 dT/dn at a diffuse wall, hard spheres, l_0 = 1 / (sqrt 2 pi n sigma^2):
+2.4001 sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989). Moments of the linearised Boltzmann
+equation, derived again, come within 0.5 % of this value and converge (tested)."""
 ELEMENTARY_JUMP = 15.0 / 8.0
 """`TEMPERATURE_JUMP` by Maxwell's elementary argument, 2 gamma / (gamma + 1) / Pr with gamma = 5/3 and
 Pr = 2/3: particles arrive with the distribution of the gas far from the wall. A measurement must distinguish
 the two."""
 INTERPOLATED = 0.08
-"""What `interpolated_flux`, and the stress likewise, may be off between its limits: runs of the DSMC engine
-between walls at 2 and at 1 gave 0.929(7) of it at a Knudsen number of 1 and 0.942(5) at 0.3; the stress was
-0.956(15) at 0.3."""
+"""Relative error that `interpolated_flux`, and the interpolated stress, may have between their limits. Runs
+of the DSMC engine between walls at 2 and at 1 gave 0.929(7) of the flux at a Knudsen number of 1 and 0.942(5)
+at 0.3, and 0.956(15) of the stress at 0.3."""
 METAL_GAP, METAL_BEND, METAL_BEND_ERROR = 10.0, 0.044, 0.0046
 """Gap, in mean free paths, between walls at 2 and at 1; the second-order coefficient of the temperature of
 electrons among scatterers with modes against position over the gap, without the outermost tenths; and its
@@ -46,15 +46,57 @@ def free_molecular_flux(
     components: str = "all",
     accommodation: tuple[float, float] = FULL,
 ) -> Values:
-    """Flux through a gas whose particles collide with the walls only, (d + 1) n sqrt(T_1 T_2 / (2 pi m))
-    (sqrt T_1 - sqrt T_2).
+    """Compute the heat flux through a gas whose particles collide with the walls only.
 
-    A particle brings (d + 1) T / 2 from a wall; where a wall changes the normal component alone ("normal",
-    Frederickx & Meerts 2010), T: 2 / (d + 1) of the flux, 1/2 in 3D and 2/3 in 2D. With the `accommodation`
-    a_1 of the hot and a_2 of the cold wall, which mirror other particles (Maxwell 1879), the flux at the
-    same rate of hits is a_1 a_2 / (a_1 + a_2 - a_1 a_2) of it. At the same density it is a_1 a_2 (sqrt T_1 +
-    sqrt T_2) / (a_1 (2 - a_2) sqrt T_2 + a_2 (2 - a_1) sqrt T_1) of it, which is returned: most particles
-    have the temperature of the wall that accommodates better. Exact (closed form).
+    Parameters
+    ----------
+    density : float or ndarray, [1/length^d]
+        Mean number density n.
+    hot : float, [energy]
+        Temperature T_1 of the hot wall.
+    cold : float, [energy]
+        Temperature T_2 of the cold wall.
+    dimension : {2, 3}
+        Discs or spheres.
+    mass : float, default 1.0, [mass]
+        Mass of a particle.
+    components : {"all", "normal"}, default "all"
+        Components of the velocity that a wall changes.
+    accommodation : tuple of float, default (1.0, 1.0), [1]
+        Fractions a_1 and a_2 of particles whose velocities the hot and the cold wall draw; they mirror the
+        others.
+
+    Returns
+    -------
+    float or ndarray, [energy/(length^(d-1) time)]
+        Heat flux at this mean density.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    KeyError
+        If `components` is unknown.
+
+    Notes
+    -----
+    (d + 1) n sqrt(T_1 T_2 / (2 pi m)) (sqrt T_1 - sqrt T_2), exact (closed form). A particle brings (d + 1) T
+    / 2 from a wall. If a wall changes the normal component alone [1]_, it brings T: the flux is 2 / (d + 1)
+    of the former, 1/2 in 3D and 2/3 in 2D. With accommodation [2]_ the flux at the same rate of hits is a_1
+    a_2 / (a_1 + a_2 - a_1 a_2) of the flux at full accommodation. At the same density, which is returned, it
+    is a_1 a_2 (sqrt T_1 + sqrt T_2) / (a_1 (2 - a_2) sqrt T_2 + a_2 (2 - a_1) sqrt T_1) of it: most particles
+    have the temperature of the wall that accommodates better.
+
+    References
+    ----------
+    .. [1] R. Frederickx and P. Meerts (2010).
+    .. [2] J. C. Maxwell (1879).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.free_molecular_flux(0.01, hot=2.0, cold=1.0, dimension=3)), 6)
+    0.009348
     """
     carried = {"all": checked_dimension(dimension) + 1, "normal": 2}[components]
     roots = np.sqrt(hot * cold) * (np.sqrt(hot) - np.sqrt(cold))
@@ -66,9 +108,40 @@ def free_molecular_flux(
 
 @checked
 def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float = 1.0) -> float:
-    """(2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length of spheres of mass 1: Fourier's law with lambda_0
-    proportional to sqrt T, in the limit of a wide gap and a dilute gas. It does not depend on the density
-    (Maxwell 1860). Exact in that limit, with the accuracy of lambda_0.
+    """Compute the heat flux through dilute spheres in a wide gap by Fourier's law.
+
+    Parameters
+    ----------
+    length : float, [length]
+        Width of the gap.
+    hot : float, [energy]
+        Temperature T_1 of the hot wall.
+    cold : float, [energy]
+        Temperature T_2 of the cold wall.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+
+    Returns
+    -------
+    float, [energy/(length^2 time)]
+        Heat flux of spheres of mass 1.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    (2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length, with the conductivity lambda_0 proportional to sqrt T. It
+    is exact in the limit of a wide gap and a dilute gas, with the accuracy of lambda_0. It does not depend on
+    the density (Maxwell 1860).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.dilute_fourier_flux(100.0, hot=2.0, cold=1.0)), 6)
+    0.008262
     """
     conductivity = enskog_conductivity(0.0, 3, diameter, 1.0)
     return 2.0 / 3.0 * conductivity * (hot**1.5 - cold**1.5) / length
@@ -76,12 +149,47 @@ def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float 
 
 @checked
 def interpolated_flux(length: float, density: float, hot: float, cold: float, diameter: float = 1.0) -> float:
-    """Flux through dilute spheres of mass 1 at any Knudsen number: 1 / (1 / free + 1 / fluid), of the flux of
-    free flight and of Fourier's law without temperature jumps.
+    """Compute the heat flux through dilute spheres between two walls at any Knudsen number.
 
-    Sherman, Rarefied Gas Dynamics 2, 228 (1963). Right in both limits, an approximation between them: for
-    small differences of temperature 4 % above the flux with temperature jumps at a Knudsen number of 0.1, and
-    7 % above the flux of the DSMC engine at 1 (`INTERPOLATED`).
+    Parameters
+    ----------
+    length : float, [length]
+        Width of the gap.
+    density : float, [1/length^3]
+        Mean number density.
+    hot : float, [energy]
+        Temperature of the hot wall.
+    cold : float, [energy]
+        Temperature of the cold wall.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+
+    Returns
+    -------
+    float, [energy/(length^2 time)]
+        Heat flux of spheres of mass 1.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    1 / (1 / free + 1 / fluid), of the flux of free flight (`free_molecular_flux`) and of Fourier's law
+    without temperature jumps (`dilute_fourier_flux`) [1]_. It is right in both limits and an approximation
+    between them. For small differences of temperature it is 4 % above the flux with temperature jumps at a
+    Knudsen number of 0.1, and 7 % above the flux of the DSMC engine at 1 (`INTERPOLATED`).
+
+    References
+    ----------
+    .. [1] F. S. Sherman, Rarefied Gas Dynamics 2, 228 (1963).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.interpolated_flux(100.0, density=0.01, hot=2.0, cold=1.0)), 6)
+    0.004386
     """
     fluid = dilute_fourier_flux(length, hot, cold, diameter)
     free = float(free_molecular_flux(density, hot, cold, 3))
@@ -90,12 +198,32 @@ def interpolated_flux(length: float, density: float, hot: float, cold: float, di
 
 @checked
 def steady_part(time: Numbers, length: float, diffusivity: float) -> Values:
-    """1 - (8 / pi^2) sum exp(-(2 pi k)^2 diffusivity time / length^2) / k^2 over k = 1, 3, 5, ...: the
-    difference of temperature between the halves of a slab, over its steady value, after its walls have taken
-    different temperatures.
+    """Compute the difference of temperature between the halves of a slab divided by its steady value.
 
-    From one temperature everywhere; what that differs from the walls' mean is the same in both halves. The
-    heat equation with constant coefficients, its diffusivity at constant pressure (exact).
+    Parameters
+    ----------
+    time : array_like, [time]
+        Time since the walls of the slab have different temperatures.
+    length : float, [length]
+        Width of the slab.
+    diffusivity : float, [length^2/time]
+        Thermal diffusivity at constant pressure.
+
+    Returns
+    -------
+    ndarray, same shape as `time`, [1]
+        Fraction of the steady difference.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    1 - (8 / pi^2) sum exp(-(2 pi k)^2 diffusivity time / length^2) / k^2 over k = 1, 3, 5, ...; the slab
+    starts from a uniform temperature. The deviation of that temperature from the walls' mean is the same in
+    both halves. Solution of the heat equation with constant coefficients (exact).
     """
     odd = np.arange(1.0, 200.0, 2.0)
     decay = (2.0 * np.pi * odd) ** 2 * diffusivity / length**2
@@ -105,8 +233,19 @@ def steady_part(time: Numbers, length: float, diffusivity: float) -> Values:
 
 @dataclass(frozen=True)
 class Slab:
-    """A steady gas between walls: position (P,) from the hot one, temperature and number density there (P,);
-    flux."""
+    """Steady gas between two walls.
+
+    Parameters
+    ----------
+    position : ndarray, shape (P,), [length]
+        Distances from the hot wall.
+    temperature : ndarray, shape (P,), [energy]
+        Temperature at each position.
+    density : ndarray, shape (P,), [1/length^3]
+        Number density at each position.
+    flux : float, [energy/(length^2 time)]
+        Heat flux.
+    """
 
     position: np.ndarray
     temperature: np.ndarray
@@ -123,13 +262,49 @@ def conducting_slab(
     diameter: float = 1.0,
     jump: float = TEMPERATURE_JUMP,
 ) -> Slab:
-    """Fourier's law in a gas of spheres of mass 1 and mean number density `density`, with temperature jumps.
+    """Compute the profiles of spheres between walls by Fourier's law with temperature jumps.
 
-    q = -lambda(n, T) dT/dx with Enskog's conductivity and one pressure n T Z(eta) everywhere. In the dilute
-    limit, without jumps, T^(3/2) is linear and q = (2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length (closed
-    form). At each wall the gas is `jump` mean free paths times dT/dx off the wall's temperature: good to the
+    Parameters
+    ----------
+    length : float, [length]
+        Width of the gap.
+    density : float, [1/length^3]
+        Mean number density.
+    hot : float, [energy]
+        Temperature T_1 of the hot wall.
+    cold : float, [energy]
+        Temperature T_2 of the cold wall.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+    jump : float, default `TEMPERATURE_JUMP`, [1]
+        Temperature jump at a wall, in mean free paths times dT/dx.
+
+    Returns
+    -------
+    Slab
+        Positions, temperatures and number densities there, and the flux, of spheres of mass 1.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    ValueError
+        If the Knudsen number is above 0.1.
+
+    Notes
+    -----
+    q = -lambda(n, T) dT/dx with Enskog's conductivity and a uniform pressure n T Z(eta) (computed). In the
+    dilute limit, without jumps, T^(3/2) is linear and q = (2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length
+    (closed form). At each wall the temperature of the gas differs from the wall's by the jump: good to the
     square of the Knudsen number. The layer of a mean free path next to a wall, where no fluid theory holds,
-    is not described. Computed. Raises ValueError for a Knudsen number above 0.1.
+    is not described.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.conducting_slab(10.0, density=0.001, hot=2.0, cold=1.0)
+    Traceback (most recent call last):
+    ValueError: density: 0.001 (a Knudsen number of 22; this holds up to 0.1)
     """
     knudsen = float(mean_free_path(packing_fraction(density, 3, diameter), 3, diameter)) / length
     if knudsen > 0.1:
@@ -145,7 +320,7 @@ def conducting_slab(
 
 
 def _between(length: float, density: float, hot: float, cold: float, diameter: float) -> Slab:
-    """The slab of a gas that has the temperatures `hot` and `cold` at the walls, without jumps."""
+    """Return the slab of a gas without temperature jumps at its walls."""
     temperature = np.linspace(hot, cold, 401)
     eta = np.linspace(0.0, 0.45, 4001)
     table = number_density(eta, 3, diameter) * compressibility_factor(eta, 3)  # pressure over temperature

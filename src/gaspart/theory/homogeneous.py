@@ -1,10 +1,10 @@
-"""The homogeneous Boltzmann equation of hard spheres and discs, by direct simulation.
+"""Homogeneous Boltzmann equation of hard spheres and discs, by direct simulation.
 
-This program computes what has no closed form: the relaxation of a gas whose particles all start with one
-speed, by which the tables `data/relaxation_2d.csv` and `_3d.csv` are checked; the fourth cumulant of a gas
-that cools; `data/rough_cooling.csv` and `data/rough_start.csv`, the temperatures of rough discs that cool,
-and from a start without spins. There are no positions: partners are drawn at random, which is molecular chaos
-(Nanbu 1980, Babovsky 1986). `tagged` has a particle of another size and mass in such a gas.
+This program computes results without a closed form: the relaxation of a gas whose particles all start with
+one speed, by which the tables `data/relaxation_2d.csv` and `_3d.csv` are checked; the fourth cumulant of a
+gas that cools; `data/rough_cooling.csv` and `data/rough_start.csv`, the temperatures of rough discs that
+cool, and from a start without spins. There are no positions: partners are drawn at random, which is molecular
+chaos (Nanbu 1980, Babovsky 1986). `tagged` has a particle of another size and mass in such a gas.
 """
 
 from dataclasses import dataclass
@@ -21,8 +21,19 @@ have been a particle's second collision in it, which is lost, is 0.2 % of all.""
 
 @dataclass(frozen=True)
 class Homogeneous:
-    """After each step (S,): collisions of a particle, kurtosis <v^4>/<v^2>^2, part never hit, and the mean
-    square of the speed over that of the start."""
+    """Course of a homogeneous gas, after each of S - 1 steps and at the start.
+
+    Parameters
+    ----------
+    collisions : ndarray, shape (S,), [1]
+        Collisions of a particle since the start.
+    kurtosis : ndarray, shape (S,), [1]
+        <v^4>/<v^2>^2.
+    never_hit : ndarray, shape (S,), [1]
+        Fraction of the particles that have not collided.
+    energy : ndarray, shape (S,), [1]
+        Mean square of the speed divided by its initial value.
+    """
 
     collisions: np.ndarray
     kurtosis: np.ndarray
@@ -33,11 +44,36 @@ class Homogeneous:
 def homogeneous_gas(
     count: int, dimension: int, collisions: float, restitution: float = 1.0, seed: int = 0
 ) -> Homogeneous:
-    """A gas of `count` particles of speed 1, directions isotropic, until `collisions` of a particle.
+    """Simulate a gas of particles of speed 1 with isotropic directions.
 
+    Parameters
+    ----------
+    count : int
+        Number of particles.
+    dimension : {2, 3}
+        Discs or spheres.
+    collisions : float
+        Collisions of a particle at the end.
+    restitution : float, default 1.0, [1]
+        Coefficient of normal restitution.
+    seed : int, default 0
+        Seed of the random numbers.
+
+    Returns
+    -------
+    Homogeneous
+        Collisions, kurtosis, fraction never hit, and energy after each step.
+
+    Raises
+    ------
+    SceneError
+        If the dimension is neither 2 nor 3.
+
+    Notes
+    -----
     In each step all particles are paired at random, and a pair with the relative velocity g collides along a
-    random normal n with a probability proportional to max(g.n, 0): the rate of hard particles, whatever the
-    dimension. Statistical errors fall as 1 / sqrt(count).
+    random normal n with a probability proportional to max(g.n, 0): the rate of hard particles, in any
+    dimension. Statistical errors decrease as 1 / sqrt(count).
     """
     rng, d = np.random.default_rng(seed), checked_dimension(dimension)
     velocity = directions(rng, count, d)
@@ -56,10 +92,24 @@ def homogeneous_gas(
 
 
 def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -> np.ndarray:
-    """Speeds (T, count) at rising times of a gas of spheres that all have speed 1 at time 0.
+    """Simulate the speeds of a gas of spheres that all have speed 1 at time 0.
 
-    hits: n pi d^2, the number density times the cross-section of two of them: per length, so that a particle
-    meets those at rest relative to each other at this rate per unit of its speed.
+    Parameters
+    ----------
+    count : int
+        Number of spheres.
+    times : ndarray, shape (T,), [time]
+        Rising times.
+    hits : float, [1/length]
+        n pi d^2, the number density times the cross-section of two spheres: a particle collides with
+        particles at rest relative to each other at this rate per unit of its speed.
+    seed : int, default 0
+        Seed of the random numbers.
+
+    Returns
+    -------
+    ndarray, shape (T, count), [length/time]
+        Speeds at these times.
     """
     rng = np.random.default_rng(seed)
     velocity = directions(rng, count, 3)
@@ -78,10 +128,37 @@ def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -
 def rough_discs(
     count: int, collisions: float, inertia: float, tangential: float, normal: float = 1.0, seed: int = 0
 ) -> np.ndarray:
-    """T_rot / T_tr (S,) after each step of rough discs that cool, until `collisions` of a particle.
+    """Simulate the ratio of the temperatures of rough discs that cool.
 
-    Restitution normal and tangential, moment of inertia q = I / (m R^2). Velocities and spins start
-    Maxwellian, at the ratio of `granular.rough_ratio`, and leave that: they become correlated.
+    Parameters
+    ----------
+    count : int
+        Number of discs.
+    collisions : float
+        Collisions of a particle at the end.
+    inertia : float, [1]
+        Reduced moment of inertia q = I / (m R^2).
+    tangential : float, [1]
+        Coefficient of tangential restitution.
+    normal : float, default 1.0, [1]
+        Coefficient of normal restitution.
+    seed : int, default 0
+        Seed of the random numbers.
+
+    Returns
+    -------
+    ndarray, shape (S,), [1]
+        T_rot / T_tr after each step.
+
+    Raises
+    ------
+    ValueError
+        If the discs are smooth, or a coefficient is out of range.
+
+    Notes
+    -----
+    Velocities and spins start Maxwellian, at the ratio of `granular.rough_ratio`. They do not stay so: they
+    become correlated.
     """
     rng = np.random.default_rng(seed)
     velocity, spin = rng.standard_normal((count, 2)), rng.standard_normal(count)  # spin: R omega
@@ -96,8 +173,25 @@ def rough_discs(
 def rough_start(
     count: int, collisions: float, inertia: float, seed: int = 0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Collisions of a disc (S,) and T_tr - T_rot over the temperature of the start (S,) after each step of
-    perfectly rough discs, whose velocities are Maxwellian and whose spins are 0 at first, until `collisions`.
+    """Simulate perfectly rough discs whose velocities are Maxwellian and whose spins are 0 at first.
+
+    Parameters
+    ----------
+    count : int
+        Number of discs.
+    collisions : float
+        Collisions of a particle at the end.
+    inertia : float, [1]
+        Reduced moment of inertia q = I / (m R^2).
+    seed : int, default 0
+        Seed of the random numbers.
+
+    Returns
+    -------
+    collisions : ndarray, shape (S,), [1]
+        Collisions of a disc after each step.
+    difference : ndarray, shape (S,), [1]
+        T_tr - T_rot divided by the initial temperature.
     """
     rng = np.random.default_rng(seed)
     velocity, spin = rng.standard_normal((count, 2)), np.zeros(count)
@@ -119,7 +213,7 @@ def _rough_step(
     tangential: float,
     normal: float,
 ) -> float:
-    """One step of rough discs: changes their velocities and spins, returns the collisions of a disc."""
+    """Advance rough discs by a step: change velocities and spins, return the collisions of a disc."""
     share = inertia * (1.0 + tangential) / (2.0 * inertia + 2.0)
     i, j, along, approach = _meetings(rng, velocity)
     across = np.stack([-along[:, 1], along[:, 0]], axis=1)
@@ -135,7 +229,10 @@ def _rough_step(
 def _meetings(
     rng: np.random.Generator, velocity: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """The collisions of one step: particles i and j (M,), unit normals (M, d), speeds of approach (M,)."""
+    """Return the collisions of a step.
+
+    These are particles i and j (M,), unit normals (M, d), speeds of approach (M,).
+    """
     step = _step(velocity)
     first, second = rng.permutation(len(velocity))[: len(velocity) // 2 * 2].reshape(2, -1)
     normal = directions(rng, len(first), velocity.shape[1])
@@ -145,25 +242,67 @@ def _meetings(
 
 
 def _step(velocity: np.ndarray) -> float:
-    """The chance of a collision per speed of approach in one step."""
+    """Return the probability of a collision per speed of approach in a step."""
     return _SHARE / float(np.sqrt(dot(velocity, velocity).mean()))
 
 
 def directions(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:
-    """(count, dimension) random unit vectors."""
+    """Return random unit vectors, shape (count, dimension).
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+        Generator of random numbers.
+    count : int
+        Number of vectors.
+    dimension : int
+        Number of components.
+
+    Returns
+    -------
+    ndarray, shape (count, dimension), [1]
+        Vectors.
+    """
     vectors = rng.standard_normal((count, dimension))
     vectors /= lengths(vectors)[:, None]
     return vectors
 
 
 def lengths(vectors: np.ndarray) -> np.ndarray:
-    """(count,) lengths of vectors (count, dimension)."""
+    """Compute the lengths of vectors.
+
+    Parameters
+    ----------
+    vectors : ndarray, shape (count, dimension)
+        Vectors.
+
+    Returns
+    -------
+    ndarray, shape (count,)
+        Lengths.
+    """
     return np.sqrt(dot(vectors, vectors))
 
 
 def dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(count,) scalar products of vectors (count, dimension): column by column, which is several times faster
-    than numpy's sum over so short an axis, and rounds alike."""
+    """Compute the scalar products of pairs of vectors.
+
+    Parameters
+    ----------
+    first : ndarray, shape (count, dimension)
+        First vectors.
+    second : ndarray, shape (count, dimension)
+        Second vectors.
+
+    Returns
+    -------
+    ndarray, shape (count,)
+        Scalar products.
+
+    Notes
+    -----
+    Column by column, which is several times faster than numpy's sum over so short an axis, and rounds alike.
+    """
     products = first[:, 0] * second[:, 0]
     for axis in range(1, first.shape[1]):
         products += first[:, axis] * second[:, axis]

@@ -1,4 +1,4 @@
-"""Random sequential insertion: where it ends, and how often an attempt fails.
+"""Saturation of random sequential insertion, and the chance that an attempt fails.
 
 Particles of diameter sigma are placed one after another at uniformly random points, and stay if they overlap
 no other.
@@ -14,8 +14,9 @@ RSA_SATURATION = {2: 0.547074, 3: 0.384131}
 """Packing fraction at which no further particle fits, infinite container (Zhang, Torquato 2013, as public
 programs quote it: 0.5470735 and 0.3841307)."""
 RSA_SATURATION_UNCERTAINTY = {2: 3e-6, 3: 3e-6}
-"""Standard uncertainty of RSA_SATURATION: a few units of the last digit (not verified; a hundredth of that of
-what is measured here)."""
+"""Standard uncertainty of RSA_SATURATION: a few units of the last digit. It is not verified, and is a
+hundredth of the uncertainty of what is measured here.
+"""
 
 # Excess at hard walls, in diameters per side: saturation (1 + c sigma / L)^d for centres in [0, L]^d.
 # Computed: fits to insertions to saturation at L/sigma = 4 ... 24 (3D) and 100 (2D).
@@ -28,7 +29,7 @@ _AVAILABLE_SECOND = {2: 6.0 * math.sqrt(3.0) / math.pi, 3: 17.0}
 
 
 def _shape_factor(excess: float, dimension: int, side_over_diameter: float, boundary: str) -> float:
-    """Saturation in the container over that of the infinite one, for a wall excess in diameters."""
+    """Return the ratio of saturations with and without walls, for a wall excess in diameters."""
     if boundary == "centres_to_walls":
         return (1.0 + excess / side_over_diameter) ** dimension
     if boundary == "wall":
@@ -41,13 +42,47 @@ def _shape_factor(excess: float, dimension: int, side_over_diameter: float, boun
 def insertion_saturation(
     dimension: int, side_over_diameter: float | None = None, boundary: str = "periodic"
 ) -> float:
-    """Packing fraction at saturation of a square or cubic container of side L (dimensionless).
+    """Compute the packing fraction at which no further particle fits into a square or cube.
 
-    boundary: "periodic": the infinite value at every L (fluctuations only); "centres_to_walls": source A's
-    rule, centres in [0, L]^d, particles counted completely: eta_s (1 + c sigma/L)^d, c = 0.64 (3D, computed,
-    L/sigma >= 4) or 0.75 (2D, computed, L/sigma about 100); "wall": particles completely inside, the same
-    with centres in L - sigma, so that the packing fraction stays below the infinite value.
-    side_over_diameter: None for an infinite container.
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs or spheres.
+    side_over_diameter : float, optional, [1]
+        Side L of the container divided by the diameter sigma, at least 1. Default: an infinite container.
+    boundary : {"periodic", "wall", "centres_to_walls"}, default "periodic"
+        Faces of the container, and what they stop: surfaces ("wall") or centres of particles.
+
+    Returns
+    -------
+    float, [1]
+        Packing fraction at saturation.
+
+    Raises
+    ------
+    SceneError
+        If `dimension` or `side_over_diameter` is out of range.
+    ValueError
+        If `boundary` has another value.
+
+    See Also
+    --------
+    insertion_saturation_uncertainty : Standard uncertainty of this value.
+
+    Notes
+    -----
+    - "periodic": the infinite value eta_s of `RSA_SATURATION` at every L; there are fluctuations only.
+    - "centres_to_walls": source A's rule. Centres are in [0, L]^d and particles are counted completely, so
+      the value is eta_s (1 + c sigma / L)^d. Computed: c = 0.64 in 3D for L / sigma >= 4, and c = 0.75 in 2D
+      for L / sigma about 100.
+    - "wall": particles are completely inside. The value is the same with centres in L - sigma, so that the
+      packing fraction stays below the infinite value.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.insertion_saturation(3, 10.0, "wall"), 4)
+    0.3441
     """
     infinite = RSA_SATURATION[checked_dimension(dimension)]
     if side_over_diameter is None or boundary == "periodic":
@@ -59,7 +94,39 @@ def insertion_saturation(
 def insertion_saturation_uncertainty(
     dimension: int, side_over_diameter: float | None = None, boundary: str = "periodic"
 ) -> float:
-    """Standard uncertainty of `insertion_saturation`: literature's and the wall excess's."""
+    """Compute the standard uncertainty of `insertion_saturation`.
+
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs or spheres.
+    side_over_diameter : float, optional, [1]
+        Side of the container divided by the diameter, at least 1. Default: an infinite container.
+    boundary : {"periodic", "wall", "centres_to_walls"}, default "periodic"
+        Faces of the container, as for `insertion_saturation`.
+
+    Returns
+    -------
+    float, [1]
+        Standard uncertainty of the packing fraction at saturation.
+
+    Raises
+    ------
+    SceneError
+        If `dimension` or `side_over_diameter` is out of range.
+    ValueError
+        If `boundary` has another value.
+
+    Notes
+    -----
+    The uncertainty of the literature's value and the uncertainty of the wall excess, added in quadrature.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(f"{theory.insertion_saturation_uncertainty(3, 10.0, 'wall'):.2g}")
+    0.00054
+    """
     relative = RSA_SATURATION_UNCERTAINTY[checked_dimension(dimension)] / RSA_SATURATION[dimension]
     value = insertion_saturation(dimension, side_over_diameter, boundary)
     if side_over_diameter is None or boundary == "periodic":
@@ -71,11 +138,42 @@ def insertion_saturation_uncertainty(
 
 
 def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
-    """Chance that a random attempt fits: 1 - 2^d eta + c_2 eta^2, c_2 = 6 sqrt 3 / pi (2D), 17 (3D).
+    """Compute the chance that a random attempt to insert a particle succeeds.
 
-    Exact to eta^2, where insertion and equilibrium still agree (Widom 1966, Schaaf and Talbot 1989), so c_2
-    follows from B2 and B3 (tested). Infinite or periodic container. The neglected third order limits
-    it to about 1 % at eta = 0.05 in 3D and 0.1 in 2D; refused beyond the minimum of the parabola.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to the minimum of the parabola: 0.605 for discs, 0.235 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Chance that no particle is in the way.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    1 - 2^d eta + c_2 eta^2, with c_2 = 6 sqrt 3 / pi (2D) or 17 (3D). It is exact to eta^2, where insertion
+    and equilibrium still agree [1]_ [2]_. So c_2 follows from B2 and B3 (tested). It holds for an infinite or
+    periodic container. The third order is neglected, which limits it to about 1 % at eta = 0.05 in 3D and 0.1
+    in 2D.
+
+    References
+    ----------
+    .. [1] B. Widom (1966).
+    .. [2] P. Schaaf and J. Talbot (1989).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.available_fraction(0.05, dimension=3).round(4))
+    0.6425
     """
     first = 2.0 ** checked_dimension(dimension)
     second = _AVAILABLE_SECOND[dimension]
@@ -84,9 +182,34 @@ def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
 
 
 def failures_per_particle(packing_fraction: Numbers, dimension: int) -> Values:
-    """Mean number of failed attempts before a particle is placed at this packing fraction: 1 / available - 1.
+    """Compute the mean number of failed attempts before a particle is placed.
 
-    2^d eta at low density (exact); range that of `available_fraction`.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, in the range of `available_fraction`.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Mean number of failures at this packing fraction.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    1 / `available_fraction` - 1, which is 2^d eta at low density (exact).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.failures_per_particle(0.05, dimension=3).round(4))
+    0.5564
     """
     available = available_fraction(packing_fraction, dimension)
     return (1.0 - available) / np.asarray(available)

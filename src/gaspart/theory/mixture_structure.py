@@ -13,20 +13,56 @@ _NODES = 80  # of Gauss and Legendre, per species: exact to rounding up to k = 1
 def percus_yevick_partial_factors(
     wave_number: Numbers, packing_fraction: float, diameters: Sizes, fractions: Sizes | None = None
 ) -> np.ndarray:
-    """S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b) of each pair of species, (..., S, S), of a mixture of
-    spheres: 1 for equal indices and 0 for others of an ideal gas.
+    """Compute the partial structure factors of a mixture of spheres, by Percus and Yevick's equation.
 
-    Lebowitz's solution (Phys. Rev. 133, A895 (1964)) as factorised by Baxter, J. Chem. Phys. 52, 4559 (1970):
-    the inverse matrix is Q^H Q with
+    Parameters
+    ----------
+    wave_number : array_like, [1/length]
+        Wave numbers k, in the inverse of the unit of the diameters.
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.539.
+    diameters : array_like, shape (S,), [length]
+        Diameters of the species.
+    fractions : array_like, shape (S,), optional, [1]
+        Number fractions, all positive. Default: equal.
 
-        Q_ab = delta_ab - 2 pi sqrt(rho_a rho_b) integral of q_ab(r) e^{ikr} from (sigma_a - sigma_b) / 2 to
-        sigma_ab,    q_ab = a_a (r^2 - sigma_ab^2) / 2 + b_a (r - sigma_ab),
+    Returns
+    -------
+    ndarray, shape (..., S, S), [1]
+        S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b) of each pair of species. In an ideal gas it is 1 for
+        equal indices and 0 for others.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Lebowitz's solution [1]_ as factorised by Baxter [2]_. The inverse matrix is Q^H Q with
+
+        Q_ab = delta_ab - 2 pi sqrt(rho_a rho_b) int q_ab(r) e^{ikr} dr from (sigma_a - sigma_b) / 2 to
+        sigma_ab,
+
+        q_ab = a_a (r^2 - sigma_ab^2) / 2 + b_a (r - sigma_ab),
 
         a_a = (1 - xi_3 + 3 xi_2 sigma_a) / (1 - xi_3)^2,    b_a = -(3/2) xi_2 sigma_a^2 / (1 - xi_3)^2,
 
-    xi_n = (pi / 6) sum rho sigma^n. wave_number: in the inverse of the unit of the diameters, of any shape;
-    fractions: by default equal, all positive. The sum of sqrt(x_a x_b) S_ab is S(k) of all particles. Tested:
-    of equal spheres that of `percus_yevick_structure_factor`, at k = 0 Percus and Yevick's compressibility.
+    and xi_n = (pi / 6) sum rho sigma^n. The sum of sqrt(x_a x_b) S_ab is S(k) of all particles. Tested: equal
+    spheres have S(k) of `percus_yevick_structure_factor`, and k = 0 gives Percus and Yevick's
+    compressibility.
+
+    References
+    ----------
+    .. [1] J. L. Lebowitz, Phys. Rev. 133, A895 (1964).
+    .. [2] R. J. Baxter, J. Chem. Phys. 52, 4559 (1970).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.percus_yevick_partial_factors(0.0, 0.3, [1.0, 2.0]).round(4)
+    array([[ 1.0234, -0.2561],
+           [-0.2561,  0.1557]])
     """
     eta, sizes, parts = checked_mixture("santos", packing_fraction, 3, diameters, fractions)
     k = np.asarray(wave_number, dtype=float)[..., None, None, None]

@@ -15,17 +15,54 @@ def dilute_mixture_conductivity(
     temperature: float = 1.0,
     masses: Numbers | Sizes = 1.0,
 ) -> float:
-    """Conductivity of heat of a dilute mixture of spheres, without diffusion, 1 / (length time), with k_B =
-    1: that of Chapman and Enskog in the first approximation, kappa = -4 x L^-1 x with the fractions x and
+    """Compute the thermal conductivity of a dilute mixture of spheres, without diffusion.
+
+    Parameters
+    ----------
+    diameters : array_like, shape (S,), [length]
+        Diameters of the species.
+    fractions : array_like, shape (S,), optional, [1]
+        Number fractions x, which are normalised. Default: equal.
+    temperature : float, default 1.0, [energy]
+        Temperature k_B T.
+    masses : float or array_like, shape (S,), default 1.0, [mass]
+        Masses of the particles: a number for all species, or one for each.
+
+    Returns
+    -------
+    float, [1/(length time)]
+        Conductivity kappa, with k_B = 1. The unit of length is the unit of the diameters.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Chapman and Enskog's conductivity in the first approximation [1]_: kappa = -4 x L^-1 x with
 
         L_ii = -4 x_i^2 / kappa_i - sum_k x_i x_k c_ik (15/2 m_i^2 + 13/4 m_k^2 + 4 m_i m_k),
+
         L_ik = x_i x_k c_ik m_i m_k (55/4 - 7),    c_ik = 16 / (25 n D_ik (m_i + m_k)^2),
 
-    kappa_i = 75 / (64 sigma_i^2) sqrt(k_B T / (pi m_i)) of each species alone, n D_ik = 3 / (8 sigma_ik^2)
-    sqrt(k_B T / (2 pi mu_ik)), mu_ik the reduced mass (Muckenfuss and Curtiss, J. Chem. Phys. 29, 1273
-    (1958), whose ratios A and B of collision integrals are 1 of spheres). Of two species tested against the
-    formula of Hirschfelder, Curtiss and Bird (1954), 8.2-36. Higher approximations add 2.5 % for one species.
-    masses: one for all, or (S,). The unit of length is that of the diameters.
+        kappa_i = 75 / (64 sigma_i^2) sqrt(k_B T / (pi m_i)) of each species alone,
+
+        n D_ik = 3 / (8 sigma_ik^2) sqrt(k_B T / (2 pi mu_ik)), with the reduced mass mu_ik.
+
+    The ratios A and B of collision integrals are 1 for spheres. Two species are tested against the formula of
+    Hirschfelder, Curtiss and Bird [2]_. Higher approximations add 2.5 % for one species.
+
+    References
+    ----------
+    .. [1] C. Muckenfuss and C. F. Curtiss, J. Chem. Phys. 29, 1273 (1958).
+    .. [2] J. O. Hirschfelder, C. F. Curtiss and R. B. Bird (1954), Eq. 8.2-36.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.dilute_mixture_conductivity([1.0, 2.0], masses=[1.0, 4.0]), 4)
+    0.1959
     """
     _, sizes, parts = checked_mixture("santos", 0.1, 3, diameters, fractions)
     mass = np.broadcast_to(np.asarray(masses, dtype=float), sizes.shape)

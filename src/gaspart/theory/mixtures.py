@@ -1,15 +1,15 @@
 """Mixtures of additive hard discs and spheres: equations of state, contact values, collision rates.
 
-All take the packing fraction (a number) of the mixture, the diameters (S,) of its species in any unit and
-their number fractions (S,), which are normalised; a polydisperse gas is a mixture of as many species as
-there are sizes. In every theory here a contact value is a polynomial in
+All functions take the packing fraction (a number) of the mixture, the diameters (S,) of its species in any
+unit and their number fractions (S,), which are normalised. A polydisperse gas is a mixture of as many species
+as there are sizes. In every theory here a contact value is a polynomial in
 
     z_ij = sigma_i sigma_j / sigma_ij <sigma^(d-1)> / <sigma^d>,    sigma_ij = (sigma_i + sigma_j) / 2,
 
 whose coefficients depend on the packing fraction alone (Santos, Yuste and Lopez de Haro 2002: their
-"universality"); the virial theorem then gives Z in terms of moments of the diameters. All are exact to the
-second virial coefficient and for point particles (z = 0), where g = 1 / (1 - eta); "santos" also for equal
-sizes (z = 1), up to the uncertainty of the pure fluid's reference.
+"universality"). The virial theorem then gives Z in terms of moments of the diameters. All theories are exact
+to the second virial coefficient and for point particles (z = 0), where g = 1 / (1 - eta). "santos" is exact
+also for equal sizes (z = 1), up to the uncertainty of the pure fluid's reference.
 """
 
 import math
@@ -30,7 +30,24 @@ Sizes: TypeAlias = Sequence[float] | np.ndarray
 
 
 def contact_coefficients(theory: str, eta: Numbers, dimension: int, pure: Numbers | None) -> tuple[Any, ...]:
-    """Of the powers of z in the contact values; pure: that of equal particles."""
+    """Compute the coefficients of the powers of z in the contact values of a theory.
+
+    Parameters
+    ----------
+    theory : {"santos", "linear", "boublik"}
+        Theory of `mixture_contact_values`.
+    eta : array_like, [1]
+        Packing fraction.
+    dimension : {2, 3}
+        Discs or spheres.
+    pure : array_like or None, [1]
+        Contact value of equal particles at `eta`. None: the value of `contact_value`.
+
+    Returns
+    -------
+    tuple of float or ndarray, [1]
+        Coefficients of z^0, z^1, and z^2 if the theory has it.
+    """
     point = 1.0 / (1.0 - eta)
     if theory == "boublik":
         return point, 1.5 * eta * point**2, 0.5 * eta**2 * point**3
@@ -45,7 +62,35 @@ def contact_coefficients(theory: str, eta: Numbers, dimension: int, pure: Number
 def checked_mixture(
     theory: str, packing_fraction: float, dimension: int, diameters: Sizes, fractions: Sizes | None
 ) -> tuple[float, np.ndarray, np.ndarray]:
-    """The packing fraction, diameters (S,) and normalised fractions (S,). Raises SceneError."""
+    """Return the arguments of a mixture as floats and arrays, if they are in range.
+
+    Parameters
+    ----------
+    theory : {"santos", "linear", "boublik"}
+        Theory of the mixture, which must exist in this dimension.
+    packing_fraction : float, [1]
+        Packing fraction, in the range of the pure fluid's reference.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameters : array_like, shape (S,), [length]
+        Positive diameters.
+    fractions : array_like, shape (S,), or None, [1]
+        Number fractions, not negative. None: equal.
+
+    Returns
+    -------
+    packing_fraction : float, [1]
+        Packing fraction.
+    diameters : ndarray, shape (S,), [length]
+        Diameters.
+    fractions : ndarray, shape (S,), [1]
+        Normalised number fractions.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    """
     highest = HIGHEST_PACKING_FRACTION[checked_dimension(dimension)]
     if dimension not in MIXTURE_THEORIES.get(theory, ()):
         names = [name for name, where in MIXTURE_THEORIES.items() if dimension in where]
@@ -63,7 +108,7 @@ def checked_mixture(
 
 
 def _numbers(name: str, values: Sizes) -> np.ndarray:
-    """(S,) finite floats."""
+    """Return a list of numbers as (S,) floats; raise SceneError unless all are finite."""
     numbers = np.atleast_1d(np.asarray(values, dtype=float))
     if numbers.ndim != 1 or not len(numbers) or not np.isfinite(numbers).all():
         raise SceneError(name, values, "must be a list of finite numbers")
@@ -71,8 +116,10 @@ def _numbers(name: str, values: Sizes) -> np.ndarray:
 
 
 def _moment(parts: np.ndarray, sizes: np.ndarray, power: int) -> float:
-    """The mean of a power of the diameters, rounded once: that of BLAS depends on the processor, and lengths
-    of runs follow from it."""
+    """Return the mean of a power of the diameters, rounded once.
+
+    The sums of BLAS depend on the processor, and lengths of runs follow from this mean.
+    """
     return math.fsum(parts * np.prod([sizes] * power, axis=0)) if power else math.fsum(parts)
 
 
@@ -84,15 +131,55 @@ def mixture_compressibility_factor(
     theory: str = "santos",
     pure: float | None = None,
 ) -> float:
-    """Z of a mixture, Z = 1 + 2^(d-1) eta sum_ij x_i x_j sigma_ij^d g_ij / <sigma^d> (virial theorem, exact),
-    with the contact values of `mixture_contact_values`. fractions: by default equal; pure: the contact value
-    of equal particles at this packing fraction, by default that of the reference.
+    """Compute the compressibility factor Z of a mixture.
 
-    "boublik" is the equation of Boublik, J. Chem. Phys. 53, 471 (1970), and Mansoori, Carnahan, Starling and
-    Leland, J. Chem. Phys. 54, 1523 (1971) (tested against its closed form). "linear" is that of Santos,
-    Yuste and Lopez de Haro, Mol. Phys. 96, 1 (1999); in two dimensions "santos" gives the same Z (tested).
-    Raises SceneError for an argument out of range; packing fractions end where the pure fluid's reference
-    does.
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameters : array_like, shape (S,), [length]
+        Diameters of the species, in any unit.
+    fractions : array_like, shape (S,), optional, [1]
+        Number fractions x, which are normalised. Default: equal.
+    theory : {"santos", "linear", "boublik"}, default "santos"
+        Theory of the contact values; "boublik" exists for spheres only.
+    pure : float, optional, [1]
+        Contact value of equal particles at this packing fraction. Default: the reference, `contact_value`.
+
+    Returns
+    -------
+    float, [1]
+        Compressibility factor Z.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range. Packing fractions end where the pure fluid's reference ends.
+
+    See Also
+    --------
+    mixture_contact_values : Contact values of each pair of species.
+
+    Notes
+    -----
+    Z = 1 + 2^(d-1) eta sum_ij x_i x_j sigma_ij^d g_ij / <sigma^d> (virial theorem, exact), with the contact
+    values of `mixture_contact_values`. "boublik" is the equation of Boublik [1]_ and of Mansoori, Carnahan,
+    Starling and Leland [2]_ (tested against its closed form). "linear" is the equation of Santos, Yuste and
+    Lopez de Haro [3]_; in two dimensions "santos" gives the same Z (tested).
+
+    References
+    ----------
+    .. [1] T. Boublik, J. Chem. Phys. 53, 471 (1970).
+    .. [2] G. A. Mansoori and others, J. Chem. Phys. 54, 1523 (1971).
+    .. [3] A. Santos, S. B. Yuste and M. Lopez de Haro, Mol. Phys. 96, 1 (1999).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(round(theory.mixture_compressibility_factor(0.3, 3, [1.0, 2.0]), 4))
+    3.5108
     """
     eta, sizes, parts = checked_mixture(theory, packing_fraction, dimension, diameters, fractions)
     sizes = sizes / sizes.max()
@@ -102,8 +189,20 @@ def mixture_compressibility_factor(
 
 
 def virial_sum(coefficients: Sequence[float], moments: Sequence[float]) -> float:
-    """The mean over pairs of sigma_ij^d g_ij, with g_ij the polynomial in z_ij of these coefficients, from
-    the moments <sigma^n> of the diameters, n from 0 to d."""
+    """Compute the mean of sigma_ij^d g_ij over pairs, for a polynomial g_ij in z_ij.
+
+    Parameters
+    ----------
+    coefficients : sequence of float, [1]
+        Coefficients of the powers of z_ij in g_ij.
+    moments : sequence of float, [length^n]
+        Moments <sigma^n> of the diameters, n from 0 to d.
+
+    Returns
+    -------
+    float, [length^d]
+        Mean over all pairs of particles.
+    """
     dimension = len(moments) - 1
     ratio, total = moments[dimension - 1] / moments[dimension], 0.0
     for power, coefficient in enumerate(coefficients):
@@ -121,13 +220,56 @@ def mixture_contact_values(
     theory: str = "santos",
     pure: float | None = None,
 ) -> np.ndarray:
-    """(S, S) pair distributions g_ij at contact.
+    """Compute the pair distribution at contact of each pair of species of a mixture.
 
-    "boublik" (spheres): 1 / (1 - eta) + (3/2) eta z / (1 - eta)^2 + (1/2) eta^2 z^2 / (1 - eta)^3, by
-    Boublik (1970), Grundke and Henderson (1972) and Lee and Levesque (1973). "linear": that of equal
-    particles from `contact_value` at z = 1 and a straight line in z, by Santos, Yuste and Lopez de Haro
-    (1999). "santos": a parabola through both and through the exact contact value at a hard wall, z = 2, by
-    the same authors, J. Chem. Phys. 117, 5785 (2002). Arguments as in `mixture_compressibility_factor`.
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameters : array_like, shape (S,), [length]
+        Diameters of the species, in any unit.
+    fractions : array_like, shape (S,), optional, [1]
+        Number fractions, which are normalised. Default: equal.
+    theory : {"santos", "linear", "boublik"}, default "santos"
+        Theory; "boublik" exists for spheres only.
+    pure : float, optional, [1]
+        Contact value of equal particles at this packing fraction. Default: the reference, `contact_value`.
+
+    Returns
+    -------
+    ndarray, shape (S, S), [1]
+        Contact values g_ij.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range. Packing fractions end where the pure fluid's reference ends.
+
+    Notes
+    -----
+    - "boublik": 1 / (1 - eta) + (3/2) eta z / (1 - eta)^2 + (1/2) eta^2 z^2 / (1 - eta)^3 [1]_ [2]_ [3]_,
+      with z of the module `mixtures`.
+    - "linear": the contact value of equal particles, from `contact_value`, at z = 1 and a straight line in z
+      [4]_.
+    - "santos": a parabola through both of these values and through the exact contact value at a hard wall, z
+      = 2, by the same authors [5]_.
+
+    References
+    ----------
+    .. [1] T. Boublik (1970).
+    .. [2] E. W. Grundke and D. Henderson (1972).
+    .. [3] L. L. Lee and D. Levesque (1973).
+    .. [4] A. Santos, S. B. Yuste and M. Lopez de Haro (1999).
+    .. [5] A. Santos, S. B. Yuste and M. Lopez de Haro, J. Chem. Phys. 117, 5785 (2002).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.mixture_contact_values(0.3, 3, [1.0, 2.0]).round(4)
+    array([[1.9622, 2.1702],
+           [2.1702, 2.6313]])
     """
     eta, sizes, parts = checked_mixture(theory, packing_fraction, dimension, diameters, fractions)
     sizes = sizes / sizes.max()
@@ -147,12 +289,53 @@ def mixture_collision_rates(
     masses: Numbers | Sizes = 1.0,
     contact: np.ndarray | None = None,
 ) -> np.ndarray:
-    """(S, S) collisions of one particle of species i with those of species j per time, of a mixture in
-    equilibrium: S rho_j sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)).
+    """Compute the collision rates of each pair of species of a mixture in equilibrium.
 
-    S = 2 pi (2D), 4 pi (3D); mu_ij the reduced mass. Exact with exact contact values (Chapman and Cowling
-    1970): the sum over j is the collision rate of a particle. masses: one for all, or (S,); contact: g_ij (S,
-    S) in place of the theory's. Other arguments as in `mixture_compressibility_factor`. Unit 1 / time.
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameters : array_like, shape (S,), [length]
+        Diameters of the species.
+    fractions : array_like, shape (S,), optional, [1]
+        Number fractions, which are normalised. Default: equal.
+    theory : {"santos", "linear", "boublik"}, default "santos"
+        Theory of the contact values, as for `mixture_contact_values`.
+    temperature : float, default 1.0, [energy]
+        Temperature k_B T.
+    masses : float or array_like, shape (S,), default 1.0, [mass]
+        Masses of the particles: a number for all species, or one for each.
+    contact : ndarray, shape (S, S), optional, [1]
+        Contact values g_ij, in place of the theory's.
+
+    Returns
+    -------
+    ndarray, shape (S, S), [1/time]
+        Collisions of one particle of species i with particles of species j per time. The sum over j is the
+        collision rate of a particle.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    S rho_j sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)), with S = 2 pi (2D) or 4 pi (3D) and the reduced
+    mass mu_ij. It is exact with exact contact values [1]_.
+
+    References
+    ----------
+    .. [1] S. Chapman and T. G. Cowling (1970).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.mixture_collision_rates(0.3, 3, [1.0, 2.0]).round(4)
+    array([[0.8856, 2.2039],
+           [2.2039, 4.7506]])
     """
     if contact is None:
         contact = mixture_contact_values(packing_fraction, dimension, diameters, fractions, theory)
@@ -180,15 +363,56 @@ def enskog_mutual_diffusion(
     masses: Numbers | Sizes = 1.0,
     contact: np.ndarray | None = None,
 ) -> float:
-    """Coefficient of mutual diffusion of two species by Maxwell and Stefan, in length^2 / time: Enskog's in
-    the first approximation of Sonine polynomials,
+    """Compute Maxwell and Stefan's coefficient of mutual diffusion of two species.
+
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    diameters : array_like, shape (2,), [length]
+        Diameters of both species.
+    fractions : array_like, shape (2,), optional, [1]
+        Number fractions x, which are normalised. Default: equal.
+    theory : {"santos", "linear", "boublik"}, default "santos"
+        Theory of the contact values, as for `mixture_contact_values`.
+    temperature : float, default 1.0, [energy]
+        Temperature k_B T.
+    masses : float or array_like, shape (2,), default 1.0, [mass]
+        Masses of the particles: a number for both species, or one for each.
+    contact : ndarray, shape (2, 2), optional, [1]
+        Contact values g_ij, in place of the theory's.
+
+    Returns
+    -------
+    float, [length^2/time]
+        D_12. The unit of length is the unit of the diameters.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range, or if the number of species is not 2.
+
+    Notes
+    -----
+    Enskog's coefficient in the first approximation of Sonine polynomials [1]_,
 
         D_12 = d k_B T x_2 / (4 mu_12 nu_12),
 
-    nu_12 of `mixture_collision_rates`; for spheres 3 / (8 n sigma_12^2 g_12) sqrt(k_B T / (2 pi mu_12))
-    (Chapman and Cowling 1970, 9.81 and 16.9; without the thermodynamic factor). Arguments as there; the unit
-    of length is that of the diameters. Higher approximations add 2 % for equal masses, up to 13 % for a few
-    light particles among heavy ones. Raises SceneError as that, and for other numbers of species than two.
+    with nu_12 of `mixture_collision_rates` and the reduced mass mu_12. For spheres it is 3 / (8 n sigma_12^2
+    g_12) sqrt(k_B T / (2 pi mu_12)). It does not contain the thermodynamic factor. Higher approximations add
+    2 % for equal masses, up to 13 % for a few light particles among heavy ones.
+
+    References
+    ----------
+    .. [1] S. Chapman and T. G. Cowling (1970), Eqs. 9.81 and 16.9.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.enskog_mutual_diffusion(0.3, 3, [1.0, 2.0]), 4)
+    0.3403
     """
     rates = mixture_collision_rates(
         packing_fraction, dimension, diameters, fractions, theory, temperature, masses, contact

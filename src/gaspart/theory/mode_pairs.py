@@ -1,15 +1,15 @@
 r"""Long-time tails of discs' viscosity and conductivity: pairs of hydrodynamic modes in a periodic container.
 
-Of long waves the stress is m rho u_x u_y, and the heat flux, less the enthalpy that the momentum carries,
-rho T s u + p u, with the velocity u, the entropy s of a particle and the pressure p relative to their means
-(k_B = 1). So their correlations are those of pairs of modes of the wave vectors k and -k: shear with the
-kinematic viscosity nu, heat with D_T = lambda / (rho c_p), and sound with the speed c and the attenuation
-Gamma (`modes.sound_attenuation`). In an infinite fluid they grow with the logarithm of time, by
+Of long waves the stress is m rho u_x u_y, and the heat flux, less the enthalpy that the momentum carries, rho
+T s u + p u, with the velocity u, the entropy s of a particle and the pressure p relative to their means (k_B
+= 1). So these fluxes correlate as pairs of modes of the wave vectors k and -k do: shear with the kinematic
+viscosity nu, heat with D_T = lambda / (rho c_p), and sound with the speed c and the attenuation Gamma
+(`modes.sound_attenuation`). In an infinite fluid they grow with the logarithm of time, by
 
 .. math:: \frac{1}{32\pi}\left(\frac1\nu + \frac1\Gamma\right) k_BT \quad\text{and}\quad
           \frac{1}{8\pi}\left(\frac{k_BT c_p}{m(\nu+D_T)} + \frac{c^2}{\Gamma}\right)
 
-for each factor e. The method is that of Ernst, Hauge and van Leeuwen, Phys. Rev. A 4, 2055 (1971), and J.
+for each factor e. The method is due to Ernst, Hauge and van Leeuwen, Phys. Rev. A 4, 2055 (1971), and J.
 Stat. Phys. 15, 7 (1976); the amplitudes were derived again and not compared with the papers (tested against
 the linearised equations of the fluid). The term of c^2 is energy which travels with the sound.
 
@@ -22,9 +22,8 @@ psi(1) + psi(2) and phi(1) + phi(2), from which follows, for the part i of a flu
 
 so that each of the two vertices is <j|psi phi> times F(p) = sum a_i r_i / (r_i + p), the Laplace transform of
 a delay of mean sum a_i / r_i: 2.06 collisions of a particle for the heat flux, 1.02 for the stress. (c) The
-modes are those of a gas whose fluxes relax (`relaxing_modes`). What remains are waves as short as the mean
-free path, Burnett's terms, and corrections of Enskog's coefficients. Everything is in diameters, masses and
-k_B T.
+modes belong to a gas whose fluxes relax (`relaxing_modes`). What remains are waves as short as the mean free
+path, Burnett's terms, and corrections of Enskog's coefficients. Everything is in diameters, masses and k_B T.
 """
 
 from __future__ import annotations
@@ -46,22 +45,64 @@ QUANTITIES = ("viscosity", "conductivity")
 _SHORTEST = 2.0
 """Largest k l: there exp(-(k l)^4) is 1e-7."""
 _SMALLEST = 40.0
-"""Pairs that have decayed by exp(-40) at the first time are left out."""
+"""Exponent of decay: pairs that have decayed by exp(-40) at the first time are left out."""
 
 
 @checked
 def transport_modes(
     time: Numbers, packing_fraction: float, count: int, quantity: str, shortest: float = 1.0
 ) -> Values:
-    """Discs: Green and Kubo's integral until `time` of `count` of them in a periodic square; quantity:
-    "viscosity" (mass / time) or "conductivity" (1 / time).
+    """Compute Green and Kubo's integral of discs in a periodic square from pairs of modes.
 
-    The kinetic part and the pairs of modes of the module. Within the first collisions of a particle waves as
-    short as its path contribute, which are no modes, so only differences between later times have a meaning.
-    Modes end smoothly at the wave number 1 / (shortest mean free paths); what another `shortest` changes is
-    an uncertainty of the theory: twice that length makes 12 % of the growth of the conductivity from 10
-    collisions on at a packing fraction of 0.3, 2 % of that from 20 on. time: positive. Raises SceneError for
-    another quantity.
+    Parameters
+    ----------
+    time : array_like, [time]
+        Positive upper limits of the integral, in diameters sqrt(m / k_B T).
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70.
+    count : int
+        Number N of discs.
+    quantity : {"viscosity", "conductivity"}
+        Transport coefficient.
+    shortest : float, default 1.0, [1]
+        Shortest length of modes in mean free paths: they end smoothly at the wave number 1 / length.
+
+    Returns
+    -------
+    float or ndarray, same shape as `time`
+        Integral until each time: [mass/time] for the viscosity, [1/time] for the conductivity.
+
+    Raises
+    ------
+    SceneError
+        If `quantity` has another value, or if an argument is out of range.
+    ValueError
+        If a time is not positive.
+
+    See Also
+    --------
+    transport_uniform_mode : Term k = 0 of free momentum and energy.
+    transport_logarithmic_slope : Growth in an infinite fluid.
+
+    Notes
+    -----
+    The kinetic part and the pairs of modes of the module `mode_pairs`. Within the first collisions of a
+    particle waves as short as its path contribute, which are no modes, so only differences between later
+    times have a meaning. The change by another `shortest` is an uncertainty of the theory. Twice that length
+    makes 12 % of the growth of the conductivity from 10 collisions on at a packing fraction of 0.3, and 2 %
+    of the growth from 20 on.
+
+    References
+    ----------
+    .. [1] M. H. Ernst, E. H. Hauge and J. M. J. van Leeuwen, Phys. Rev. A 4, 2055 (1971); J. Stat. Phys. 15,
+       7 (1976).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> early, late = theory.transport_modes([5.0, 10.0], 0.3, 256, "viscosity")
+    >>> round(float(late - early), 4)
+    0.0041
     """
     times = np.atleast_1d(np.asarray(time, dtype=float))
     if np.any(times <= 0.0):
@@ -82,11 +123,40 @@ def transport_modes(
 
 @checked
 def transport_uniform_mode(time: Numbers, packing_fraction: float, count: int, quantity: str) -> Values:
-    """Discs: what the term k = 0 would add to `transport_modes`, which fixed sums of momentum and energy take
-    off: rho / N (k_B T), or rho / N (c_p + c^2), times the time less the delays of both vertices.
+    """Compute the term k = 0 of `transport_modes`, which fixed momentum and energy remove.
 
-    Until sound has crossed a container of N discs its integral differs from that of an infinite fluid by
-    this. Arguments and errors as of `transport_modes`.
+    Parameters
+    ----------
+    time : array_like, [time]
+        Upper limits of the integral, in diameters sqrt(m / k_B T).
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70.
+    count : int
+        Number N of discs.
+    quantity : {"viscosity", "conductivity"}
+        Transport coefficient.
+
+    Returns
+    -------
+    float or ndarray, same shape as `time`
+        Integral until each time: [mass/time] for the viscosity, [1/time] for the conductivity.
+
+    Raises
+    ------
+    SceneError
+        If `quantity` has another value, or if an argument is out of range.
+
+    Notes
+    -----
+    rho / N (k_B T) for the viscosity, or rho / N (c_p + c^2) for the conductivity, times the time less the
+    delays of both vertices. Until sound has crossed a container of N discs, its integral differs from the
+    integral of an infinite fluid by this term.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.transport_uniform_mode(10.0, 0.3, 256, "viscosity")), 4)
+    0.0136
     """
     relaxation = _relaxation(packing_fraction, quantity)
     weight = 1.0
@@ -102,10 +172,35 @@ def transport_uniform_mode(time: Numbers, packing_fraction: float, count: int, q
 
 @checked
 def transport_logarithmic_slope(packing_fraction: float, quantity: str) -> float:
-    """Discs: how much the integral of an infinite fluid grows while t grows by a factor e.
+    """Compute the growth of the integral of an infinite fluid of discs while time grows e-fold.
 
-    (1/nu + 1/Gamma) / (32 pi) of the viscosity, [c_p / (nu + D_T) + c^2 / Gamma] / (8 pi) of the
-    conductivity. Arguments and errors as of `transport_modes`.
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70.
+    quantity : {"viscosity", "conductivity"}
+        Transport coefficient.
+
+    Returns
+    -------
+    float
+        Growth for a factor e of time: [mass/time] for the viscosity, [1/time] for the conductivity.
+
+    Raises
+    ------
+    SceneError
+        If `quantity` has another value, or if an argument is out of range.
+
+    Notes
+    -----
+    (1/nu + 1/Gamma) / (32 pi) for the viscosity, [c_p / (nu + D_T) + c^2 / Gamma] / (8 pi) for the
+    conductivity, in diameters, masses and k_B T. Derivation and symbols: module `mode_pairs`.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.transport_logarithmic_slope(0.3, "viscosity"), 4)
+    0.0096
     """
     eta, density = packing_fraction, float(number_density(packing_fraction, 2))
     _relaxation(eta, quantity)
@@ -118,15 +213,18 @@ def transport_logarithmic_slope(packing_fraction: float, quantity: str) -> float
 
 
 def _relaxation(packing_fraction: float, quantity: str) -> Relaxation:
-    """That of the quantity's flux. Raises SceneError for another quantity."""
+    """Return the relaxation of a quantity's flux; raise SceneError for another quantity."""
     if quantity not in QUANTITIES:
         raise SceneError("quantity", quantity, f"must be {' or '.join(QUANTITIES)}")
     return Relaxation.of(packing_fraction, quantity)
 
 
 def _wave_numbers(eta: float, count: int, first: float, shortest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Squares (M,) of the wave numbers of a periodic square that matter at the first time, without 0, and how
-    many wave vectors have each, times exp(-(k l)^4), l the shortest length."""
+    """Return squares (M,) of the wave numbers that matter at the first time, and their weights.
+
+    The container is a periodic square, and 0 is left out. A weight is the number of wave vectors with this
+    square times exp(-(k l)^4), with the shortest length l.
+    """
     density = float(number_density(eta, 2))
     unit = 2.0 * math.pi * math.sqrt(density / count)
     heat = float(enskog_conductivity(eta, 2)) / (density * heat_capacities(eta, 2)[1])
@@ -145,8 +243,10 @@ _Pairs: TypeAlias = list[tuple[np.ndarray, np.ndarray]]
 
 
 def _viscosity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
-    """Weights and decays (n, m, M) of pairs of modes, of u_x u_y over its mean square, averaged over the
-    directions of k."""
+    """Return weights and decays (n, m, M) of pairs of modes in the stress.
+
+    They belong to u_x u_y divided by its mean square, averaged over the directions of k.
+    """
     longitudinal, transverse = along.amplitude[:, 2], across.amplitude[:, 0]
     return [
         (0.25 * _squares(longitudinal, longitudinal), _sums(along, along)),
@@ -156,7 +256,10 @@ def _viscosity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
 
 
 def _conductivity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
-    """Likewise of (rho T s + p) u, times the density."""
+    """Return weights and decays (n, m, M) of pairs of modes in the heat flux.
+
+    They belong to (rho T s + p) u, times the density.
+    """
     z, capacity = float(compressibility_factor(eta, 2)), heat_capacities(eta, 2)[0]
     slope = float(speed_of_sound(eta, 2)) ** 2 - z**2 / capacity  # of the pressure against the density
     carried = (slope - z) / math.sqrt(slope) * along.amplitude[:, 0]
@@ -170,18 +273,21 @@ def _conductivity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
 
 
 def _squares(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(n, m, M) squares of the products of amplitudes (n, M) and (m, M)."""
+    """Return the squares (n, m, M) of the products of amplitudes (n, M) and (m, M)."""
     return (first[:, None] * second[None, :]) ** 2
 
 
 def _sums(first: Modes, second: Modes) -> np.ndarray:
-    """(n, m, M) decays of pairs."""
+    """Return the decays (n, m, M) of pairs."""
     return first.decay[:, None] + second.decay[None, :]
 
 
 def _delayed(decay: np.ndarray, time: float, relaxation: Relaxation) -> np.ndarray:
-    """(...) the integrals until a time of exp(decay t) behind the delays of both vertices: the inverse
-    Laplace transform of F(p)^2 / (p - decay) / p, as divided differences of (exp(p t) - 1) / p."""
+    """Return the integrals until a time of exp(decay t), delayed by both vertices.
+
+    This is the inverse Laplace transform of F(p)^2 / (p - decay) / p, as divided differences of (exp(p t) -
+    1) / p. The result has the shape of `decay`.
+    """
 
     def integral(p: np.ndarray) -> np.ndarray:
         safe = np.where(p == 0.0, 1.0, p)

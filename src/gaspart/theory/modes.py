@@ -30,14 +30,41 @@ from gaspart.theory.geometry import number_density
 from gaspart.theory.state import compressibility_factor, speed_of_sound
 
 _SMALLEST = 40.0
-"""Modes that have decayed by exp(-40) at the first time are left out."""
+"""Exponent of decay: modes that have decayed by exp(-40) at the first time are left out."""
 
 
 @checked
 def sound_attenuation(packing_fraction: float, dimension: int) -> float:
-    """Gamma, by which sound of the wave number k decays as exp(-Gamma k^2 t / 2) (diameter^2 / time).
+    """Compute the attenuation of sound from Enskog's transport coefficients.
 
-    The heat capacities are those of `heat_capacities`, the transport coefficients Enskog's.
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    float, [length^2/time]
+        Gamma, by which sound of the wave number k decays as exp(-Gamma k^2 t / 2), in diameters and diameters
+        sqrt(m / k_B T).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Gamma = [2 (d-1)/d eta + zeta] / rho + (gamma - 1) lambda / (rho c_p). The heat capacities come from
+    `modes.heat_capacities`; the transport coefficients Enskog's.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.sound_attenuation(0.3, dimension=3), 4)
+    4.6484
     """
     d, eta = checked_dimension(dimension), packing_fraction
     constant, free = heat_capacities(eta, d)
@@ -47,7 +74,22 @@ def sound_attenuation(packing_fraction: float, dimension: int) -> float:
 
 
 def heat_capacities(packing_fraction: float, dimension: int) -> tuple[float, float]:
-    """c_v and c_p of a particle: d/2, and c_p - c_v = Z^2 / (d rho Z / d rho) (exact; k_B = 1)."""
+    """Compute the heat capacities of a particle at constant volume and at constant pressure.
+
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    constant_volume : float, [1]
+        c_v = d/2 (k_B = 1).
+    constant_pressure : float, [1]
+        c_p, with c_p - c_v = Z^2 / (d rho Z / d rho) (exact).
+    """
     z = float(compressibility_factor(packing_fraction, dimension))
     slope = float(speed_of_sound(packing_fraction, dimension)) ** 2 - 2.0 * z**2 / dimension  # of rho Z
     return 0.5 * dimension, 0.5 * dimension + z**2 / slope
@@ -57,25 +99,99 @@ def heat_capacities(packing_fraction: float, dimension: int) -> tuple[float, flo
 def velocity_autocorrelation_modes(
     time: Numbers, packing_fraction: float, dimension: int, count: int
 ) -> Values:
-    """C(t), over its value at 0, of `count` particles in a periodic square or cube, the term 1/N included.
+    """Compute the long-time velocity autocorrelation of N particles in a periodic square or cube.
 
-    time: positive, in diameters sqrt(m / k_B T); valid after many collisions of a particle, whatever the
-    time that sound takes to cross the container.
+    Parameters
+    ----------
+    time : array_like, [time]
+        Positive times, in diameters sqrt(m / k_B T).
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    count : int
+        Number N of particles.
+
+    Returns
+    -------
+    float or ndarray, same shape as `time`, [1]
+        C(t) divided by C(0), with the term 1/N of free momentum.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    ValueError
+        If a time is not positive.
+
+    See Also
+    --------
+    diffusion_modes : Integral of this function.
+
+    Notes
+    -----
+    The sum over hydrodynamic modes of the module `modes`. It is valid after many collisions of a particle,
+    whatever the time that sound takes to cross the container.
+
+    References
+    ----------
+    .. [1] M. H. Ernst, E. H. Hauge and J. M. J. van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.velocity_autocorrelation_modes(10.0, 0.3, dimension=3, count=1000).round(5))
+    0.00109
     """
     return _sum(time, packing_fraction, dimension, count, integrated=False) + 1.0 / count
 
 
 @checked
 def diffusion_modes(time: Numbers, packing_fraction: float, dimension: int, count: int) -> Values:
-    """The integral of `velocity_autocorrelation_modes` over time, but for a constant (diameter^2 / time).
+    """Compute the integral of `velocity_autocorrelation_modes` over time, except for a constant.
 
-    What particles diffuse before modes describe them is unknown, so only differences have a meaning.
+    Parameters
+    ----------
+    time : array_like, [time]
+        Positive times, in diameters sqrt(m / k_B T).
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    count : int
+        Number N of particles.
+
+    Returns
+    -------
+    float or ndarray, same shape as `time`, [length^2/time]
+        Integral, in diameters and diameters sqrt(m / k_B T).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    ValueError
+        If a time is not positive.
+
+    Notes
+    -----
+    The diffusion of particles before modes describe them is unknown, so only differences have a meaning.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> early, late = theory.diffusion_modes([5.0, 10.0], 0.3, dimension=3, count=1000)
+    >>> round(float(late - early), 5)
+    0.0065
     """
     return _sum(time, packing_fraction, dimension, count, integrated=True) + np.asarray(time) / count
 
 
 def _sum(time: Numbers, eta: float, dimension: int, count: int, integrated: bool) -> Values:
-    """Over all wave vectors but 0 that matter at the earliest time: C(t), or its integral."""
+    """Return C(t), or its integral, from all wave vectors but 0.
+
+    Only wave vectors that matter at the earliest time are included.
+    """
     d = checked_dimension(dimension)
     diffusion, density = float(enskog_diffusion(eta, d)), float(number_density(eta, d))
     shear = diffusion + float(enskog_viscosity(eta, d)) / density
@@ -85,7 +201,22 @@ def _sum(time: Numbers, eta: float, dimension: int, count: int, integrated: bool
 
 
 def wave_vectors(dimension: int, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """The squares of the vectors of whole numbers from -`most` to `most` but 0, and how many have each."""
+    """Return the squares of integer vectors without 0, and how many vectors have each square.
+
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs or spheres.
+    most : int
+        Largest absolute value of a component.
+
+    Returns
+    -------
+    squares : ndarray of int, shape (n,)
+        Squares in ascending order.
+    numbers : ndarray of int, shape (n,)
+        Number of vectors with each square.
+    """
     axis = np.arange(-most, most + 1) ** 2
     squares, numbers = np.unique(sum(np.meshgrid(*[axis] * dimension)), return_counts=True)
     return squares[1:], numbers[1:]
@@ -98,9 +229,31 @@ def sum_of_modes(
     inverse: float,
     integrated: bool,
 ) -> Values:
-    """The sum of w exp(-D k^2 t) cos(c k t) over modes (w, D, c) and all wave vectors k but 0 of a periodic
-    cube or square of side 1 / `inverse`; or its integral over time, but for a constant. Raises ValueError for
-    a time that is not positive."""
+    """Compute the sum of decaying modes over the wave vectors of a periodic square or cube.
+
+    Parameters
+    ----------
+    time : array_like, [time]
+        Positive times t.
+    modes : sequence of (float, float, float)
+        Weight w, diffusivity D and speed c of each mode: w exp(-D k^2 t) cos(c k t).
+    dimension : {2, 3}
+        Discs or spheres.
+    inverse : float, [1/length]
+        1 divided by the side of the container.
+    integrated : bool
+        Return the integral over time, except for a constant.
+
+    Returns
+    -------
+    float or ndarray, same shape as `time`
+        Sum over the modes and all wave vectors k but 0.
+
+    Raises
+    ------
+    ValueError
+        If a time is not positive.
+    """
     times = np.atleast_1d(np.asarray(time, dtype=float))
     if np.any(times <= 0.0):
         raise ValueError("time: must be positive")

@@ -1,9 +1,10 @@
-"""What a partition into boxes costs in a dilute gas between walls: expected counts, and the ideal number.
+"""Expected cost of a partition of a gas into boxes, and the ideal number of boxes.
 
-A cubic (square) container of side L is divided into n boxes a side; particles are kept in the box of their
-centre, and every pair of particles in the same or in neighbouring boxes is tested once. All formulas are
-exact for centres that are uniform in [r, L - r] and independent but for one thing: no two are closer than a
-diameter (first order in the density, so for packing fractions below some 0.05).
+The gas is dilute and between walls: a cubic (square) container of side L is divided into n boxes a side.
+Particles are kept in the box of their centre, and every pair of particles in the same or in neighbouring
+boxes is tested once. Centres are uniform in [r, L - r] and no two centres are closer than a diameter;
+otherwise they are independent. For such centres all formulas are exact to the first order in the density, so
+for packing fractions below some 0.05.
 """
 
 import math
@@ -16,16 +17,16 @@ from gaspart.theory._arguments import Numbers, Values, checked, checked_dimensio
 
 
 def _shares(per_side: int, side: float, radius: float) -> np.ndarray:
-    """(n,) Chance that a coordinate, uniform between the walls, lies in each of the n boxes."""
+    """Return the chances (n,) that a coordinate, uniform between the walls, lies in each box."""
     edges = np.linspace(0.0, side, per_side + 1)
     return np.diff(np.clip(edges, radius, side - radius)) / (side - 2.0 * radius)
 
 
 def _moments(per_side: int, side: float, radius: float) -> np.ndarray:
-    """Along one axis: mean over a particle's place of (boxes in its neighbourhood, its share, its share
-    squared).
+    """Return means, along an axis, of the neighbourhood of a particle: boxes, chance and chance squared.
 
-    The share of a neighbourhood is the chance that another particle is in it.
+    The means are over the position of the particle. The chance is the chance that another particle is in the
+    neighbourhood.
     """
     if not (per_side >= 1 and side > 2.0 * radius >= 0.0):
         raise ValueError(
@@ -41,10 +42,39 @@ def _moments(per_side: int, side: float, radius: float) -> np.ndarray:
 def expected_pair_tests(
     count: float, per_side: int, dimension: int, side: float, radius: float
 ) -> tuple[float, float]:
-    """Mean and standard deviation (over random places of the particles) of the pairs tested in one search.
+    """Compute the expected number of pair tests in a search, and its standard deviation.
 
-    The mean is N(N-1)/2 times the chance that two particles are neighbours, exactly N(N-1)/2 for one box; the
-    variance is that of a sum over pairs of independent particles (Hoeffding 1948; exact for points).
+    Parameters
+    ----------
+    count : float
+        Number N of particles.
+    per_side : int
+        Number n of boxes along each side.
+    dimension : {2, 3}
+        Discs or spheres.
+    side : float, [length]
+        Side L of the container.
+    radius : float, [length]
+        Radius r of a particle.
+
+    Returns
+    -------
+    mean : float
+        Mean over random positions of the particles.
+    deviation : float
+        Standard deviation over random positions.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    ValueError
+        If there is no box or the particle does not fit.
+
+    Notes
+    -----
+    The mean is N(N-1)/2 times the chance that two particles are neighbours, exactly N(N-1)/2 for one box. The
+    variance is the variance of a sum over pairs of independent particles (Hoeffding 1948; exact for points).
     """
     _, share, square = _moments(per_side, side, radius) ** checked_dimension(dimension)
     excluded = ball_volume(dimension, 2.0 * radius) / (side - 2.0 * radius) ** dimension
@@ -58,22 +88,69 @@ def expected_pair_tests(
 def neighbour_share(
     per_side: Sequence[int] | np.ndarray, dimension: int, side: float, radius: float
 ) -> np.ndarray:
-    """(n,) Chance that two particles lie in the same box or in neighbouring ones, for `per_side` (n,)."""
+    """Compute the chance that two particles lie in the same box or in neighbouring boxes.
+
+    Parameters
+    ----------
+    per_side : sequence of int, shape (n,)
+        Numbers of boxes along each side.
+    dimension : {2, 3}
+        Discs or spheres.
+    side : float, [length]
+        Side of the container.
+    radius : float, [length]
+        Radius of a particle.
+
+    Returns
+    -------
+    ndarray, shape (n,), [1]
+        Chance for each partition.
+    """
     return np.array([_moments(int(n), side, radius)[1] for n in per_side]) ** checked_dimension(dimension)
 
 
 @checked
 def expected_box_visits(per_side: int, dimension: int, side: float, radius: float) -> float:
-    """Mean number of boxes that one particle looks into: its own, and half of the others around it."""
+    """Compute the mean number of boxes that a particle searches.
+
+    Parameters
+    ----------
+    per_side : int
+        Number of boxes along each side.
+    dimension : {2, 3}
+        Discs or spheres.
+    side : float, [length]
+        Side of the container.
+    radius : float, [length]
+        Radius of a particle.
+
+    Returns
+    -------
+    float
+        Mean number of boxes: its own, and half of the others around it.
+    """
     boxes, _, _ = _moments(per_side, side, radius) ** checked_dimension(dimension)
     return 0.5 * (1.0 + boxes)
 
 
 @checked
 def boxes_in_reach(width: Numbers, reach: Numbers, dimension: int) -> Values:
-    """Mean number of boxes of side `width` that lie within `reach` of a random point, its own box included.
+    """Compute the mean number of boxes within a distance of a random point.
 
-    The volume within `reach` of a box, over that of the box (Steiner's formula).
+    Parameters
+    ----------
+    width : array_like, [length]
+        Side of a box.
+    reach : array_like, [length]
+        Distance.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    float or ndarray
+        Mean number, the point's own box included: the volume within `reach` of a box divided by the volume of
+        the box (Steiner's formula).
     """
     t = np.asarray(reach) / width
     if checked_dimension(dimension) == 2:
@@ -82,10 +159,22 @@ def boxes_in_reach(width: Numbers, reach: Numbers, dimension: int) -> Values:
 
 
 def share_of_contacts_in_a_box(width: Numbers, diameter: Numbers, dimension: int) -> Values:
-    """Chance that two particles in contact lie in the same box of side `width`, at least a diameter.
+    """Compute the chance that two particles in contact lie in the same box.
 
-    The mean over the directions n of the contact of prod(1 - |n_k| diameter / width): with a place that is
-    uniform in the box.
+    Parameters
+    ----------
+    width : array_like, [length]
+        Side of a box, at least a diameter.
+    diameter : array_like, [length]
+        Diameter of a particle.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    float or ndarray, [1]
+        Chance: the mean over the directions n of the contact of prod(1 - abs(n_k) diameter / width), for a
+        position that is uniform in the box.
     """
     s = np.asarray(diameter) / width
     if checked_dimension(dimension) == 2:
@@ -94,9 +183,24 @@ def share_of_contacts_in_a_box(width: Numbers, diameter: Numbers, dimension: int
 
 
 def ideal_boxes_per_particle(test_cost: Numbers, box_cost: Numbers, dimension: int) -> Values:
-    """Boxes per particle at which a step costs least, if a pair test and a box cost what is given (same
-    unit).
+    """Compute the number of boxes per particle at which a step costs least.
 
+    Parameters
+    ----------
+    test_cost : array_like
+        Cost of a pair test.
+    box_cost : array_like
+        Cost of a box, in the same unit.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    float or ndarray
+        Number of boxes per particle.
+
+    Notes
+    -----
     With M boxes and N particles, away from the walls, there are 3^d N / (2 M) tests per particle, while every
     box must be emptied in every step. The sum of both is least at M / N = sqrt(3^d c_test / (2 c_box)).
     """

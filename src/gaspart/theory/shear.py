@@ -1,8 +1,7 @@
-"""A gas between two walls that slide past each other, or along which a force drives it: slip, free flight,
-heating and normal stresses.
+"""Gas between two walls with slip, free flight, viscous heating and normal stresses.
 
-The walls are diffuse with full accommodation, a distance `length` apart, and their velocities differ by
-`velocity`; k_B = 1.
+The walls slide past each other, or a force drives the gas along them. They are diffuse with full
+accommodation, a distance `length` apart, and their velocities differ by `velocity`; k_B = 1.
 """
 
 import numpy as np
@@ -12,19 +11,23 @@ from gaspart.theory.enskog import enskog_conductivity, enskog_viscosity
 from gaspart.theory.heat import FULL
 
 VELOCITY_SLIP = 1.1113
-"""u_gas - u_wall over l_0 du/dn at a diffuse wall, hard spheres, l_0 = 1 / (sqrt 2 pi n sigma^2): 1.2540
-sqrt(pi) / 2, Ohwada, Sone and Aoki, Phys. Fluids A 1, 1588 (1989). Moments of the linearised Boltzmann
-equation, derived again, converge to it (tested)."""
+"""Coefficient of slip at a diffuse wall for hard spheres: u_gas - u_wall divided by l_0 du/dn, with l_0 = 1 /
+(sqrt 2 pi n sigma^2). It is 1.2540 sqrt(pi) / 2: Ohwada, Sone and Aoki, Phys. Fluids A 1, 1588 (1989).
+Moments of the linearised Boltzmann equation, derived again, converge to it (tested).
+"""
 ELEMENTARY_SLIP = 0.9975
-"""`VELOCITY_SLIP` by Maxwell's elementary argument, (mu / p) sqrt(pi T / 2 m) with the viscosity mu:
-particles arrive with the distribution of the gas far from the wall. A measurement must distinguish both."""
+"""Coefficient of slip as `VELOCITY_SLIP`, by Maxwell's elementary argument: (mu / p) sqrt(pi T / 2 m) with
+the viscosity mu. There particles arrive with the distribution of the gas far from the wall. A measurement
+must distinguish both.
+"""
 NORMAL_STRESSES = (-1.2, 1.6, -0.4)
-"""(P_xx / p - 1) / a^2, and those of yy and zz, of a flow u along y that changes along x; a = -P_xy / p.
+"""(P_xx / p - 1) / a^2, and the same for yy and zz, of a flow u along y that changes along x; a = -P_xy / p.
 
 Moments of the steady Boltzmann equation: (p / mu) (P_ij - p delta_ij) = -dM_ij/dx, for yy less 2 P_xy du/dx,
-with the viscosity mu; the transport of P_ij along x is M = 2/5 q (3, 1, 1) for xx, yy, zz, with Fourier's
-heat flux q, and dq/dx = mu (du/dx)^2. To second order in a; exact for Maxwell molecules. For spheres the
-products of stresses are neglected, and Sonine polynomials beyond the first."""
+with the viscosity mu. The transport of P_ij along x is M = 2/5 q (3, 1, 1) for xx, yy, zz, with Fourier's
+heat flux q, and dq/dx = mu (du/dx)^2. To the second order in a; exact for Maxwell molecules. For spheres the
+products of stresses are neglected, and Sonine polynomials beyond the first.
+"""
 
 
 @checked
@@ -35,9 +38,41 @@ def free_molecular_stress(
     mass: float = 1.0,
     accommodation: tuple[float, float] = FULL,
 ) -> Values:
-    """Shear stress on the walls of a gas whose particles collide with the walls only, n velocity sqrt(m T / 2
-    pi); with the `accommodation` a_1 and a_2 of the walls a_1 a_2 / (a_1 + a_2 - a_1 a_2) of it. Exact
-    (closed form)."""
+    """Compute the shear stress of a gas whose particles collide only with the walls.
+
+    Parameters
+    ----------
+    density : array_like, [1/length^d]
+        Number density n in d dimensions.
+    velocity : array_like, [length/time]
+        Difference of the walls' velocities.
+    temperature : float, default 1.0, [energy]
+        Temperature k_B T.
+    mass : float, default 1.0, [mass]
+        Mass m of a particle.
+    accommodation : (float, float), default (1.0, 1.0), [1]
+        Accommodation a_1 and a_2 of the walls.
+
+    Returns
+    -------
+    float or ndarray, [mass length^(2-d)/time^2]
+        Shear stress on the walls.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    n velocity sqrt(m T / 2 pi), times a_1 a_2 / (a_1 + a_2 - a_1 a_2). Exact (closed form).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.free_molecular_stress(0.1, 1.0)), 5)
+    0.03989
+    """
     one, other = accommodation
     part = one * other / (one + other - one * other)
     return density * np.asarray(velocity, dtype=float) * np.sqrt(mass * temperature / (2.0 * np.pi)) * part
@@ -45,8 +80,40 @@ def free_molecular_stress(
 
 @checked
 def slip_flow_stress(length: Numbers, density: Numbers, velocity: Numbers, diameter: float = 1.0) -> Values:
-    """Shear stress of dilute spheres of mass 1 at temperature 1, with slip at both walls: mu velocity /
-    (length + 2 `VELOCITY_SLIP` l_0), mu the viscosity. To first order in `velocity` and l_0 / length."""
+    """Compute the shear stress of dilute spheres between sliding walls, with slip at both walls.
+
+    Parameters
+    ----------
+    length : array_like, [length]
+        Distance of the walls.
+    density : array_like, [1/length^3]
+        Number density.
+    velocity : array_like, [length/time]
+        Difference of the walls' velocities.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+
+    Returns
+    -------
+    float or ndarray, [mass/(length time^2)]
+        Shear stress of spheres of mass 1 at temperature 1.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    mu velocity / (length + 2 `VELOCITY_SLIP` l_0), with the viscosity mu. To the first order in `velocity`
+    and l_0 / length.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.slip_flow_stress(100.0, 0.01, 0.1)), 6)
+    0.000119
+    """
     path = 1.0 / (np.sqrt(2.0) * np.pi * np.asarray(density, dtype=float) * diameter**2)
     return enskog_viscosity(0.0, 3, diameter) * velocity / (length + 2.0 * VELOCITY_SLIP * path)
 
@@ -55,12 +122,46 @@ def slip_flow_stress(length: Numbers, density: Numbers, velocity: Numbers, diame
 def channel_velocity(
     height: Numbers, length: Numbers, density: Numbers, force: Numbers, diameter: float = 1.0
 ) -> Values:
-    """Velocity of dilute spheres of mass 1 at temperature 1 that a force on each drives along two walls at
-    rest, at a height above one of them: Poiseuille's parabola with slip, density force / (2 mu) [height
-    (length - height) + `VELOCITY_SLIP` l_0 length], mu the viscosity.
+    """Compute the velocity of dilute spheres that a force drives along two walls at rest.
 
-    To first order in `force` and l_0 / length. The next order in l_0 adds 0.6 density force l_0^2 / mu
-    (Hadjiconstantinou, Phys. Fluids 15, 2352 (2003)).
+    Parameters
+    ----------
+    height : array_like, [length]
+        Height above one of the walls.
+    length : array_like, [length]
+        Distance of the walls.
+    density : array_like, [1/length^3]
+        Number density.
+    force : array_like, [mass length/time^2]
+        Force on each particle.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+
+    Returns
+    -------
+    float or ndarray, [length/time]
+        Velocity of spheres of mass 1 at temperature 1.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Poiseuille's parabola with slip: density force / (2 mu) [height (length - height) + `VELOCITY_SLIP` l_0
+    length], with the viscosity mu. To the first order in `force` and l_0 / length. The next order in l_0 adds
+    0.6 density force l_0^2 / mu [1]_.
+
+    References
+    ----------
+    .. [1] N. G. Hadjiconstantinou, Phys. Fluids 15, 2352 (2003).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.channel_velocity(50.0, 100.0, 0.01, 1e-4)), 5)
+    0.01396
     """
     height, length, density, force = (np.asarray(a, dtype=float) for a in (height, length, density, force))
     path = 1.0 / (np.sqrt(2.0) * np.pi * density * diameter**2)
@@ -72,12 +173,43 @@ def channel_velocity(
 def free_flight_drift(
     time: Numbers, length: float, force: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:
-    """Mean velocity along two walls of particles that collide with these only, a time after a force on each
-    was switched on in equilibrium. Exact (closed form).
+    """Compute the mean velocity along two walls of particles that collide only with the walls.
 
-    It is force / mass times the mean of the time since a particle was at a wall, `time` at most: the integral
-    over t of the share that was at none for t, the average of 1 - |v| t / length, if positive, over Maxwell's
-    distribution. It grows with the logarithm of time, without limit: so many particles cross slowly.
+    Parameters
+    ----------
+    time : array_like, [time]
+        Time since a force on each particle was switched on in equilibrium.
+    length : float, [length]
+        Distance of the walls.
+    force : float, default 1.0, [mass length/time^2]
+        Force on each particle.
+    temperature : float, default 1.0, [energy]
+        Temperature k_B T.
+    mass : float, default 1.0, [mass]
+        Mass m of a particle.
+
+    Returns
+    -------
+    float or ndarray, same shape as `time`, [length/time]
+        Mean velocity.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Exact (closed form). It is force / mass times the mean of the time since a particle was at a wall, `time`
+    at most. This mean is the integral over t of the fraction of particles that were at no wall for t: the
+    average of 1 - abs(v) t / length, if positive, over Maxwell's distribution. It grows with the logarithm of
+    time, without limit, because many particles cross slowly.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.free_flight_drift(10.0, 5.0)), 4)
+    4.5108
     """
     from scipy.special import erf, exp1
 
@@ -92,11 +224,44 @@ def free_flight_drift(
 def interpolated_stress(
     length: Numbers, density: Numbers, velocity: Numbers, diameter: float = 1.0
 ) -> Values:
-    """Shear stress of dilute spheres of mass 1 at temperature 1 at any Knudsen number: 1 / (1 / free + 1 /
-    fluid), of the stress of free flight and of that without slip.
+    """Compute the shear stress of dilute spheres between sliding walls at any Knudsen number.
 
-    In the form of Sherman, Rarefied Gas Dynamics 2, 228 (1963). To first order in `velocity` right in both
-    limits, an approximation between them: 2 % above the stress with slip at a Knudsen number of 0.1.
+    Parameters
+    ----------
+    length : array_like, [length]
+        Distance of the walls.
+    density : array_like, [1/length^3]
+        Number density.
+    velocity : array_like, [length/time]
+        Difference of the walls' velocities.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+
+    Returns
+    -------
+    float or ndarray, [mass/(length time^2)]
+        Shear stress of spheres of mass 1 at temperature 1.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    1 / (1 / free + 1 / fluid), of the stress of free flight and the stress without slip, in the form of
+    Sherman [1]_. To the first order in `velocity` it is right in both limits and an approximation between
+    them: 2 % above the stress with slip at a Knudsen number of 0.1.
+
+    References
+    ----------
+    .. [1] F. S. Sherman, Rarefied Gas Dynamics 2, 228 (1963).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.interpolated_stress(100.0, 0.01, 0.1)), 6)
+    0.000124
     """
     free = free_molecular_stress(density, 1.0)
     fluid = enskog_viscosity(0.0, 3, diameter) / length
@@ -105,11 +270,36 @@ def interpolated_stress(
 
 @checked
 def viscous_heating(packing_fraction: Numbers, dimension: int) -> Values:
-    """Viscosity over twice the conductivity, by Enskog, in units of mass / k_B: between two walls T + this
-    times u^2 is the same everywhere, u the velocity relative to the place where T is highest.
+    """Compute Enskog's viscosity divided by twice the conductivity.
 
-    Exact where the ratio does not change: both grow with the square root of T. 2 / 15 in the first Sonine
-    approximation of dilute spheres.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    float or ndarray, same shape as `packing_fraction`, [mass]
+        Ratio in units of mass / k_B.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Between two walls T + this ratio times u^2 is the same everywhere, with the velocity u relative to the
+    position where T is highest. It is exact where the ratio does not change: both coefficients grow with the
+    square root of T. The ratio is 2 / 15 in the first Sonine approximation of dilute spheres.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.viscous_heating(0.0, dimension=3)), 4)
+    0.1321
     """
     conductivity = enskog_conductivity(packing_fraction, dimension)
     return 0.5 * enskog_viscosity(packing_fraction, dimension) / conductivity

@@ -1,4 +1,4 @@
-"""A shock that a piston drives through a gas at rest: the jump of density, temperature and pressure."""
+"""Shock before a piston in a gas at rest: jump of density, temperature and pressure."""
 
 from typing import NamedTuple
 
@@ -11,8 +11,30 @@ from gaspart.theory.state import HIGHEST_PACKING_FRACTION, compressibility_facto
 
 
 class Shock(NamedTuple):
-    """Of a steady shock: speed, of its front in the gas at rest; packing_fraction, temperature and pressure
-    behind it, where the gas moves with the piston."""
+    """Steady shock, behind which the gas moves with the piston.
+
+    Parameters
+    ----------
+    speed : float, [length/time]
+        Speed of the front in the gas at rest.
+    packing_fraction : float, [1]
+        Packing fraction behind the front.
+    temperature : float, [energy]
+        Temperature k_B T behind the front.
+    pressure : float, [energy/length^dimension]
+        Pressure behind the front.
+
+    See Also
+    --------
+    shock_before_piston : Compute the shock of a piston.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> shock = theory.shock_before_piston(0.01, dimension=3, speed=2.0)
+    >>> round(shock.speed, 4), round(shock.temperature, 4)
+    (3.317, 2.7518)
+    """
 
     speed: float
     packing_fraction: float
@@ -29,12 +51,46 @@ def shock_before_piston(
     mass: float = 1.0,
     diameter: float = 1.0,
 ) -> Shock:
-    """The shock in front of a piston at a speed u, in a gas at rest of this packing fraction and temperature.
+    """Compute the shock in front of a piston that moves into a gas at rest.
 
-    The jump conditions of Rankine and Hugoniot, with the front at D, in the frame of the gas at rest: mass
-    n (D - u) = n_0 D, momentum P - P_0 = m n_0 D u, energy d (T - T_0) / 2 = (P + P_0) (1/n_0 - 1/n) / 2, and
-    the equation of state P = n T Z (`compressibility_factor`). Exact for a steady shock but for that. Raises
-    SceneError for a speed that is not positive, and for a gas that is denser behind it than Z is known.
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction of the gas at rest: up to 0.70 for discs, 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    speed : float, [length/time]
+        Speed u of the piston, above 0.
+    temperature : float, default 1.0, [energy]
+        Temperature k_B T_0 of the gas at rest.
+    mass : float, default 1.0, [mass]
+        Mass m of a particle.
+    diameter : float, default 1.0, [length]
+        Diameter sigma of a particle.
+
+    Returns
+    -------
+    Shock
+        Speed of the front and state behind it.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range, or if the gas behind the front is denser than Z is known.
+
+    Notes
+    -----
+    The jump conditions of Rankine and Hugoniot, with the front at D, in the frame of the gas at rest: mass n
+    (D - u) = n_0 D, momentum P - P_0 = m n_0 D u, energy d (T - T_0) / 2 = (P + P_0) (1/n_0 - 1/n) / 2. The
+    equation of state is P = n T Z (`compressibility_factor`). For a steady shock it is the only
+    approximation.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> shock = theory.shock_before_piston(0.01, dimension=3, speed=2.0)
+    >>> round(shock.packing_fraction, 4), round(shock.pressure, 4)
+    (0.0252, 0.1466)
     """
     from scipy.optimize import brentq
 
@@ -45,14 +101,14 @@ def shock_before_piston(
     ahead = density * temperature * float(compressibility_factor(eta, d))
 
     def behind(ratio: float) -> Shock:
-        """By mass, momentum and energy alone, for a ratio of densities."""
+        """Return the shock by mass, momentum and energy alone, for a ratio of densities."""
         front = speed * ratio / (ratio - 1.0)
         pressure = ahead + mass * density * front * speed
         gained = (pressure + ahead) * (1.0 - 1.0 / ratio) / density
         return Shock(front, eta * ratio, temperature + gained / d, pressure)
 
     def excess(ratio: float) -> float:
-        """Of its pressure over that of the equation of state."""
+        """Return its pressure less the pressure of the equation of state."""
         found = behind(ratio)
         factor = float(compressibility_factor(found.packing_fraction, d))
         return found.pressure - ratio * density * found.temperature * factor

@@ -1,4 +1,4 @@
-"""Speeds of a gas: Maxwell's distribution, its moments, and the way there from equal speeds.
+"""Speeds of a gas: Maxwell's distribution, its moments, and the relaxation from equal speeds.
 
 k_B = 1; speeds in units of sqrt(temperature / mass).
 """
@@ -25,10 +25,39 @@ RELAXATION_UNCERTAINTY = 3e-4
 def mean_speed(
     dimension: int, temperature: float = 1.0, mass: float = 1.0, count: int | None = None
 ) -> float:
-    """Mean speed in equilibrium: sqrt(pi k_B T / 2m) in 2D, sqrt(8 k_B T / (pi m)) in 3D (exact).
+    """Compute the mean speed in equilibrium.
 
-    With `count` particles at the fixed energy d N k_B T / 2 it is sqrt(n) Gamma(n) / Gamma(n + 1/2) times
-    that, n = d N / 2: their velocities are uniform on a sphere in d N dimensions (exact).
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs or spheres.
+    temperature : float, default 1.0, [energy]
+        Temperature k_B T.
+    mass : float, default 1.0, [mass]
+        Mass m of a particle.
+    count : int, optional
+        Number N of particles at the fixed energy d N k_B T / 2. Default: an infinite number.
+
+    Returns
+    -------
+    float, [length/time]
+        Mean speed.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    sqrt(pi k_B T / 2m) in 2D, sqrt(8 k_B T / (pi m)) in 3D (exact). With `count` it is sqrt(n) Gamma(n) /
+    Gamma(n + 1/2) times this, n = d N / 2: the velocities are uniform on a sphere in d N dimensions (exact).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.mean_speed(3), 4), round(theory.mean_speed(3, count=10), 4)
+    (1.5958, 1.6091)
     """
     ratio = {2: 0.5 * math.pi, 3: 8.0 / math.pi}[checked_dimension(dimension)]
     infinite = math.sqrt(ratio * temperature / mass)
@@ -38,17 +67,58 @@ def mean_speed(
 
 
 def mean_speed_factor(freedoms: float) -> float:
-    """<|v|> of a velocity component of particles at fixed energy, over that of Maxwell's distribution with
-    the same <v^2>: sqrt(n) Gamma(n) / Gamma(n + 1/2), n half the number of degrees of freedom (exact)."""
+    """Compute the ratio of mean speeds at fixed energy and in Maxwell's distribution.
+
+    Parameters
+    ----------
+    freedoms : float
+        Number of degrees of freedom, 2 n.
+
+    Returns
+    -------
+    float, [1]
+        <abs(v)> of a velocity component at fixed energy divided by the value in Maxwell's distribution with
+        the same <v^2>: sqrt(n) Gamma(n) / Gamma(n + 1/2) (exact).
+    """
     half = 0.5 * freedoms
     return math.sqrt(half) * math.exp(math.lgamma(half) - math.lgamma(half + 0.5))
 
 
 @checked
 def maxwell_pdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
-    """Maxwell's density of speeds (exact; time / length; 0 for negative speeds; same shape as `speed`).
+    """Compute the density of speeds of Maxwell's distribution.
 
-    With u = v sqrt(m / k_B T): u exp(-u^2/2) in 2D, sqrt(2/pi) u^2 exp(-u^2/2) in 3D, times sqrt(m / k_B T).
+    Parameters
+    ----------
+    speed : array_like, [length/time]
+        Speeds v; the density of negative speeds is 0.
+    dimension : {2, 3}
+        Discs or spheres.
+    temperature : float, default 1.0, [energy]
+        Temperature k_B T.
+    mass : float, default 1.0, [mass]
+        Mass m of a particle.
+
+    Returns
+    -------
+    ndarray, same shape as `speed`, [time/length]
+        Probability density.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    With u = v sqrt(m / k_B T): u exp(-u^2/2) in 2D, sqrt(2/pi) u^2 exp(-u^2/2) in 3D, times sqrt(m / k_B T)
+    (exact).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.maxwell_pdf([0.0, 1.0, 2.0], dimension=3).round(4)
+    array([0.    , 0.4839, 0.4319])
     """
     checked_dimension(dimension)
     scale = math.sqrt(mass / temperature)
@@ -65,13 +135,44 @@ def maxwell_cdf(
     mass: float = 1.0,
     freedoms: float | None = None,
 ) -> Values:
-    """Fraction of particles slower than `speed` (exact): incomplete gamma function P(d/2, m v^2 / 2 k_B
-    T).
+    """Compute the fraction of particles that are slower than a speed, in equilibrium.
 
-    With `freedoms` D, of equal particles at the fixed energy D k_B T / 2 together: their velocities are
-    uniform on a sphere in D dimensions, d of which are those of one particle, and x = m v^2 / (D k_B T) has a
-    beta distribution: I_x(d/2, (D - d)/2) (exact). D is d N; or d (N - 1) for velocities about the centre of
-    mass times sqrt(N / (N - 1)). Raises SceneError for D <= d.
+    Parameters
+    ----------
+    speed : array_like, [length/time]
+        Speeds v.
+    dimension : {2, 3}
+        Discs or spheres.
+    temperature : float, default 1.0, [energy]
+        Temperature k_B T.
+    mass : float, default 1.0, [mass]
+        Mass m of a particle.
+    freedoms : float, optional
+        Number D of degrees of freedom of equal particles at the fixed energy D k_B T / 2 together, more than
+        d. Default: Maxwell's distribution.
+
+    Returns
+    -------
+    ndarray, same shape as `speed`, [1]
+        Fraction of particles.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range, or if `freedoms` is not above `dimension`.
+
+    Notes
+    -----
+    The incomplete gamma function P(d/2, m v^2 / 2 k_B T) (exact). With `freedoms` the velocities are uniform
+    on a sphere in D dimensions, d of which belong to one particle, and x = m v^2 / (D k_B T) has a beta
+    distribution: I_x(d/2, (D - d)/2) (exact). D is d N; or d (N - 1) for velocities about the centre of mass
+    times sqrt(N / (N - 1)).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.maxwell_cdf([1.0, 2.0], dimension=3).round(4)
+    array([0.1987, 0.7385])
     """
     from scipy.special import betainc, gammainc
 
@@ -86,8 +187,35 @@ def maxwell_cdf(
 
 @checked
 def maxwell_ppf(probability: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
-    """Speed below which the fraction `probability` of the particles lies: inverse of `maxwell_cdf`
-    (exact)."""
+    """Compute the speed below which a fraction of the particles lies: the inverse of `maxwell_cdf`.
+
+    Parameters
+    ----------
+    probability : array_like, [1]
+        Fraction of particles, from 0 to 1.
+    dimension : {2, 3}
+        Discs or spheres.
+    temperature : float, default 1.0, [energy]
+        Temperature k_B T.
+    mass : float, default 1.0, [mass]
+        Mass m of a particle.
+
+    Returns
+    -------
+    ndarray, same shape as `probability`, [length/time]
+        Speeds (exact).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.maxwell_ppf(0.5, dimension=3).round(4))
+    1.5382
+    """
     from scipy.special import gammaincinv
 
     checked_dimension(dimension)
@@ -97,10 +225,38 @@ def maxwell_ppf(probability: Numbers, dimension: int, temperature: float = 1.0, 
 
 @checked
 def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = False) -> float:
-    """<v^4> / <v^2>^2 in equilibrium: (d+2)/d, that is 2 in 2D and 5/3 in 3D (exact).
+    """Compute the kurtosis <v^4> / <v^2>^2 of the speeds in equilibrium.
 
-    With `count` particles at fixed energy the velocities are uniform on a sphere in D = d N dimensions (d
-    (N-1) if the total momentum is held at zero), and a particle's kurtosis is (d+2)/d times D/(D+2) (exact).
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs or spheres.
+    count : int, optional
+        Number N of particles at fixed energy. Default: an infinite number.
+    zero_momentum : bool, default False
+        Hold the total momentum at zero. It has no effect without `count`.
+
+    Returns
+    -------
+    float, [1]
+        Kurtosis.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    (d+2)/d, which is 2 in 2D and 5/3 in 3D (exact). With `count` the velocities are uniform on a sphere in D
+    = d N dimensions, or d (N-1) if the total momentum is held at zero, and a particle's kurtosis is (d+2)/d
+    times D/(D+2) (exact).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.kurtosis(3), 4), round(theory.kurtosis(3, count=100), 4)
+    (1.6667, 1.6556)
     """
     infinite = (checked_dimension(dimension) + 2.0) / dimension
     if count is None:
@@ -111,15 +267,43 @@ def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = Fal
 
 @checked
 def kurtosis_scatter(dimension: int, count: int) -> tuple[float, float]:
-    """Standard deviation and skewness, over equilibrium, of the kurtosis of `count` particles at one time.
+    """Compute the scatter in equilibrium of the kurtosis of N particles at one time.
 
-    Of velocities uniform on a sphere in D = d N dimensions (exact): the kurtosis is N sum(q) / (sum e)^2 with
-    e = v^2 and q = e^2, which does not depend on sum(e) there. So its moment of order m is N^m <sum(q)^m> /
-    <(sum e)^2m> of independent normal velocities, whose <e^k> is d (d+2) ... (d+2k-2). A total momentum held
-    at zero changes it by a part 1/N (neglected).
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs or spheres.
+    count : int
+        Number N of particles.
+
+    Returns
+    -------
+    deviation : float, [1]
+        Standard deviation.
+    skewness : float, [1]
+        Skewness.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Velocities are uniform on a sphere in D = d N dimensions (exact). The kurtosis is N sum(q) / (sum e)^2
+    with e = v^2 and q = e^2, which does not depend on sum(e) there. So its moment of order m is N^m
+    <sum(q)^m> / <(sum e)^2m> of independent normal velocities, whose <e^k> is d (d+2) ... (d+2k-2). A total
+    momentum held at zero changes it by the relative amount 1/N (neglected).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> [round(value, 4) for value in theory.kurtosis_scatter(3, 1000)]
+    [0.0384, 0.2528]
     """
 
     def moment(freedoms: int, order: int) -> float:
+        """Return the mean of e^k with k = `order`."""
         return math.prod(freedoms + 2.0 * k for k in range(order))
 
     n = float(count)
@@ -135,19 +319,70 @@ def kurtosis_scatter(dimension: int, count: int) -> tuple[float, float]:
 
 
 def initial_kurtosis_slope(dimension: int) -> float:
-    """dK/ds at s = 0 from equal speeds, s collisions per particle: 64/225 in 2D, 8/35 in 3D (exact)."""
+    """Return the initial slope dK/ds of the kurtosis of a gas that starts from equal speeds.
+
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    float, [1]
+        Slope at s = 0, with s collisions per particle: 64/225 in 2D, 8/35 in 3D (exact).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.initial_kurtosis_slope(3), 4)
+    0.2286
+    """
     return {2: 64.0 / 225.0, 3: 8.0 / 35.0}[checked_dimension(dimension)]
 
 
 @dataclass(frozen=True)
 class Relaxation:
-    """Relaxation of a gas in which all speeds are equal at first, from the homogeneous Boltzmann equation.
+    """Relaxation of a gas in which all speeds are equal at first.
 
-    `s` is the number of collisions per particle so far, 2 N_collisions / N: on that clock the curves do not
-    depend on diameter, speed or density (Enskog theory). Computed by Monte Carlo, good to
-    RELAXATION_UNCERTAINTY up to `longest`; beyond it the last decay is continued, which stays within that
-    error. Infinite number of particles: a finite gas at fixed energy ends at `kurtosis(dimension, count)`
-    instead.
+    The clock is s, the number of collisions per particle so far, 2 N_collisions / N. On this clock the curves
+    do not depend on diameter, speed or density (Enskog theory).
+
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs or spheres.
+    collisions_table : ndarray, shape (n,)
+        Values of s.
+    equilibrium_table : ndarray, shape (n,)
+        Collisions per particle of a gas in equilibrium at the same times.
+    log_excess_table : ndarray, shape (n,)
+        Logarithm of K_eq - K divided by its initial value, with the kurtosis K.
+    log_never_hit_table : ndarray, shape (n,)
+        Logarithm of the fraction of particles without a collision.
+    mean_speed_table : ndarray, shape (n,)
+        Mean speed divided by the root-mean-square speed.
+
+    See Also
+    --------
+    relaxation : Return the relaxation of discs or spheres.
+
+    Notes
+    -----
+    From the homogeneous Boltzmann equation, computed by Monte Carlo, and good to `RELAXATION_UNCERTAINTY` up
+    to `longest`. Beyond it the last decay is continued, which stays within this error. The number of
+    particles is infinite: a finite gas at fixed energy ends at `kurtosis(dimension, count)` instead.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> curve = theory.relaxation(3)
+    >>> curve.kurtosis([0.0, 1.0, 2.0]).round(3)
+    array([1.   , 1.202, 1.353])
     """
 
     dimension: int
@@ -159,18 +394,47 @@ class Relaxation:
 
     @property
     def longest(self) -> float:
-        """Largest tabulated s (dimensionless)."""
+        """Largest tabulated s (dimensionless).
+
+        Examples
+        --------
+        >>> from gaspart import theory
+        >>> theory.relaxation(3).longest > 5.0
+        True
+        """
         return float(self.collisions_table[-1])
 
     def _checked(self, s: Numbers) -> np.ndarray:
+        """Return `s` as an array; raise ValueError if a number is negative."""
         s = np.asarray(s, dtype=float)
         if not np.all(s >= 0.0):
             raise ValueError(f"collisions per particle: {s} (must not be negative)")
         return s
 
     def kurtosis(self, s: Numbers) -> Values:
-        """<v^4> / <v^2>^2 after `s` collisions per particle: 1 at first, (d+2)/d in the end
-        (dimensionless)."""
+        """Compute the kurtosis <v^4> / <v^2>^2 after some collisions per particle.
+
+        Parameters
+        ----------
+        s : array_like, [1]
+            Collisions per particle.
+
+        Returns
+        -------
+        ndarray, same shape as `s`, [1]
+            Kurtosis: 1 at first, (d+2)/d in the end.
+
+        Raises
+        ------
+        ValueError
+            If `s` is negative.
+
+        Examples
+        --------
+        >>> from gaspart import theory
+        >>> float(theory.relaxation(3).kurtosis(1.0).round(3))
+        1.202
+        """
         s = self._checked(s)
         beyond = np.maximum(s - self.longest, 0.0) * KURTOSIS_RELAXATION_RATE[self.dimension]
         log_excess = np.interp(s, self.collisions_table, self.log_excess_table) - beyond
@@ -178,24 +442,92 @@ class Relaxation:
         return end - (end - 1.0) * np.exp(log_excess)
 
     def never_hit(self, s: Numbers) -> Values:
-        """Fraction of the particles that have had no collision (dimensionless); slightly below exp(-s)."""
+        """Compute the fraction of particles that have had no collision.
+
+        Parameters
+        ----------
+        s : array_like, [1]
+            Collisions per particle.
+
+        Returns
+        -------
+        ndarray, same shape as `s`, [1]
+            Fraction, slightly below exp(-s).
+
+        Raises
+        ------
+        ValueError
+            If `s` is negative.
+
+        Examples
+        --------
+        >>> from gaspart import theory
+        >>> float(theory.relaxation(3).never_hit(1.0).round(3))
+        0.367
+        """
         s = self._checked(s)
         last_rate = -self.log_never_hit_table[-1] / self.longest
         log_fraction = np.interp(s, self.collisions_table, self.log_never_hit_table)
         return np.exp(log_fraction - last_rate * np.maximum(s - self.longest, 0.0))
 
     def mean_speed(self, s: Numbers) -> Values:
-        """Mean speed over the root-mean-square speed: 1 at first, `mean_speed(d) / sqrt(d)` in the end."""
+        """Compute the mean speed divided by the root-mean-square speed.
+
+        Parameters
+        ----------
+        s : array_like, [1]
+            Collisions per particle.
+
+        Returns
+        -------
+        ndarray, same shape as `s`, [1]
+            Ratio: 1 at first, `mean_speed(d) / sqrt(d)` in the end.
+
+        Raises
+        ------
+        ValueError
+            If `s` is negative.
+
+        Examples
+        --------
+        >>> from gaspart import theory
+        >>> float(theory.relaxation(3).mean_speed(1.0).round(3))
+        0.971
+        """
         s = self._checked(s)
         decay = np.exp(-KURTOSIS_RELAXATION_RATE[self.dimension] * np.maximum(s - self.longest, 0.0))
         end = mean_speed(self.dimension) / math.sqrt(self.dimension)
         return end + (np.interp(s, self.collisions_table, self.mean_speed_table) - end) * decay
 
     def collisions(self, equilibrium_collisions: Numbers) -> Values:
-        """s at the time when a gas in equilibrium would have had `equilibrium_collisions` per particle.
+        """Compute s at the time when a gas in equilibrium has had some collisions per particle.
 
-        The argument is nu t at the same energy, with nu = `enskog.collision_rate`. s is the larger:
-        particles of equal speeds collide more often, by 2.3 % in 3D and 1.6 % in 2D at first. Good to 0.5 %.
+        Parameters
+        ----------
+        equilibrium_collisions : array_like, [1]
+            Collisions per particle nu t of a gas in equilibrium at the same energy, with nu =
+            `enskog.collision_rate`.
+
+        Returns
+        -------
+        ndarray, same shape as `equilibrium_collisions`, [1]
+            Collisions per particle s.
+
+        Raises
+        ------
+        ValueError
+            If `equilibrium_collisions` is negative.
+
+        Notes
+        -----
+        s is larger than the argument, because particles of equal speeds collide more often: by 2.3 % in 3D
+        and 1.6 % in 2D at first. Good to 0.5 %.
+
+        Examples
+        --------
+        >>> from gaspart import theory
+        >>> float(theory.relaxation(3).collisions(1.0).round(3))
+        1.021
         """
         tau = self._checked(equilibrium_collisions)
         beyond = np.maximum(tau - self.equilibrium_table[-1], 0.0)
@@ -204,7 +536,29 @@ class Relaxation:
 
 @cache
 def relaxation(dimension: int) -> Relaxation:
-    """The `Relaxation` of discs (2) or spheres (3), from the tables in `theory/data` (computed)."""
+    """Return the `Relaxation` of discs or spheres.
+
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    Relaxation
+        Curves from the tables in `theory/data` (computed).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.relaxation(2).dimension
+    2
+    """
     time, s, fourth, _, never, speed = np.loadtxt(
         _TABLES / f"relaxation_{checked_dimension(dimension)}d.csv", delimiter=",", skiprows=1, unpack=True
     )

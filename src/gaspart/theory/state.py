@@ -1,4 +1,4 @@
-"""The equation of state to compare with: its value, its uncertainty, and what a finite system shifts.
+"""Reference equation of state: value, uncertainty and shift by a finite system.
 
 Discs: virial series to B10 and a linear tail. Spheres: Kolafa, Labik and Malijevsky. Fluid branch only.
 Everything here is dimensionless and depends on the packing fraction alone.
@@ -17,7 +17,8 @@ from gaspart.theory.virial import (
 )
 
 HIGHEST_PACKING_FRACTION = {2: STABLE_DISCS, 3: METASTABLE_SPHERES}
-"""Where the reference ends: the liquid's limit in 2D, the end of the data in 3D (metastable from 0.4915)."""
+"""Packing fraction where the reference ends: the limit of the liquid in 2D, the end of the data in 3D
+(metastable from 0.4915)."""
 
 # Relative standard uncertainty of the equation of spheres, up to each packing fraction and beyond: its
 # largest difference from the independent equation that etomica fits to its authors' simulations
@@ -133,7 +134,7 @@ def compressibility_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
     -----
     Discs, in quadrature: the uncertainties of the coefficients; the slope of the tail; the difference to
     Liu's independent equation, but no more than the complete tail, because at low density the series is the
-    better of the two; and what both are found to lack near freezing, 0.4 % at eta = 0.65 and 10 % at 0.70.
+    better of the two; and what both lack near freezing, 0.4 % at eta = 0.65 and 10 % at 0.70.
     Spheres, the sharper of two bounds: the difference to another equation (4.3e-6 of Z up to eta = 0.445,
     1e-5 up to 0.524), or the difference to the virial series to B10 plus its tail and the uncertainties of
     the coefficients (below 1e-6 for eta < 0.1).
@@ -197,7 +198,7 @@ def contact_value(packing_fraction: Numbers, dimension: int) -> Values:
 
 
 def _slope_and_curvature(eta: np.ndarray, dimension: int) -> tuple[np.ndarray, np.ndarray]:
-    """First and second derivative of eta Z(eta), by differences (central, but at the ends)."""
+    """Return the first and second derivative of eta Z(eta) by differences (central, except at the ends)."""
     centre = np.clip(eta, _STEP, HIGHEST_PACKING_FRACTION[dimension] - _STEP)
     low, mid, high = (
         (centre + shift) * compressibility_factor(centre + shift, dimension) for shift in (-_STEP, 0.0, _STEP)
@@ -275,8 +276,38 @@ def speed_of_sound(packing_fraction: Numbers, dimension: int) -> Values:
 
 
 def adiabatic_temperature(packing_fraction: Numbers, initial: Numbers, dimension: int) -> Values:
-    """T / T_0 after adiabatic compression from the packing fraction `initial`: exp(2/d times the integral of
-    Z over ln eta), since d/2 N k_B dT = -P dV (exact); (V_0 / V)^(2/d) where Z is 1."""
+    """Compute the temperature after adiabatic compression divided by the initial temperature.
+
+    Parameters
+    ----------
+    packing_fraction : float or ndarray, [1]
+        Packing fraction eta after the compression, above 0, to 0.70 for discs, to 0.539 for spheres.
+    initial : float or ndarray, [1]
+        Packing fraction before the compression, in the same range.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, [1]
+        T / T_0.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    exp(2/d times the integral of Z over ln eta), since d/2 N k_B dT = -P dV (exact), with Z of
+    `compressibility_factor`; (V_0 / V)^(2/d) where Z is 1.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.adiabatic_temperature(0.3, initial=0.1, dimension=3)), 4)
+    5.449
+    """
     highest = HIGHEST_PACKING_FRACTION[checked_dimension(dimension)]
     start = np.log(checked_packing_fraction(initial, highest))
     stop = np.log(checked_packing_fraction(packing_fraction, highest))
@@ -291,30 +322,63 @@ def adiabatic_temperature(packing_fraction: Numbers, initial: Numbers, dimension
 def finite_size_correction(
     packing_fraction: Numbers, dimension: int, count: int, ensemble: str = "dynamics"
 ) -> Values:
-    """Z_N - Z_infinity of `count` particles in a periodic container, to first order in 1/N.
+    """Compute the difference between Z of a finite periodic system and of the infinite system.
 
-    `ensemble="canonical"`. In a periodic container the grand partition function is exp(P V / k_B T) up to
-    terms that fall exponentially with the side. Taking N out of it by the saddle point gives
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    count : int
+        Number N of particles, at least 2.
+    ensemble : {"dynamics", "canonical"}, default "dynamics"
+        Periodic run of fixed energy with zero total momentum, or the canonical ensemble.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Z_N - Z_infinity, to first order in 1/N.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    ValueError
+        If the ensemble is unknown, or if there are fewer than 2 particles.
+
+    Notes
+    -----
+    Neglected are terms of order 1/N^2, and exponentially small terms, which matter if the side is only a few
+    diameters (`finite_size_remainder`).
+
+    "canonical": in a periodic container the grand partition function is exp(P V / k_B T) up to terms that
+    fall exponentially with the side. The saddle point gives for N particles
 
         ln Q_N = [P V - N mu] / k_B T - (1/2) ln(2 pi <dN^2>),    <dN^2> = N k_B T / P',   P' = dP / d rho,
 
-    and minus its volume derivative at fixed N, with d rho / dV = - rho / V,
+    and minus the volume derivative at fixed N, with d rho / dV = - rho / V, is
 
         P_N = P - k_B T (rho / 2V) P'' / P',    so    Z_N - Z = - (eta / 2N) (eta Z)'' / (eta Z)'   (in eta).
 
     Checks (tested): to first order in eta it is -b_2 eta / N, exact because only N (N-1) / 2 pairs exist; for
     hard rods on a ring it is exact at every density.
 
-    `ensemble="dynamics"` (default): what Z = 1 + sum |dr . dp| / (2 E t) measures, E the kinetic energy and
-    the total momentum zero, as in a periodic run. Configurations are those of the canonical ensemble, but two
-    particles of a set with zero total momentum have <v_12^2> = 2 <v^2> N / (N-1), and the collisional virial
-    is proportional to it (contacts at rate |v_n|, each giving |v_n|). So Z_N - 1 is the canonical one times N
-    / (N-1), and the first order in eta has no correction at all. (If the total momentum is not zero, E is
-    that of the motion about it.)
+    "dynamics": the quantity that Z = 1 + sum (dr . dp) / (2 E t), with absolute values, measures, where E is
+    the kinetic energy and the total momentum is zero, as in a periodic run. Configurations have the
+    distribution of the canonical ensemble. Two particles of a set with zero total momentum have <v_12^2> = 2
+    <v^2> N / (N-1), and the collisional virial is proportional to it: contacts occur at a rate proportional
+    to the normal speed, and each gives an impulse proportional to it. So Z_N - 1 is the canonical value times
+    N / (N-1), and the first order in eta has no correction at all. If the total momentum is not zero, E is
+    the energy of the motion about it.
 
-    Arguments: eta (number or array) within the reference's range, dimension 2 or 3, count >= 2.
-    Dimensionless. Neglected: 1/N^2, and exponentially small terms, which matter when the side is only a few
-    diameters.
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.finite_size_correction(0.3, dimension=3, count=500)), 5)
+    0.0036
+    >>> round(float(theory.finite_size_correction(0.3, 3, count=500, ensemble="canonical")), 5)
+    -0.00238
     """
     if ensemble not in ("canonical", "dynamics"):
         raise ValueError(f"ensemble: {ensemble!r} (must be 'canonical' or 'dynamics')")
@@ -331,18 +395,48 @@ def finite_size_correction(
 
 @checked
 def constant_enthalpy_factor(packing_fraction: Numbers, dimension: int, count: Numbers) -> Values:
-    """P V_0 / (N k_B <T> Z) of N particles behind a piston, V_0 = <V>, Z that of the infinite fluid at N /
-    V_0.
+    """Compute the ratio of pressures of few particles behind a piston and of the infinite fluid.
 
-    The ensemble of constant pressure and enthalpy (Andersen, J. Chem. Phys. 72, 2384 (1980)) has the weight
-    Q(V) (H - P V)^(f/2 - 1), f degrees of freedom. The mean of its derivative by V vanishes: <d ln Q / dV>
-    = P (f/2 - 1) <1 / (H - P V)>. Expanded to second order in V - V_0, whose variance is s V_0^2 / N with
-    1/s = y' + 2 Z^2 / d, y = eta Z(eta), and with the canonical correction of Q (`finite_size_correction`),
-    f = d N:
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    count : array_like
+        Number N of particles.
+
+    Returns
+    -------
+    ndarray, [1]
+        P V_0 / (N k_B <T> Z), with V_0 = <V> and Z of the infinite fluid at N / V_0.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    The ensemble of constant pressure and enthalpy [1]_ has the weight Q(V) (H - P V)^(f/2 - 1), with f
+    degrees of freedom. The mean of its derivative by V vanishes: <d ln Q / dV> = P (f/2 - 1) <1 / (H - P V)>.
+    Expanded to second order in V - V_0, whose variance is s V_0^2 / N with 1/s = y' + 2 Z^2 / d, y = eta
+    Z(eta), and with the canonical correction of Q (`finite_size_correction`) and f = d N, the ratio is
 
         1 + (s / N) [y' / Z + (2 / d) y' - eta y'' Z / (d y')].
 
-    1 + 1/N for an ideal gas, in which it is exact. To first order in 1/N. The temperature is 2 <E> / (d N).
+    It is 1 + 1/N for an ideal gas, in which it is exact. To first order in 1/N. The temperature is 2 <E> / (d
+    N).
+
+    References
+    ----------
+    .. [1] H. C. Andersen, J. Chem. Phys. 72, 2384 (1980).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.constant_enthalpy_factor(0.3, dimension=3, count=500)), 6)
+    1.000602
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     slope, curvature = _slope_and_curvature(eta, dimension)

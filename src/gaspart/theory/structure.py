@@ -1,8 +1,8 @@
-"""Structure of the fluid of spheres: pair distribution and structure factor, by Percus and Yevick's equation
-and by the correction of Verlet and Weis.
+"""Structure of the fluid of spheres: pair distribution and structure factor.
 
-Lengths in diameters, wave numbers over the diameter, fluid of packing fraction eta (a number). There is no
-such closed form for discs: Percus and Yevick's equation is solved in odd dimensions only.
+The theories are Percus and Yevick's equation and the correction of Verlet and Weis. Lengths are in diameters,
+wave numbers in inverse diameters, packing fractions eta are numbers. There is no such closed form for discs:
+Percus and Yevick's equation is solved in odd dimensions only.
 """
 
 from functools import cache
@@ -21,12 +21,41 @@ _SMALL = 1e-3  # wave number below which a quotient of small numbers is replaced
 
 @checked
 def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float) -> Values:
-    """S(k) = 1 / (1 - rho c(k)) of spheres, by Percus and Yevick's equation (same shape as `wave_number`).
+    """Compute S(k) of spheres by Percus and Yevick's equation.
 
-    The direct correlation function is -(a + b r + a eta r^3 / 2) inside of the diameter and 0 beyond, with
-    a = (1 + 2 eta)^2 / (1 - eta)^4, b = -6 eta (1 + eta / 2)^2 / (1 - eta)^4 (Wertheim, Phys. Rev. Lett. 10,
-    321 (1963); Thiele, J. Chem. Phys. 39, 474 (1963)). Its integral is by Gauss and Legendre, exact to
-    rounding up to k = 100. S(0) is that of `percus_yevick_compressibility`.
+    Parameters
+    ----------
+    wave_number : array_like, [1/diameter]
+        Wave numbers k.
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.539.
+
+    Returns
+    -------
+    float or ndarray, same shape as `wave_number`, [1]
+        S(k) = 1 / (1 - rho c(k)).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    The direct correlation function is -(a + b r + a eta r^3 / 2) inside of the diameter and 0 beyond, with a
+    = (1 + 2 eta)^2 / (1 - eta)^4, b = -6 eta (1 + eta / 2)^2 / (1 - eta)^4 [1]_ [2]_. Its integral is by
+    Gauss and Legendre, exact to rounding up to k = 100. S(0) belongs to `percus_yevick_compressibility`.
+
+    References
+    ----------
+    .. [1] M. S. Wertheim, Phys. Rev. Lett. 10, 321 (1963).
+    .. [2] E. Thiele, J. Chem. Phys. 39, 474 (1963).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.percus_yevick_structure_factor([0.0, 6.5], 0.3).round(4)
+    array([0.0938, 1.501 ])
     """
     eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
     k = np.asarray(wave_number, dtype=float)
@@ -41,13 +70,43 @@ def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float
 
 @checked
 def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
-    """g(r) of spheres, by Percus and Yevick's equation, up to 5 diameters (same shape as `distance`).
+    """Compute g(r) of spheres by Percus and Yevick's equation, up to 5 diameters.
 
-    r g(r) is the inverse of Wertheim's Laplace transform (Phys. Rev. Lett. 10, 321 (1963)): with
-    L = (1 + eta / 2) t + 1 + 2 eta and S = (1 - eta)^2 t^3 + 6 eta (1 - eta) t^2 + 18 eta^2 t - 12 eta (1 + 2
-    eta), the sum over n < r of the residues of (-12 eta)^(n-1) t (L / S)^n e^{t (r - n)} at the three zeros
-    of S. They are computed together, as an integral over a circle around all three. 0 inside of the diameter.
-    Raises ValueError beyond 12 diameters.
+    Parameters
+    ----------
+    distance : array_like, [diameter]
+        Distances r, at most 5.
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.539.
+
+    Returns
+    -------
+    float or ndarray, same shape as `distance`, [1]
+        Pair distribution g(r), which is 0 inside of the diameter.
+
+    Raises
+    ------
+    SceneError
+        If `packing_fraction` is out of range or a distance is negative.
+    ValueError
+        If a distance is above 5.
+
+    Notes
+    -----
+    r g(r) is the inverse of Wertheim's Laplace transform [1]_. With L = (1 + eta / 2) t + 1 + 2 eta and S =
+    (1 - eta)^2 t^3 + 6 eta (1 - eta) t^2 + 18 eta^2 t - 12 eta (1 + 2 eta), it is the sum over n < r of the
+    residues of (-12 eta)^(n-1) t (L / S)^n e^{t (r - n)} at the three zeros of S. They are computed together,
+    as an integral over circles around all three.
+
+    References
+    ----------
+    .. [1] M. S. Wertheim, Phys. Rev. Lett. 10, 321 (1963).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.percus_yevick_rdf([0.9, 1.0, 2.0], 0.3).round(4)
+    array([0.    , 2.3469, 1.0057])
     """
     eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
     r = np.asarray(distance, dtype=float)
@@ -66,7 +125,10 @@ def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
 
 @cache
 def _circles(eta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Nodes (n,) of circles around the zeros of S, their parts of the integrals over 2 pi i, and L / S."""
+    """Return nodes (n,) on circles around the zeros of S, their weights, and L / S.
+
+    The weights are those parts of the integrals divided by 2 pi i.
+    """
     linear = 6.0 * eta * (1.0 - eta)
     cubic = np.array([(1.0 - eta) ** 2, linear, 18.0 * eta**2, -12.0 * eta * (1.0 + 2.0 * eta)])
     zeros = np.roots(cubic)
@@ -79,11 +141,12 @@ def _circles(eta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 @cache
 def _verlet_weis(eta: float) -> tuple[float, float, float, float]:
-    """The packing fraction and the diameter of the fluid of Percus and Yevick, and the amplitude and the
-    inverse range of what is added to its g(r).
+    """Return the parameters of Verlet and Weis's g(r) at a packing fraction.
 
-    The latter two are those at which the contact value and the compressibility are Carnahan and Starling's:
-    1 + 24 eta times the integral of r^2 (g - 1) is S(0), in which the added part is 12 eta A / mu.
+    They are the packing fraction and the diameter of the fluid of Percus and Yevick, and the amplitude and
+    the inverse range of the part that is added to its g(r). At this amplitude and range the contact value and
+    the compressibility are Carnahan and Starling's: 1 + 24 eta times the integral of r^2 (g - 1) is S(0), in
+    which the added part is 12 eta A / mu.
     """
     effective = eta - eta**2 / 16.0
     diameter = (effective / eta) ** (1.0 / 3.0)
@@ -96,7 +159,10 @@ def _verlet_weis(eta: float) -> tuple[float, float, float, float]:
 
 
 def _overlapping(k: np.ndarray, eta: float, effective: float, diameter: float) -> np.ndarray:
-    """24 eta times the integral of r^2 g(r) sin(kr) / (kr) between the smaller diameter and 1."""
+    """Return the structure of pairs between the smaller diameter and 1.
+
+    This is 24 eta times the integral of r^2 g(r) sin(kr) / (kr).
+    """
     nodes, weights = np.polynomial.legendre.leggauss(12)
     r = 0.5 * (1.0 - diameter) * (nodes + 1.0) + diameter
     g = percus_yevick_rdf(r / diameter, effective)
@@ -106,12 +172,43 @@ def _overlapping(k: np.ndarray, eta: float, effective: float, diameter: float) -
 
 @checked
 def verlet_weis_rdf(distance: Numbers, packing_fraction: float) -> Values:
-    """g(r) of spheres by Verlet and Weis, Phys. Rev. A 5, 939 (1972) (same shape as `distance`).
+    """Compute g(r) of spheres by the theory of Verlet and Weis.
 
-    That of Percus and Yevick at the packing fraction eta - eta^2 / 16, with the smaller diameter that belongs
-    to it, and A / r exp(-mu (r - 1)) cos(mu (r - 1)) beyond contact. A and mu follow here from the conditions
-    that the contact value and the compressibility are Carnahan and Starling's (as in a public program of
-    integral equations), not from fitted formulas. At most 4.9 diameters; 0 < eta <= 0.539.
+    Parameters
+    ----------
+    distance : array_like, [diameter]
+        Distances r, at most 4.9.
+    packing_fraction : float, [1]
+        Packing fraction eta, above 0 and at most 0.539.
+
+    Returns
+    -------
+    float or ndarray, same shape as `distance`, [1]
+        Pair distribution g(r), which is 0 inside of the diameter.
+
+    Raises
+    ------
+    SceneError
+        If `packing_fraction` is above its range or negative, or a distance is negative.
+    ValueError
+        If `packing_fraction` is 0 or a distance is above its range.
+
+    Notes
+    -----
+    g(r) of Percus and Yevick at the packing fraction eta - eta^2 / 16, with the smaller diameter that belongs
+    to it, and A / r exp(-mu (r - 1)) cos(mu (r - 1)) beyond contact [1]_. A and mu follow here from the
+    conditions that the contact value and the compressibility are Carnahan and Starling's (as in a public
+    program of integral equations), not from fitted formulas.
+
+    References
+    ----------
+    .. [1] L. Verlet and J.-J. Weis, Phys. Rev. A 5, 939 (1972).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.verlet_weis_rdf([0.9, 1.0, 2.0], 0.3).round(4)
+    array([0.    , 2.4781, 1.0117])
     """
     effective, diameter, amplitude, rate = _of(packing_fraction)
     r = np.asarray(distance, dtype=float)
@@ -122,8 +219,38 @@ def verlet_weis_rdf(distance: Numbers, packing_fraction: float) -> Values:
 
 @checked
 def verlet_weis_structure_factor(wave_number: Numbers, packing_fraction: float) -> Values:
-    """S(k) of spheres that belongs to `verlet_weis_rdf`, by its Fourier transform in closed form but for the
-    pairs nearer than a diameter that are taken away (same shape as `wave_number`)."""
+    """Compute S(k) of spheres by the theory of Verlet and Weis.
+
+    Parameters
+    ----------
+    wave_number : array_like, [1/diameter]
+        Wave numbers k.
+    packing_fraction : float, [1]
+        Packing fraction eta, above 0 and at most 0.539.
+
+    Returns
+    -------
+    float or ndarray, same shape as `wave_number`, [1]
+        S(k) that belongs to `verlet_weis_rdf`.
+
+    Raises
+    ------
+    SceneError
+        If `packing_fraction` is above its range or negative, or a wave number is negative.
+    ValueError
+        If `packing_fraction` is 0.
+
+    Notes
+    -----
+    The Fourier transform of `verlet_weis_rdf` in closed form, except for the pairs nearer than a diameter,
+    which are taken away by a numerical integral.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.verlet_weis_structure_factor([0.0, 6.5], 0.3).round(4)
+    array([0.0976, 1.4913])
+    """
     eta = float(packing_fraction)
     effective, diameter, amplitude, rate = _of(eta)
     k = np.asarray(wave_number, dtype=float)
@@ -136,7 +263,7 @@ def verlet_weis_structure_factor(wave_number: Numbers, packing_fraction: float) 
 
 
 def _of(packing_fraction: float) -> tuple[float, float, float, float]:
-    """`_verlet_weis` of a packing fraction, which is checked."""
+    """Return `_verlet_weis` of a packing fraction that is in range; raise an error otherwise."""
     eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
     if eta <= 0.0:
         raise ValueError(f"packing_fraction: {eta:g} (must be above 0)")

@@ -1,4 +1,4 @@
-"""Numbers that programs have measured, as tables: those of others, and this one."""
+"""Tables of values that programs have measured: this program and others."""
 
 from functools import cache
 from pathlib import Path
@@ -10,28 +10,87 @@ from gaspart.theory._arguments import checked_dimension
 
 
 def literature(quantity: str, dimension: int) -> np.recarray:
-    """What programs of others have measured of hard discs and spheres, and published: a row for each value.
+    """Return values of hard discs and spheres that programs of others have measured and published.
 
-    quantity: of spheres "Z", "Z_crystal" (face-centred cubic), "diffusion", "viscosity" or "conductivity"; of
-    discs "pressure", from the liquid to the hexatic. Fields of the records, of which each is an attribute:
-    packing_fraction; count, the number of particles; container ("cube", "square", or the sides of "29 x 30"
-    discs of a triangular lattice), periodic; value and its standard error, diameter = mass = k_B T = 1;
-    source. None of them is corrected for its number of particles. Their provenance is in `data/README.md`.
-    Raises SceneError for a quantity that the table does not have.
+    Parameters
+    ----------
+    quantity : str
+        For spheres "Z", "Z_crystal" (face-centred cubic), "diffusion", "viscosity" or "conductivity"; for
+        discs "pressure", from the liquid to the hexatic.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    numpy.recarray
+        A row for each value. Its fields, which are attributes of the array, are `packing_fraction`; `count`,
+        the number of particles; `container` ("cube", "square", or the sides of "29 x 30" discs of a
+        triangular lattice), periodic; `value` and its standard `error`, with diameter = mass = k_B T = 1;
+        `source`.
+
+    Raises
+    ------
+    SceneError
+        If the table does not have the quantity.
+
+    See Also
+    --------
+    measured : Values that this program has measured.
+
+    Notes
+    -----
+    No value is corrected for its number of particles. The provenance of all values is in `data/README.md`.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> rows = theory.literature("Z", 3)
+    >>> len(rows), int(rows.count.max())
+    (193, 2125764)
     """
     return _of("literature", quantity, dimension)
 
 
 def measured(quantity: str, dimension: int) -> np.recarray:
-    """What this program has measured of fluids of hard discs and spheres: a row for each value, to be cited.
+    """Return values of hard discs and spheres that this program has measured, to be cited.
 
-    quantity: "Z" or "contact_value", both of the infinite system (finite numbers taken off to first order in
-    1/N); "viscosity", "bulk_viscosity" and "conductivity", by Green and Kubo until 16 collisions of a
-    particle (30 in dense gases); of spheres "diffusion" too, N / (N - 1) times that of particles whose total
-    momentum is zero. The last four are those of `count` particles; of discs they grow with the logarithm of
-    time and of the container. Fields and units are those of `literature`; source is the figure of the
-    reproduction. The commit and the command that made the table are in `data/README.md`. Raises SceneError
-    for a quantity that the table does not have.
+    Parameters
+    ----------
+    quantity : {"Z", "contact_value", "viscosity", "bulk_viscosity", "conductivity", "diffusion"}
+        Quantity; "diffusion" exists for spheres only.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    numpy.recarray
+        A row for each value, with the fields and units of `literature`. `source` is the figure of the
+        reproduction.
+
+    Raises
+    ------
+    SceneError
+        If the table does not have the quantity.
+
+    See Also
+    --------
+    literature : Values that programs of others have measured.
+
+    Notes
+    -----
+    All values are of fluids. "Z" and "contact_value" are values of the infinite system: the effect of finite
+    numbers is subtracted to the first order in 1/N. "viscosity", "bulk_viscosity" and "conductivity" are by
+    Green and Kubo until 16 collisions of a particle (30 in dense gases). "diffusion" is N / (N - 1) times the
+    diffusion of particles whose total momentum is zero. The last four are values of `count` particles; for
+    discs they grow with the logarithm of time and of the container. The commit and the command that made the
+    table are in `data/README.md`.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> rows = theory.measured("Z", 3)
+    >>> rows.dtype.names
+    ('dimension', 'quantity', 'packing_fraction', 'count', 'container', 'value', 'error', 'source')
     """
     return _of("measured", quantity, dimension)
 
@@ -79,7 +138,7 @@ def small_systems(quantity: str, dimension: int) -> np.recarray:
 
 
 def _of(table: str, quantity: str, dimension: int) -> np.recarray:
-    """The rows of one quantity."""
+    """Return the rows of a quantity; raise SceneError if the table has no row."""
     rows = _read(table)
     same = rows[rows.dimension == checked_dimension(dimension)]
     found = same[same.quantity == quantity]
@@ -90,5 +149,6 @@ def _of(table: str, quantity: str, dimension: int) -> np.recarray:
 
 @cache
 def _read(table: str) -> np.recarray:
+    """Return the rows of a table."""
     path = Path(__file__).parent / "data" / f"{table}.csv"
     return np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8").view(np.recarray)

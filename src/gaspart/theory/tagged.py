@@ -1,9 +1,10 @@
-r"""A tagged sphere in a dilute gas of given speeds: the linear Boltzmann equation, by direct simulation.
+r"""Tagged sphere in a dilute gas of given speeds, by direct simulation.
 
-The gas is isotropic, unaffected by the sphere, and need not be in equilibrium. The sphere, of mass M, flies
-freely until a gas particle of mass m hits it along a normal n; then its velocity along n changes by
-2 m / (m + M) times the difference of both. Normals are isotropic, and a gas particle of speed c has a
-velocity along them that is uniform in [-c, c] (Archimedes), so hits come at the rate
+The simulation solves the linear Boltzmann equation. The gas is isotropic, unaffected by the sphere, and need
+not be in equilibrium. The sphere, of mass M, flies freely until a gas particle of mass m hits it along a
+normal n; then its velocity along n changes by 2 m / (m + M) times the difference of both. Normals are
+isotropic, and a gas particle of speed c has a velocity along them that is uniform in [-c, c] (Archimedes), so
+hits come at the rate
 
 .. math:: n a^2 \int d\hat n \int_{-c}^{c} \frac{du}{2c} \max(\mathbf V \cdot \hat n - u, 0) .
 
@@ -24,7 +25,15 @@ from gaspart.theory.homogeneous import directions, dot, lengths
 
 @dataclass(frozen=True)
 class Tagged:
-    """Displacements and velocities (T + 1, N, 3) of N independent spheres at T + 1 evenly spaced times."""
+    """Paths of N independent spheres at T + 1 evenly spaced times.
+
+    Parameters
+    ----------
+    displacements : ndarray, shape (T + 1, N, 3), [length]
+        Displacements from the start.
+    velocities : ndarray, shape (T + 1, N, 3), [length/time]
+        Velocities.
+    """
 
     displacements: np.ndarray
     velocities: np.ndarray
@@ -33,10 +42,31 @@ class Tagged:
 def tagged_paths(
     speeds: Iterable[np.ndarray], interval: float, hits: float, mass: float, count: int, seed: int = 0
 ) -> Tagged:
-    """Paths of `count` spheres from rest.
+    """Simulate the paths of independent spheres from rest.
 
-    speeds: (G,) speeds of gas particles, whose mass is 1, during each interval of time; hits: n pi a^2, with
-    the number density n of the gas and the distance of contact a. Statistical errors fall as 1 / sqrt(count).
+    Parameters
+    ----------
+    speeds : iterable of ndarray, shape (G,), [length/time]
+        Speeds of gas particles, whose mass is 1, during each interval of time.
+    interval : float, [time]
+        Length of an interval.
+    hits : float, [1/length]
+        n pi a^2, with the number density n of the gas and the distance of contact a.
+    mass : float
+        Mass of a sphere divided by the mass of a gas particle.
+    count : int
+        Number N of spheres.
+    seed : int, default 0
+        Seed of the random numbers.
+
+    Returns
+    -------
+    Tagged
+        Displacements and velocities at the start and after each interval.
+
+    Notes
+    -----
+    Statistical errors fall as 1 / sqrt(count).
     """
     rng = np.random.default_rng(seed)
     velocity, place = np.zeros((count, 3)), np.zeros((count, 3))
@@ -60,7 +90,7 @@ def _advance(
     """Move all spheres for one interval, in place.
 
     Hits are drawn at a rate that no sphere exceeds at its present speed, and accepted in proportion to the
-    speed of approach: no step of time, and no error of one.
+    speed of approach. So there is no time step, and no error of a time step.
     """
     fastest = float(gas.max())
     flying, moving, left = np.arange(len(place)), velocity.copy(), np.full(len(place), interval)

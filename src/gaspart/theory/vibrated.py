@@ -2,11 +2,11 @@
 
 The energy balance of a nearly elastic gas: isothermal and Maxwellian, its density exponential in the height,
 with small and fast vibrations, slow compared with the particles (Kumaran, Phys. Rev. E 57, 5660 (1998);
-McNamara and Luding, Phys. Rev. E 58, 813 (1998), who show that losses at the floor count). Everything here is
-derived from the averages over Maxwellian velocities, and tested against them. Discs of mass 1 and diameter d;
-`layers` is N d / width, or (N - 1) d / width for a finite bed, since no disc meets itself; contacts with the
-floor are as inelastic as those of particles. packing_fraction, to whose first order everything is exact, is
-the one that an ideal gas would have at the floor, pi N d^2 g / (4 width T).
+McNamara and Luding, Phys. Rev. E 58, 813 (1998), who show that losses at the floor count). All results here
+are derived from the averages over Maxwellian velocities, and tested against them. Discs have mass 1 and
+diameter d. `layers` is N d / width, or (N - 1) d / width for a finite bed, since no disc meets itself.
+Contacts with the floor are as inelastic as contacts of particles. All results are exact to the first order in
+`packing_fraction`, the packing fraction that an ideal gas would have at the floor, pi N d^2 g / (4 width T).
 """
 
 import math
@@ -19,12 +19,39 @@ _FIRST_ORDER = (8.0 / 3.0 - 2.0 * math.sqrt(3.0) / math.pi) * 2.0 / 3.0 - 4.0 / 
 
 
 def bed_loss(layers: Numbers, restitution: Numbers, packing_fraction: Numbers = 0.0) -> Values:
-    """(1 - e^2) (sqrt(pi) layers / 2 + 1 / sqrt(2 pi)): power lost by the bed over N g sqrt(T).
+    """Compute the power that the bed loses in inelastic contacts, divided by N g sqrt(T).
 
-    The first term is that of contacts of particles, (1 - e^2) sqrt(pi) d n^2 T^(3/2) per area with n = N g /
-    (T width) exp(-g z / T), integrated over z; at a packing fraction eta it is 1 - 0.2907 eta times that. The
-    second is that of the floor: a particle arrives with a mean energy T across it, at the rate sqrt(T / 2 pi)
-    n(0). It is the small parameter of the theory.
+    Parameters
+    ----------
+    layers : array_like, [1]
+        Number of layers N d / width, or (N - 1) d / width for a finite bed; not negative.
+    restitution : array_like, [1]
+        Coefficient of restitution e, from 0 to 1.
+    packing_fraction : array_like, default 0.0, [1]
+        Packing fraction eta that an ideal gas would have at the floor, from 0 to 1.
+
+    Returns
+    -------
+    float or ndarray, [1]
+        Loss: the small parameter of the theory.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    (1 - e^2) (sqrt(pi) layers / 2 + 1 / sqrt(2 pi)). The first term belongs to contacts of particles. Their
+    loss (1 - e^2) sqrt(pi) d n^2 T^(3/2) per area, with n = N g / (T width) exp(-g z / T), is integrated over
+    z. At a packing fraction eta the term is 1 - 0.2907 eta times this. The second term belongs to the floor:
+    a particle arrives with a mean energy T across the floor, at the rate sqrt(T / 2 pi) n(0).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.bed_loss(2.0, 0.95)), 4)
+    0.2117
     """
     count = checked_range("layers", layers, 0.0, math.inf, "must be finite and not negative")
     e = checked_range("restitution", restitution, 0.0, 1.0, "must be from 0 to 1")
@@ -34,24 +61,103 @@ def bed_loss(layers: Numbers, restitution: Numbers, packing_fraction: Numbers = 
 
 
 def bed_height(packing_fraction: Numbers) -> Values:
-    """Mean height above the floor, in units of T / g: 1 + packing_fraction, from the virial of a bed whose
-    pressure is n T (1 + 2 eta)."""
+    """Compute the mean height of the bed above the floor, in units of T / g.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction that an ideal gas would have at the floor, from 0 to 1.
+
+    Returns
+    -------
+    float or ndarray, same shape as `packing_fraction`, [1]
+        Mean height, 1 + packing_fraction.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    From the virial of a bed whose pressure is n T (1 + 2 eta).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.bed_height(0.02))
+    1.02
+    """
     return 1.0 + checked_range("packing_fraction", packing_fraction, 0.0, 1.0, "must be from 0 to 1")
 
 
 def sawtooth_temperature(layers: Numbers, restitution: Numbers, packing_fraction: Numbers = 0.0) -> Values:
-    """T / V^2 over a floor that always moves up at the speed V: the inverse square of `bed_loss`.
+    """Compute T / V^2 of a bed over a floor that moves up at speed V.
 
-    Its power is N g V exactly, V times the mean force, which is the weight. The next order is V / sqrt(T) =
-    `bed_loss`.
+    Parameters
+    ----------
+    layers : array_like, [1]
+        Number of layers N d / width, or (N - 1) d / width for a finite bed; not negative.
+    restitution : array_like, [1]
+        Coefficient of restitution, from 0 to 1.
+    packing_fraction : array_like, default 0.0, [1]
+        Packing fraction that an ideal gas would have at the floor, from 0 to 1.
+
+    Returns
+    -------
+    float or ndarray, [1]
+        Temperature divided by V^2, for a floor that always moves up and discs of mass 1.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    The inverse square of `bed_loss`. The power of the floor is N g V exactly: V times the mean force, which
+    is the weight. The next order is V / sqrt(T) = `bed_loss`.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.sawtooth_temperature(2.0, 0.95)), 4)
+    22.3107
     """
     return bed_loss(layers, restitution, packing_fraction) ** -2
 
 
 def sine_temperature(layers: Numbers, restitution: Numbers, packing_fraction: Numbers = 0.0) -> Values:
-    """T / <U^2> over a floor of velocity U that averages to zero: sqrt(8 / pi) / `bed_loss`.
+    """Compute T / <U^2> of a bed over a floor whose velocity U averages to zero.
 
-    Its power is N g <U^2> sqrt(8 / (pi T)) to the lowest order in U^2 / T. Without the floor's loss this is
-    4 sqrt(2) / (pi layers (1 - e^2)).
+    Parameters
+    ----------
+    layers : array_like, [1]
+        Number of layers N d / width, or (N - 1) d / width for a finite bed; not negative.
+    restitution : array_like, [1]
+        Coefficient of restitution e, from 0 to 1.
+    packing_fraction : array_like, default 0.0, [1]
+        Packing fraction that an ideal gas would have at the floor, from 0 to 1.
+
+    Returns
+    -------
+    float or ndarray, [1]
+        Temperature divided by <U^2>, for discs of mass 1.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    sqrt(8 / pi) / `bed_loss`. The power of the floor is N g <U^2> sqrt(8 / (pi T)) to the lowest order in U^2
+    / T. Without the floor's loss this is 4 sqrt(2) / (pi layers (1 - e^2)).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.sine_temperature(2.0, 0.95)), 4)
+    7.5375
     """
     return math.sqrt(8.0 / math.pi) / bed_loss(layers, restitution, packing_fraction)

@@ -38,6 +38,7 @@ _EXACT = {
 
 @cache
 def _all_coefficients(dimension: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return all known coefficients b_n, and their standard uncertainties, as read-only arrays."""
     exact = np.array(_EXACT[dimension])
     order, ratio, uncertainty = np.loadtxt(
         _TABLES / f"virial_{dimension}d.csv", delimiter=",", skiprows=1, unpack=True
@@ -50,12 +51,43 @@ def _all_coefficients(dimension: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def virial_coefficients(dimension: int, order: int = HIGHEST_ORDER) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficients b_n of eta^(n-1) for n = 1 to `order`, and their standard uncertainties.
+    """Return the virial coefficients of discs or spheres and their standard uncertainties.
 
-    Exact to B4 (closed forms); B5 to B10 from Clisby and McCoy, J. Stat. Phys. 122, 15 (2006) (literature).
+    Parameters
+    ----------
+    dimension : {2, 3}
+        Discs or spheres.
+    order : int, default 10
+        Number of coefficients, from 1 to 10.
 
-    Returns two read-only arrays of shape (order,), dimensionless; element n - 1 belongs to B_n, element 0 is
-    1. Raises ValueError unless dimension is 2 or 3 and 1 <= order <= 10.
+    Returns
+    -------
+    coefficients : ndarray, shape (order,), [1]
+        Coefficients b_n of eta^(n-1), read-only; element n - 1 belongs to B_n, element 0 is 1.
+    uncertainties : ndarray, shape (order,), [1]
+        Standard uncertainties of b_n, read-only.
+
+    Raises
+    ------
+    SceneError
+        If `dimension` is not 2 or 3. SceneError is a ValueError.
+    ValueError
+        If `order` is out of range.
+
+    Notes
+    -----
+    Exact to B4 (closed forms). B5 to B10 are from Clisby and McCoy [1]_ (literature).
+
+    References
+    ----------
+    .. [1] N. Clisby and B. M. McCoy, J. Stat. Phys. 122, 15 (2006).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> coefficients, uncertainties = theory.virial_coefficients(3, 5)
+    >>> coefficients.round(4), uncertainties.round(4)
+    (array([ 1.    ,  4.    , 10.    , 18.3648, 28.2245]), array([0.    , 0.    , 0.    , 0.    , 0.0003]))
     """
     checked_dimension(dimension)
     if not 1 <= order <= HIGHEST_ORDER:
@@ -65,10 +97,38 @@ def virial_coefficients(dimension: int, order: int = HIGHEST_ORDER) -> tuple[np.
 
 
 def partial_sum(packing_fraction: Numbers, order: int, dimension: int) -> Values:
-    """Z cut after the coefficient B_order: sum of b_n eta^(n-1), n = 1 to `order`.
+    """Compute Z by the virial series up to the coefficient B_order.
 
-    Range: any packing fraction up to close packing; as an approximation of Z, only as far as
-    the first term left out is small. Same shape as `packing_fraction`, dimensionless.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to close packing.
+    order : int
+        Order of the last coefficient, from 1 to 10.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Partial sum.
+
+    Raises
+    ------
+    SceneError
+        If `packing_fraction` or `dimension` is out of range.
+    ValueError
+        If `order` is out of range.
+
+    Notes
+    -----
+    Sum of b_n eta^(n-1), n = 1 to `order`. It approximates Z only as far as the first term left out is small.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.partial_sum(0.1, 5, dimension=3).round(4))
+    1.5212
     """
     coefficients, _ = virial_coefficients(dimension, order)
     eta = checked_packing_fraction(packing_fraction, CLOSE_PACKING[dimension])
@@ -76,18 +136,79 @@ def partial_sum(packing_fraction: Numbers, order: int, dimension: int) -> Values
 
 
 def partial_sum_uncertainty(packing_fraction: Numbers, order: int, dimension: int) -> Values:
-    """Standard uncertainty of `partial_sum` from the coefficients' own (independent); no truncation error."""
+    """Compute the standard uncertainty of `partial_sum` from the uncertainties of the coefficients.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to close packing.
+    order : int
+        Order of the last coefficient, from 1 to 10.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Standard uncertainty.
+
+    Raises
+    ------
+    SceneError
+        If `packing_fraction` or `dimension` is out of range.
+    ValueError
+        If `order` is out of range.
+
+    Notes
+    -----
+    The errors of the coefficients are taken as independent. The error of truncation is not included.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(f"{theory.partial_sum_uncertainty(0.3, 10, dimension=3):.2g}")
+    1.1e-05
+    """
     _, uncertainties = virial_coefficients(dimension, order)
     eta = checked_packing_fraction(packing_fraction, CLOSE_PACKING[dimension])
     return np.sqrt(np.polynomial.polynomial.polyval(eta**2, uncertainties**2))
 
 
 def linear_tail(packing_fraction: Numbers, dimension: int) -> Values:
-    """Terms beyond B10 if b_n continues linearly with the last known difference (computed; an extrapolation).
+    """Compute the terms beyond B10 if b_n continues linearly with the last known difference.
 
-    b_(10+k) = b_10 + k (b_10 - b_9), so the tail is eta^10 [b_10 / (1-eta) + (b_10 - b_9) / (1-eta)^2]. In 2D
-    the differences converge (0.989, 0.967, 0.953, 0.944), which makes this a good estimate up to eta = 0.65;
-    in 3D they still grow by about 2 each time, which makes it a lower bound.
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to close packing.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Terms of Z beyond B10.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    See Also
+    --------
+    linear_tail_uncertainty : Standard uncertainty of this value.
+
+    Notes
+    -----
+    Computed: an extrapolation. b_(10+k) = b_10 + k (b_10 - b_9), so the tail is eta^10 [b_10 / (1-eta) +
+    (b_10 - b_9) / (1-eta)^2]. In 2D the differences converge (0.989, 0.967, 0.953, 0.944), which makes this a
+    good estimate up to eta = 0.65. In 3D they still grow by about 2 each time, which makes it a lower bound.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.linear_tail(0.5, dimension=2).round(4))
+    0.0236
     """
     coefficients, _ = virial_coefficients(dimension)
     eta = checked_packing_fraction(packing_fraction, CLOSE_PACKING[dimension])
@@ -96,7 +217,35 @@ def linear_tail(packing_fraction: Numbers, dimension: int) -> Values:
 
 
 def linear_tail_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
-    """Standard uncertainty of `linear_tail`: of b_10, and of the slope (its last change and b_10's)."""
+    """Compute the standard uncertainty of `linear_tail`.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to close packing.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Standard uncertainty.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    The uncertainty of b_10 and the uncertainty of the slope: its last change and the uncertainty of b_10.
+
+    Examples
+    --------
+    >>> from gaspart.theory.virial import linear_tail_uncertainty
+    >>> float(f"{linear_tail_uncertainty(0.5, dimension=2):.2g}")
+    3.9e-05
+    """
     coefficients, uncertainties = virial_coefficients(dimension)
     eta = checked_packing_fraction(packing_fraction, CLOSE_PACKING[dimension])
     last_change = coefficients[-1] - 2.0 * coefficients[-2] + coefficients[-3]

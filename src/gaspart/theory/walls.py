@@ -1,7 +1,7 @@
 r"""Hard particles between hard walls: what a container shifts in the pressure that its walls feel.
 
-Centres can touch a container that has walls on w of its d axes only within l_k = L_k - sigma on each of
-these, so that is the volume V to which the fluid's thermodynamics applies. With the surface tension gamma
+The container has walls on w of its d axes. Centres move only within l_k = L_k - sigma on each of these axes:
+this is the volume V to which the fluid's thermodynamics applies. With the surface tension gamma
 of the fluid at the plane of the centres, the free energy tau of an edge (3D; a corner in 2D) and kappa of a
 corner (3D), the grand potential is
 
@@ -14,10 +14,10 @@ wall:
 .. math:: N / V = \rho + \Gamma s_1 + \Gamma_\tau s_2 + \Gamma_\kappa s_3, \qquad
           F / A = P - 2 (w-1) \gamma / l - 2 (w-1)(w-2) \tau / l^2 ,
 
-the latter for equal lengths, with Gamma = - rho (d gamma / d rho) / (dP / d rho), likewise the others, and
-rho the density of a bulk fluid of the same chemical potential. Between two walls (w = 1) there are no edges
-and the walls feel just P. gamma, tau and kappa are exact to fifth order in the density, by cluster
-integrals (`clusters`). Everything here is in diameters and k_B T.
+the latter for equal lengths. Gamma = - rho (d gamma / d rho) / (dP / d rho), the others follow by the same
+rule, and rho is the density of a bulk fluid of the same chemical potential. Between two walls (w = 1) there
+are no edges and the walls feel just P. gamma, tau and kappa are exact to fifth order in the density, by
+cluster integrals (`clusters`). Everything here is in diameters and k_B T.
 """
 
 import math
@@ -31,7 +31,7 @@ from gaspart.theory.geometry import number_density
 from gaspart.theory.state import compressibility_factor, compressibility_uncertainty
 
 _DENSEST = 0.49
-"""Where the polynomials below end."""
+"""Packing fraction where the polynomials below end."""
 _SECOND_ORDER = {2: (-1.0 / 3.0, 1.0 / 16.0), 3: (-math.pi / 8.0, 1.0 / 15.0, -1.0 / 96.0)}
 """Coefficients of rho^2 in gamma, tau and kappa, from the overlap of two centres in a box (exact)."""
 _SHAPES: dict[int, tuple[tuple[float, ...], ...]] = {
@@ -42,15 +42,15 @@ _SHAPES: dict[int, tuple[tuple[float, ...], ...]] = {
         (1.0, -27.49, 137.6, -114.7),
     ),
 }
-"""Polynomials in eta: gamma, tau and kappa times (1 - eta)^d over their second order. From the cluster
-integrals of three to five centres (`clusters.cluster_integrals`, 6 to 12 million samples of each, with that
-of the bulk, which is known, as a control variate) and the virial coefficients; good to one or two of the
-last digit, the last of each row to 0.1, 0.6 and 4 in 3D."""
+"""Polynomials in eta: gamma, tau and kappa times (1 - eta)^d divided by their second order. From the cluster
+integrals of three to five centres (`clusters.cluster_integrals`, 6 to 12 million samples of each, with the
+integral of the bulk, which is known, as a control variate) and the virial coefficients; good to one or two of
+the last digit, the last of each row to 0.1, 0.6 and 4 in 3D."""
 _OPPOSITE = np.array(
     [[0.1, 0.2, 0.3, 0.4, 0.49], [-6.7, -5.05, -3.15, -2.6, -2.2], [3.0, 1.9, 1.75, 1.35, 1.0]]
 )
-"""What opposite walls add to the pressure on each other at the distance L, relative to it: packing fractions,
-a and b of exp(a - b (L - 3)). The envelope of the differences between the module's equations and
+"""Relative change of the pressure by the opposite wall at the distance L: packing fractions, a and b of
+exp(a - b (L - 3)). This is the envelope of the differences between the module's equations and
 `film.white_bear_slit` of spheres at L from 2 to 5 and eta from 0.1 to 0.4, continued to 0.49."""
 _FREEZING = {2: 0.70, 3: 0.49}
 """Packing fractions that make discs and spheres comparable in `_opposite`."""
@@ -63,7 +63,10 @@ _STRETCH = 1e-3  # and in length, relative to it
 
 
 def _element(packing_fraction: Numbers, dimension: int, kind: int, further: float = 0.0) -> Values:
-    """gamma, tau or kappa (kind 0, 1, 2), with a `further` coefficient of eta^4 in its polynomial."""
+    """Return gamma, tau or kappa (kind 0, 1, 2).
+
+    further : coefficient of eta^4 in its polynomial
+    """
     eta = np.asarray(packing_fraction, dtype=float)
     shape = np.polynomial.polynomial.polyval(eta, (*_SHAPES[dimension][kind], further))
     scale = _SECOND_ORDER[dimension][kind] * number_density(eta, dimension) ** 2
@@ -71,24 +74,81 @@ def _element(packing_fraction: Numbers, dimension: int, kind: int, further: floa
 
 
 def _unknown(dimension: int, kind: int) -> float:
-    """What the first coefficient that is left out may be: the larger of the last two that are known."""
+    """Estimate the first neglected coefficient by the larger of the last two known coefficients."""
     return max(map(abs, _SHAPES[dimension][kind][-2:]))
 
 
 def surface_tension(packing_fraction: Numbers, dimension: int) -> Values:
-    """gamma sigma^(d-1) / k_B T of the fluid at a hard wall, its area counted where centres touch (negative).
+    """Compute the surface tension of the fluid at a hard wall.
 
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.49.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Surface tension gamma sigma^(d-1) / k_B T (negative), with the area of the wall counted where centres
+        touch.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
     Exact to fifth order in the density, times (1 - eta)^-d (computed, `clusters`). Spheres: 0.3 % above White
-    Bear II, Hansen-Goos and Roth, J. Phys. Condens. Matter 18, 8413 (2006), at eta = 0.2, 1.2 % at 0.3
-    (tested). Range: eta <= 0.49.
+    Bear II [1]_ at eta = 0.2, 1.2 % at 0.3 (tested).
+
+    References
+    ----------
+    .. [1] H. Hansen-Goos and R. Roth, J. Phys. Condens. Matter 18, 8413 (2006).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.surface_tension(0.3, dimension=3)), 4)
+    -0.4992
     """
     eta = checked_packing_fraction(packing_fraction, _DENSEST)
     return _element(eta, checked_dimension(dimension), 0)
 
 
 def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
-    """Standard uncertainty of `surface_tension`: of the first coefficient that is left out, which is taken
-    to be as large as the larger of the last two that are known (an estimate)."""
+    """Estimate the standard uncertainty of `surface_tension`.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.49.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Standard uncertainty (an estimate).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    The contribution of the first neglected coefficient, which is assumed to be as large as the larger of the
+    last two known ones.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(float(theory.surface_tension_uncertainty(0.3, dimension=3)), 4)
+    0.0036
+    """
     eta = checked_packing_fraction(packing_fraction, _DENSEST)
     further = _unknown(checked_dimension(dimension), 0)
     return np.abs(_element(eta, dimension, 0, further) - _element(eta, dimension, 0))
@@ -98,19 +158,50 @@ def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
 def wall_pressure(
     length: float, density: float, count: int, dimension: int, axes: int
 ) -> tuple[float, float]:
-    """Mean pressure of `count` particles on the walls of a container, and its uncertainty.
+    """Compute the mean pressure of particles on the walls of a container, and its uncertainty.
 
-    The force on a wall over the area that centres can touch, of the canonical ensemble: the module's
-    equations, and the canonical correction of first order in 1/N, surfaces included (`_canonical`). The
-    uncertainty is that of the equation of state, and of surfaces, edges and corners, estimated as that of
-    `surface_tension`; what opposite walls do to each other, which is exponentially small in their distance
-    (`_opposite`; from four diameters on it begins at the sixth order in the density); and the square of the
-    relative correction in 1/N for the next order.
+    Parameters
+    ----------
+    length : float, [1]
+        Side of the container along each walled axis, in diameters, at least 2.
+    density : float, [1/length^d]
+        Particles per volume that centres can touch, in units of the diameter.
+    count : int
+        Number N of particles.
+    dimension : {2, 3}
+        Discs or spheres.
+    axes : int
+        Number of axes along which the container has walls, from 1 to `dimension`.
 
-    length: the side of the container along each of its walled `axes`, in diameters; density: particles per
-    volume that centres can touch. Returns two numbers in k_B T / sigma^d. Raises ValueError for walls at less
-    than two diameters, a number of axes that the container does not have, a fluid that would be denser than
-    eta = 0.49, and where the uncertainty would be above a tenth of the pressure.
+    Returns
+    -------
+    pressure : float, [1]
+        Force on a wall divided by the area that centres can touch, in k_B T / sigma^d.
+    uncertainty : float, [1]
+        Standard uncertainty of the pressure, in k_B T / sigma^d.
+
+    Raises
+    ------
+    SceneError
+        If walls are at less than two diameters, if the uncertainty would be above a tenth of the pressure, or
+        if another argument is out of range.
+    ValueError
+        If the container does not have this number of axes, or if the fluid would be denser than eta = 0.49.
+
+    Notes
+    -----
+    Canonical ensemble: the equations of the module `walls`, and the canonical correction of first order in
+    1/N, surfaces included. The uncertainty has these contributions: the equation of state; surfaces, edges
+    and corners, estimated as in `surface_tension_uncertainty`; the effect of opposite walls on each other,
+    which decreases exponentially with their distance (from four diameters on it begins at the sixth order in
+    the density); and the square of the relative correction in 1/N, for the next order.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> pressure, uncertainty = theory.wall_pressure(10.0, density=0.3, count=200, dimension=3, axes=3)
+    >>> round(pressure, 4), uncertainty < 0.01
+    (0.5134, True)
     """
     if not length >= SHORTEST:
         rule = f"must be at least {SHORTEST:g} diameters: closer walls are no walls of one fluid"
@@ -136,8 +227,10 @@ def wall_pressure(
 
 
 def _opposite(eta: float, dimension: int, length: float) -> float:
-    """Return the relative change of the pressure on a wall by the opposite one; discs as spheres as dense,
-    relative to freezing."""
+    """Return the relative change of the pressure on a wall by the opposite wall.
+
+    Discs are taken as spheres of the same density relative to freezing.
+    """
     fractions, amplitudes, decays = _OPPOSITE
     dense = eta * _FREEZING[3] / _FREEZING[dimension]
     amplitude, decay = (float(np.interp(dense, fractions, values)) for values in (amplitudes, decays))
@@ -145,8 +238,13 @@ def _opposite(eta: float, dimension: int, length: float) -> float:
 
 
 class _Container:
-    """The fluid in a container with walls at the distances `sides` for centres, by the packing fraction of
-    the bulk; further: coefficients for `_element`. All per volume."""
+    """Fluid in a container with walls, by the packing fraction of the bulk.
+
+    sides : distances of the walls for centres
+    further : coefficients for `_element`
+
+    All quantities are per volume.
+    """
 
     def __init__(self, sides: Sequence[float], dimension: int, further: Sequence[float]) -> None:
         self.dimension, self.further = dimension, further
@@ -155,26 +253,29 @@ class _Container:
         self.elements = sums[: len(sides)]
 
     def surplus(self, eta: float) -> float:
-        """The grand potential without the bulk's."""
+        """Return the grand potential without the contribution of the bulk."""
         parts = zip(self.elements, range(self.dimension), self.further, strict=False)
         return sum(float(_element(eta, self.dimension, kind, more)) * size for size, kind, more in parts)
 
     def rise(self, eta: float) -> float:
-        """d eta / d mu times the volume of a particle: rho / (dP / d rho), in bulk."""
+        """Return d eta / d mu times the volume of a particle.
+
+        It is rho / (dP / d rho), in bulk.
+        """
         slope = _slope(lambda x: x * compressibility_factor(x, self.dimension), eta)
         return float(number_density(eta, self.dimension)) / slope
 
     def particles(self, eta: float) -> float:
-        """N: rho and what is adsorbed."""
+        """Return the number of particles: rho and the adsorption."""
         unit = float(number_density(1.0, self.dimension))
         return eta * unit - self.rise(eta) * _slope(self.surplus, eta) / unit
 
     def fluctuation(self, eta: float) -> float:
-        """dN / d mu."""
+        """Return dN / d mu."""
         return self.rise(eta) * _slope(self.particles, eta) / float(number_density(1.0, self.dimension))
 
     def bulk(self, particles: float) -> float:
-        """The packing fraction of the bulk at which there are so many particles, by bisection."""
+        """Return the packing fraction of the bulk that gives this number of particles, by bisection."""
         low, high = 3.0 * _STEP, _DENSEST - 3.0 * _STEP
         if self.particles(high) < particles:
             raise ValueError(f"density: {particles} (the fluid would be denser than {_DENSEST})")
@@ -187,7 +288,7 @@ class _Container:
 def _in_container(
     sides: Sequence[float], density: float, count: int, dimension: int, further: Sequence[float]
 ) -> tuple[float, float, float]:
-    """Return the bulk's packing fraction, the pressure across the first axis, and its part of order 1/N."""
+    """Return bulk packing fraction, pressure across the first axis, and its term of order 1/N."""
     here = _Container(sides, dimension, further)
     eta = here.bulk(density)
     bulk = float(number_density(eta, dimension) * compressibility_factor(eta, dimension))
@@ -204,11 +305,12 @@ def _in_container(
 
 
 def _canonical(stretched: Callable[[float], _Container], density: float, count: int) -> float:
-    """By how much the pressure of `count` particles differs from that of the grand canonical ensemble.
+    """Return the difference of the pressures of `count` particles and of the grand canonical ensemble.
 
-    The saddle point takes N out of the grand partition function: ln Q_N = -Omega - N mu - ln(2 pi dN/dmu) /
-    2. The derivative of the last term by the length of the first axis at fixed N, surfaces included; to
-    first order in 1/N, as `state.finite_size_correction`, which is that of a periodic container.
+    The saddle point gives the term of N particles in the grand partition function: ln Q_N = -Omega - N mu -
+    ln(2 pi dN/dmu) / 2. The result is the derivative of the last term by the length of the first axis at
+    fixed N, surfaces included; to first order in 1/N, as `state.finite_size_correction`, which holds for a
+    periodic container.
     """
     logarithms = []
     for factor in (1.0 + _STRETCH, 1.0 - _STRETCH):
@@ -219,5 +321,5 @@ def _canonical(stretched: Callable[[float], _Container], density: float, count: 
 
 
 def _slope(function: Callable[[float], Values], eta: float) -> float:
-    """d function / d eta, by a central difference."""
+    """Return d function / d eta by a central difference."""
     return float(function(eta + _STEP) - function(eta - _STEP)) / (2.0 * _STEP)

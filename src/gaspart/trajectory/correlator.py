@@ -1,4 +1,4 @@
-"""Time correlations, accumulated while a run goes on, so that its frames need not be kept for them.
+"""Time correlations, accumulated during a run, so that its frames need not be kept for them.
 
 Exact: every pair of samples up to a largest lag counts, in double precision. For the largest lag L of K
 velocity components the memory is that of L + 1 samples, and a sample costs about L K additions.
@@ -43,11 +43,29 @@ _PREFIX = "correlator "  # of its arrays in a checkpoint
 
 @dataclass(frozen=True)
 class Correlations:
-    """Which time correlations a run accumulates.
+    """Time correlations that a run accumulates.
 
-    interval: time between two samples; lags: the largest lag, in intervals; start: time of the first sample,
-    an integer multiple of the interval; stress: of the stress tensor and the heat flux, not of velocities.
-    Raises SceneError for other values.
+    Parameters
+    ----------
+    interval : float, [time]
+        Time between two samples.
+    lags : int
+        Largest lag, in intervals.
+    start : float, default 0.0, [time]
+        Time of the first sample, an integer multiple of `interval`.
+    stress : bool, default False
+        Correlate the stress tensor and the heat flux, not the velocities.
+
+    Raises
+    ------
+    SceneError
+        If a value is invalid.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> gp.Correlations(interval=0.1, lags=100, start=2.0).first
+    20
     """
 
     interval: float
@@ -64,49 +82,134 @@ class Correlations:
 
     @property
     def first(self) -> int:
-        """The number of the first sample, in intervals from time 0."""
+        """Number of the first sample, in intervals from time 0.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Correlations(interval=0.1, lags=100, start=2.0).first
+        20
+        """
         return round(self.start / self.interval)
 
     @property
     def tallies(self) -> tuple[OptionalTally, ...]:
-        """The optional tallies that it needs."""
+        """Optional tallies that the correlations need.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> [tally.name for tally in gp.Correlations(interval=0.1, lags=100, stress=True).tallies]
+        ['stress']
+        """
         return (StressTally(),) if self.stress else ()
 
     def to_json(self) -> str:
-        """Its form in the attributes of a file."""
+        """Return the text of the correlations in the attributes of a file.
+
+        Returns
+        -------
+        str
+            JSON of the settings.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Correlations(interval=0.1, lags=100).to_json()
+        '{"interval": 0.1, "lags": 100, "start": 0.0}'
+        """
         return json.dumps({key: value for key, value in asdict(self).items() if value is not False})
 
     @classmethod
     def from_json(cls, text: str) -> Correlations:
-        """The inverse of `to_json`. Raises SceneError, and TypeError or ValueError for another text."""
+        """Return the correlations that a text describes, the inverse of `to_json`.
+
+        Parameters
+        ----------
+        text : str
+            JSON of the settings.
+
+        Returns
+        -------
+        Correlations
+            The correlations.
+
+        Raises
+        ------
+        SceneError
+            If a value is invalid.
+        TypeError, ValueError
+            If it is another text.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Correlations.from_json('{"interval": 0.1, "lags": 100}').lags
+        100
+        """
         return cls(**json.loads(text))
 
 
 def sums_of(displacements: bool) -> list[str]:
-    """The names of the sums of a run with or without displacements."""
+    """Return the names of the sums of a run with or without displacements.
+
+    Parameters
+    ----------
+    displacements : bool
+        True if the run stores displacements.
+
+    Returns
+    -------
+    list of str
+        The names.
+    """
     return [name for name in SUMS if displacements or "displacement" not in name]
 
 
 def stress_sums() -> list[str]:
-    """The names of the sums of a run that correlates the stress tensor and the heat flux."""
+    """Return the names of the sums of a run that correlates the stress tensor and the heat flux."""
     means = [f"bulk_{kind}_sum" for kind in ("ends", "change")]
     return [f"{name}_{kind}_sum" for name in STRESS for kind in ("product", "square")] + means
 
 
 def sum_names(settings: Correlations, displacements: bool) -> list[str]:
-    """The names of the sums of a run with these correlations, with or without displacements."""
+    """Return the names of the sums of a run with these correlations, with or without displacements.
+
+    Parameters
+    ----------
+    settings : Correlations
+        The correlations.
+    displacements : bool
+        True if the run stores displacements.
+
+    Returns
+    -------
+    list of str
+        The names.
+    """
     return stress_sums() if settings.stress else sums_of(displacements)
 
 
 def stress_units() -> dict[str, str]:
-    """The units of these."""
+    """Return the units of the sums of the stress tensor and the heat flux, by name."""
     units = {f"{name}_square_sum": f"({unit})^2" for name, unit in STRESS.items()}
     units |= {"bulk_ends_sum": f"{ACTION}/time", "bulk_change_sum": ACTION}
     return units | {f"{name}_product_sum": f"({unit})^2/time^2" for name, unit in STRESS.items()}
 
 
 def meaning_of(name: str) -> str:
-    """The summand of a sum, in words."""
+    """Return the summand of a sum in words.
+
+    Parameters
+    ----------
+    name : str
+        Name of the sum.
+
+    Returns
+    -------
+    str
+        The summand.
+    """
     if name in SUMS:
         return f"mean over moving particles of {SUMS[name]}"
     group, kind = name.split("_")[:2]
@@ -116,7 +219,8 @@ def meaning_of(name: str) -> str:
 class _Correlator:
     """Sums over all pairs of samples, up to a largest lag.
 
-    earlier: the latest samples, one for each lag, along the last axis; sums: over pairs, likewise by lag.
+    The last axis of `earlier` has the latest samples, one for each lag. The last axis of `sums` is the lag
+    too.
     """
 
     def __init__(self, settings: Correlations, earlier: tuple[int, ...], sums: tuple[int, ...]) -> None:
@@ -126,12 +230,11 @@ class _Correlator:
 
     @property
     def next(self) -> int:
-        """The number of the next sample, in intervals from time 0."""
+        """Number of the next sample, in intervals from time 0."""
         return self._first + self._samples
 
     def _add(self, now: np.ndarray, add_products: Callable[..., None], terms: float | np.ndarray) -> None:
-        """The next sample: its products with the earlier ones, by `add_products`, over the number of
-        terms."""
+        """Add the next sample: its products with the earlier ones, divided by the number of terms."""
         slots = self._earlier.shape[-1]
         slot, used = self._samples % slots, min(self._samples + 1, slots)
         self._earlier[..., slot] = now
@@ -142,7 +245,7 @@ class _Correlator:
         self._samples += 1
 
     def checkpoint(self) -> dict[str, Any]:
-        """Arrays from which `restore` continues to the same bits."""
+        """Return arrays from which `restore` continues to the same bits."""
         arrays = {"samples": np.array(self._samples), "earlier": self._earlier, "sums": self._sums}
         return {_PREFIX + name: values for name, values in arrays.items()}
 
@@ -156,14 +259,27 @@ class _Correlator:
 class Correlator(_Correlator):
     """Correlations of the motion of the particles.
 
-    Velocities and positions of the moving particles count, relative to those of the centre of mass along
-    axes where its velocity is conserved (`Scene.conserved_axes`), and to the mean velocity of faces that
-    slide. This makes the mean square of a particle of
-    mass m lower by the factor 1 - m / M, M the mass of all; if masses differ, or if not all axes are such
-    ones, components are multiplied so that the sums are lower by 1 - 1 / N.
+    Velocities and positions of the moving particles count, relative to the centre of mass along axes where
+    its velocity is conserved (`Scene.conserved_axes`), and to the mean velocity of faces that slide. This
+    lowers the mean square of a particle of mass m by the factor 1 - m / M, M the mass of all. If masses
+    differ, or if not all axes are conserved, components are multiplied so that the sums are lower by 1 - 1 /
+    N.
 
-    masses: (N,), infinite for fixed particles; displacements: whether positions are correlated too. Raises
-    SceneError if no particle moves.
+    Parameters
+    ----------
+    settings : Correlations
+        The correlations.
+    scene : Scene
+        The scene.
+    masses : ndarray, shape (N,), [mass]
+        Masses, infinite for fixed particles.
+    displacements : bool
+        True if positions are correlated too.
+
+    Raises
+    ------
+    SceneError
+        If no particle moves.
     """
 
     def __init__(self, settings: Correlations, scene: Scene, masses: np.ndarray, displacements: bool) -> None:
@@ -181,7 +297,13 @@ class Correlator(_Correlator):
         super().__init__(settings, earlier, (len(sums_of(displacements)),))
 
     def add(self, simulation: Simulation) -> None:
-        """The next sample."""
+        """Add the next sample.
+
+        Parameters
+        ----------
+        simulation : Simulation
+            The simulation at the time of the sample.
+        """
         from gaspart.kernels.correlation import add_displacement_products, add_velocity_products
 
         state = simulation.state
@@ -194,19 +316,19 @@ class Correlator(_Correlator):
         self._add(now, products, self._moving.sum())
 
     def _relative(self, values: np.ndarray) -> np.ndarray:
-        """(M d,) values (N, d) of the moving particles relative to the centre of mass."""
+        """Return values (N, d) of the moving particles relative to the centre of mass, shape (M d,)."""
         values = values[self._moving]
         centre = (values * self._weights).sum(axis=0)
         return (self._scale * (values - np.where(self._conserved, centre, 0.0))).ravel()
 
     def sums(self) -> dict[str, np.ndarray | float]:
-        """The sums of `SUMS` so far, (lags + 1,) each, and the number of samples."""
+        """Return the sums of `SUMS` so far, (lags + 1,) each, and the number of samples."""
         named = zip(SUMS, self._sums, strict=False)
         return {"correlated_samples": float(self._samples), **dict(named)}
 
 
 def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
-    """(M, d) the factors of components relative to the centre of mass; weights (M, 1): m / M."""
+    """Return factors (M, d) of components relative to the centre of mass; weights (M, 1) are m / M."""
     count = len(weights)
     if count < 2 or not conserved.any():
         return np.ones((count, len(conserved)))
@@ -216,8 +338,11 @@ def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
 
 
 class StressCorrelator(_Correlator):
-    """Correlations of the stress tensor and the heat flux, each the mean over an interval: with its impulses,
-    which last no time, it is finite so. The first sample gives no mean and does not count."""
+    """Correlations of the stress tensor and the heat flux, each averaged over an interval.
+
+    The impulses last no time, but the mean over an interval is finite. The first sample has no mean and does
+    not count.
+    """
 
     def __init__(self, settings: Correlations, dimension: int) -> None:
         shear = dimension * (dimension + 1) // 2 - 1
@@ -230,11 +355,17 @@ class StressCorrelator(_Correlator):
 
     @property
     def next(self) -> int:
-        """The number of the next sample, in intervals from time 0."""
+        """Number of the next sample, in intervals from time 0."""
         return super().next + self._begun
 
     def add(self, simulation: Simulation) -> None:
-        """The next sample, of a simulation that tallies the stress."""
+        """Add the next sample, of a simulation that tallies the stress.
+
+        Parameters
+        ----------
+        simulation : Simulation
+            The simulation at the time of the sample.
+        """
         from gaspart.kernels.correlation import add_flux_products, flux_components
 
         integrals = np.empty_like(self._latest)
@@ -249,14 +380,14 @@ class StressCorrelator(_Correlator):
         self._latest, self._begun = integrals, True
 
     def sums(self) -> dict[str, np.ndarray | float]:
-        """The sums of `stress_sums` so far, (lags + 1,) each, and the number of samples."""
+        """Return the sums of `stress_sums` so far, (lags + 1,) each, and the number of samples."""
         groups, kinds = list(STRESS), list(CORRELATED)
         parts = ((name, *name.split("_")[:2]) for name in stress_sums())
         named = {name: self._sums[groups.index(group), kinds.index(kind)] for name, group, kind in parts}
         return {"correlated_samples": float(self._samples), **named}
 
     def checkpoint(self) -> dict[str, Any]:
-        """Arrays from which `restore` continues to the same bits."""
+        """Return arrays from which `restore` continues to the same bits."""
         begun = {_PREFIX + "latest": self._latest, _PREFIX + "begun": np.array(self._begun)}
         return {**super().checkpoint(), **begun}
 
@@ -269,8 +400,27 @@ class StressCorrelator(_Correlator):
 def correlator_for(
     settings: Correlations, simulation: Simulation, displacements: bool
 ) -> Correlator | StressCorrelator:
-    """The correlator of a run with these settings; displacements: whether positions are correlated too.
-    Raises SceneError if no particle moves."""
+    """Return the correlator of a run with these settings.
+
+    Parameters
+    ----------
+    settings : Correlations
+        The correlations.
+    simulation : Simulation
+        The simulation.
+    displacements : bool
+        True if positions are correlated too.
+
+    Returns
+    -------
+    Correlator or StressCorrelator
+        The correlator.
+
+    Raises
+    ------
+    SceneError
+        If no particle moves.
+    """
     if settings.stress:
         return StressCorrelator(settings, simulation.scene.dimension)
     return Correlator(settings, simulation.scene, simulation.initial_state.masses, displacements)

@@ -1,4 +1,4 @@
-"""Frames of a trajectory in the formats of other programs: GSD (HOOMD), extended XYZ and LAMMPS data.
+"""Export of frames to the formats of other programs: GSD (HOOMD), extended XYZ and LAMMPS data.
 
 Positions and velocities are those of the trajectory's frames, in single precision: particles that touched may
 overlap by 1e-7 of a diameter. Walls, faces and gravity are not part of these formats.
@@ -62,8 +62,25 @@ _SYMBOLS = (
 
 @dataclass(frozen=True)
 class Snapshot:
-    """One frame: positions and velocities (N, 3), numbers, diameters, masses and types (N,), lengths and
-    origin (3,) of the container, periodic (3,), time and number of the frame."""
+    """A frame of a trajectory, with N particles.
+
+    Attributes
+    ----------
+    positions, velocities : ndarray, shape (N, 3)
+        Positions and velocities.
+    numbers, diameters, masses, types : ndarray, shape (N,)
+        Numbers, diameters, masses and types of the particles.
+    lengths, origin : ndarray, shape (3,)
+        Side lengths and origin of the container.
+    periodic : tuple of bool, shape (3,)
+        Periodicity of the axes.
+    time : float
+        Time of the frame.
+    frame : int
+        Number of the frame.
+    dimension : int
+        Number of dimensions.
+    """
 
     positions: np.ndarray
     velocities: np.ndarray
@@ -80,12 +97,38 @@ class Snapshot:
 
 
 def export(trajectory: str | Path, path: str | Path, frame: int | str = -1, overwrite: bool = False) -> Path:
-    """Write a frame of a trajectory as .gsd, .xyz or LAMMPS .data; returns the path.
+    """Write a frame of a trajectory as a GSD, XYZ or LAMMPS data file.
 
-    frame: counted from 0, or from the end if negative; "all" writes all into .gsd or .xyz, where each has its
-    own number of particles and container. A file of the same kind at `path` is replaced only with
-    `overwrite`, any other never. Raises SceneError for another suffix, a missing frame, and a file that
-    cannot be read or written.
+    Parameters
+    ----------
+    trajectory : str or Path
+        The trajectory.
+    path : str or Path
+        The file to write, with the suffix .gsd, .xyz or .data.
+    frame : int or "all", default -1
+        Number of the frame, counted from 0, or from the end if negative. "all" writes all frames into .gsd or
+        .xyz, where each frame has its own number of particles and container.
+    overwrite : bool, default False
+        Replace a file of the same kind at `path`. Files of other kinds are never replaced.
+
+    Returns
+    -------
+    Path
+        `path`.
+
+    Raises
+    ------
+    SceneError
+        If the suffix is another one, the frame does not exist, or a file cannot be read or written.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> path = gp.run(scene, seed=1, duration=2.0, sample_interval=0.1, path="gas.nc")
+    >>> exported = gp.export(path, "gas.xyz", frame="all")
+    >>> len(exported.read_text().splitlines())  # 21 frames of 2 + 20 lines
+    462
     """
     path = output_path(path)
     if path.suffix not in EXPORT_FORMATS:
@@ -100,7 +143,7 @@ def export(trajectory: str | Path, path: str | Path, frame: int | str = -1, over
 
 
 def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
-    """One frame, or all, read one after the other. What cannot be exported is refused at once."""
+    """Return one frame, or all, read one after the other; frames that cannot be exported raise at once."""
     recipe = read_recipe(path)
     recipe.require_all(path)
     with opened(path) as file:
@@ -117,6 +160,7 @@ def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
 
 
 def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
+    """Yield the frames of a trajectory with these numbers."""
     scene = read_recipe(path).scene
     with opened(path) as file:
         diameters, types = 2.0 * np.asarray(file["radius"][:]), np.asarray(file["type"][:])
@@ -142,7 +186,7 @@ def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
 
 
 def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Frames of HOOMD's schema; `log/time` has the time, and the step is the number of the frame."""
+    """Write frames of HOOMD's schema; `log/time` has the time, and the step is the number of the frame."""
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with path.open("rb") as scratch, hoomd.open(descriptor_path(scratch), "w") as file:
         for snapshot in snapshots:
@@ -150,7 +194,7 @@ def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
-    """A frame with the origin in the middle of the box, discs in a box without thickness."""
+    """Fill a frame with its origin in the middle of the box; the box of discs has no thickness."""
     sides = np.where([False, False, snapshot.dimension == 2], 0.0, snapshot.lengths)
     frame.configuration.dimensions = snapshot.dimension
     frame.configuration.step = snapshot.frame
@@ -168,7 +212,10 @@ def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
 
 
 def _shapes(snapshot: Snapshot) -> list[dict]:
-    """The sphere of each type, {} if its particles differ: a file without any size means a diameter of 1."""
+    """Return the sphere of each type, {} if its particles differ.
+
+    A file without any size means a diameter of 1.
+    """
     shapes: list[dict] = []
     for n in range(int(snapshot.types.max(initial=0)) + 1):
         sizes = np.unique(snapshot.diameters[snapshot.types == n]).tolist()
@@ -177,7 +224,7 @@ def _shapes(snapshot: Snapshot) -> list[dict]:
 
 
 def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Extended XYZ, with the container's boundary, and the ids of particles."""
+    """Write extended XYZ, with the container's boundary, and the ids of particles."""
     columns = "species:S:1:pos:R:3:velo:R:3:radius:R:1:masses:R:1:id:I:1"
     with path.open("w", encoding="ascii") as file:
         for one in snapshots:
@@ -193,7 +240,10 @@ def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """LAMMPS data of atom_style sphere: its density is that of a ball of the particle's mass and diameter."""
+    """Write LAMMPS data of atom_style sphere.
+
+    The density is that of a ball of the particle's mass and diameter.
+    """
     (snapshot,) = snapshots
     count = len(snapshot.positions)
     density = snapshot.masses / (math.pi / 6.0 * snapshot.diameters**3)

@@ -1,4 +1,4 @@
-"""The state at the end of a trajectory: the exact one of a kept checkpoint, or that of the last frame."""
+"""State at the end of a trajectory: the exact one of a kept checkpoint, or the last frame."""
 
 from __future__ import annotations
 
@@ -24,13 +24,38 @@ if TYPE_CHECKING:
 
 
 def last_state(path: str | Path) -> State:
-    """The state of all particles at the end of a trajectory, to look at or to start another run from.
+    """Return the state of all particles at the end of a trajectory.
 
-    It is exact if the run had `keep_checkpoint`; otherwise positions, velocities and spins are those of the
-    last frame, in single precision; the motion of a piston and the displacement of sheared images are exact.
-    Raises SceneError for a file that `open_trajectory` refuses, for a kept checkpoint that is damaged or of
-    another run, and, of a last frame, one that lacks particles (`follow`), holds only a part of what they are
-    (`keep`), or does not hold the state: of a scene with sticky faces.
+    Parameters
+    ----------
+    path : str or Path
+        The trajectory.
+
+    Returns
+    -------
+    State
+        The state, to look at or to start another run from.
+
+    Raises
+    ------
+    SceneError
+        If `open_trajectory` rejects the file, or a kept checkpoint is damaged or of another run. Without a
+        checkpoint: if the last frame lacks particles (`follow`), has only a part of their properties
+        (`keep`), or does not determine the state (a scene with sticky faces).
+
+    Notes
+    -----
+    The state is exact if the run had `keep_checkpoint`. Otherwise positions, velocities and spins are those
+    of the last frame, in single precision; the motion of a piston and the displacement of sheared images are
+    exact.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> path = gp.run(scene, seed=1, duration=2.0, sample_interval=0.1, path="gas.nc")
+    >>> gp.last_state(path).time
+    2.0
     """
     path = run_path(path)
     recipe = read_recipe(path)
@@ -52,7 +77,7 @@ def last_state(path: str | Path) -> State:
 
 
 def _of_frame(recipe: Recipe, frame: xr.Dataset) -> State:
-    """The state of a frame that has all particles."""
+    """Return the state of a frame that has all particles."""
     scene, time = recipe.scene, float(frame["time"])
     places, velocities = (frame[name].values.astype(float) for name in ("coordinates", "velocities"))
     spins, vibrations = (

@@ -1,4 +1,4 @@
-"""Trajectories as datasets: dimensions, coordinates and units, read as they are used."""
+"""Trajectories as datasets with dimensions, coordinates and units, read on demand."""
 
 from __future__ import annotations
 
@@ -42,22 +42,49 @@ _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "uni
 
 
 def open_trajectory(path: str | Path) -> xr.Dataset:
-    """A trajectory, or the finished part of a `.partial` one, as an xarray.Dataset, read as it is used.
+    """Open a trajectory, or the finished part of a `.partial` one, as an xarray.Dataset.
 
-    Dimensions frame, atom, spatial (d) and face (2d); time (frame), radius, mass and type (atom) are
-    coordinates, and plots over frames have the time as their axis. A run with correlations has the dimension
-    lag.
-    Of discs that spin, `spins` is (frame, atom); of spheres (frame, atom, spatial).
-    Lengths and times are in the scene's units, counters cumulative since time 0. Attributes state the scene
-    (YAML), engine and seed (JSON), and what follows from the scene: dimension and, unless faces are open,
-    count, packing_fraction, number_density; given_start: 1 if the run starts from a given state. Where they
-    are, atoms are numbers of particles, and coordinates and velocities of a number that no particle has in a
-    frame are NaN. Close it, or use it in a `with` statement.
+    Values are read as they are used. Close the Dataset, or use it in a `with` statement.
 
-    Raises SceneError for a file that is unreadable, truncated, damaged in its header, or not written by
-    gaspart; and, when values of a frame are read for the first time, if that frame is damaged: its checksum
-    covers all of its variables, so that the frame is read as a whole. Opening a file reads no frames but
-    their times.
+    Parameters
+    ----------
+    path : str or Path
+        The trajectory.
+
+    Returns
+    -------
+    Dataset
+        Dimensions frame, atom, spatial (d) and face (2d), and lag for a run with correlations. Coordinates:
+        time (frame), radius, mass and type (atom); plots over frames have the time as their axis. Lengths and
+        times are in the scene's units, counters are cumulative since time 0. Spins of discs are (frame,
+        atom), of spheres (frame, atom, spatial).
+
+    Raises
+    ------
+    SceneError
+        If the file is unreadable, truncated, damaged in its header, or not written by gaspart. When values of
+        a frame are read for the first time: if that frame is damaged.
+
+    Notes
+    -----
+    Attributes state the scene (YAML), engine and seed (JSON), and what follows from the scene: dimension and,
+    unless faces are open, count, packing_fraction and number_density. The attribute given_start is 1 if the
+    run starts from a given state.
+
+    With open faces the atoms are numbers of particles. Coordinates and velocities of a number that no
+    particle has in a frame are NaN.
+
+    The checksum of a frame covers all of its variables, so that a frame is read as a whole. Opening a file
+    reads only the times of its frames.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> path = gp.run(scene, seed=1, duration=2.0, sample_interval=0.1, path="gas.nc")
+    >>> with gp.open_trajectory(path) as trajectory:
+    ...     trajectory["coordinates"].sizes["atom"], trajectory.attrs["count"]
+    (20, 20)
     """
     import xarray as xr
 
@@ -114,7 +141,7 @@ def _following(recipe: Recipe) -> dict[str, float]:
 
 
 def _with_piston(data: xr.Dataset) -> xr.Dataset:
-    """The motion of a piston as two variables with units."""
+    """Return a dataset with the motion of a piston as two variables with units."""
     place, velocity = (data["piston"].isel(motion=n, drop=True) for n in (0, 1))
     place.attrs, velocity.attrs = (
         {"units": unit, "long_name": f"{name} of the piston along its axis"}

@@ -1,9 +1,9 @@
-"""The replicas of one run: their seeds, their files, and those of the others beside one of them.
+"""Replicas of a run: their seeds and their files.
 
 Replica k of `run.nc` has the seed of the run with k behind it, and the file `run-k.nc`. Replicas that end
-when they are accurate do so together, at an examination of all. Each reads the files of the others, of which
-the frames that it examines do not change any more: so what it decides depends neither on the order in which
-they come so far nor on kills.
+when they are accurate end together, at a test of all. Each replica reads the files of the others. The frames
+that it examines do not change any more, so that its decision depends neither on the order in which the
+replicas advance nor on kills.
 """
 
 from __future__ import annotations
@@ -31,8 +31,26 @@ if TYPE_CHECKING:
 
 
 def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
-    """The recipes of so many replicas of a run; of 1, the recipe itself. Raises SceneError for another number
-    and for replicas that would be one run, bit for bit: from one state, if nothing is drawn after that."""
+    """Return the recipes of the replicas of a run; of 1 replica, the recipe itself.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        Recipe of the run.
+    replicas : int
+        Number of replicas.
+
+    Returns
+    -------
+    list of Recipe
+        The recipes.
+
+    Raises
+    ------
+    SceneError
+        If the number is invalid, or the replicas would be one run, bit for bit: from one state, if nothing is
+        drawn after that.
+    """
     if count_of("replicas", replicas, least=1, most=MOST_REPLICAS) == 1:
         return [recipe]
     if not differ(recipe.scene, recipe.engine, recipe.initial is not None):
@@ -55,7 +73,18 @@ def _seed(recipe: Recipe, number: int) -> tuple[int, ...]:
 
 
 def of_all(recipe: Recipe) -> tuple[Recipe, int]:
-    """The recipe of the run of which one of a replica is, and how many replicas it has."""
+    """Return the recipe of the whole run of a replica, and the number of its replicas.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        Recipe of a replica, or of a run without replicas.
+
+    Returns
+    -------
+    tuple of Recipe and int
+        The recipe and the number.
+    """
     if recipe.replica is None:
         return recipe, 1
     assert isinstance(recipe.seed, tuple)  # by `Recipe`
@@ -64,8 +93,26 @@ def of_all(recipe: Recipe) -> tuple[Recipe, int]:
 
 
 def replica_paths(path: str | Path, replicas: int) -> list[Path]:
-    """The files of a run at `path`: that itself, or of several replicas `run-1.nc`, `run-2.nc` ... of
-    `run.nc`."""
+    """Return the files of a run at a path, one for each replica.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the run.
+    replicas : int
+        Number of replicas.
+
+    Returns
+    -------
+    list of Path
+        The path itself, or of several replicas ``run-1.nc``, ``run-2.nc`` ... of ``run.nc``.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> [str(path) for path in gp.replica_paths("run.nc", 2)]
+    ['run-1.nc', 'run-2.nc']
+    """
     path = Path(path)
     if replicas == 1:
         return [path]
@@ -73,7 +120,20 @@ def replica_paths(path: str | Path, replicas: int) -> list[Path]:
 
 
 def path_of_all(path: Path, recipe: Recipe) -> Path:
-    """The path of the run of which a file, finished or not, is or has a replica."""
+    """Return the path of the run that a file is or has a replica of.
+
+    Parameters
+    ----------
+    path : Path
+        Trajectory, finished or not.
+    recipe : Recipe
+        Its recipe.
+
+    Returns
+    -------
+    Path
+        The path, common to all replicas.
+    """
     path = path.with_name(path.name.removesuffix(PARTIAL))
     if recipe.replica is None:
         return path
@@ -81,7 +141,20 @@ def path_of_all(path: Path, recipe: Recipe) -> Path:
 
 
 def beside(path: Path, recipe: Recipe) -> list[tuple[Path, Recipe]]:
-    """The paths, finished, and the recipes of all replicas of the run of which one is at `path`."""
+    """Return the paths, finished, and the recipes of all replicas of a run.
+
+    Parameters
+    ----------
+    path : Path
+        File of one of the replicas.
+    recipe : Recipe
+        Its recipe.
+
+    Returns
+    -------
+    list of tuple of Path and Recipe
+        Paths and recipes.
+    """
     whole, replicas = of_all(recipe)
     if replicas == 1:
         return [(path, recipe)]
@@ -90,8 +163,25 @@ def beside(path: Path, recipe: Recipe) -> list[tuple[Path, Recipe]]:
 
 
 def found(path: str | Path) -> tuple[Path, Recipe]:
-    """A file of the run at a path, finished or not, and its recipe: that at the path itself, or of several
-    replicas the first. Raises SceneError as `read_recipe`."""
+    """Return a file of the run at a path, finished or not, and its recipe.
+
+    It is the file at the path itself, or, of several replicas, the first.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the run.
+
+    Returns
+    -------
+    tuple of Path and Recipe
+        The file and its recipe.
+
+    Raises
+    ------
+    SceneError
+        As `read_recipe`.
+    """
     path = Path(path)
     first = replica_paths(path, 2)[0] if path.name else path
     place = next((one for one in (path, partial_path(path), *_places(first)) if one.exists()), path)
@@ -99,8 +189,23 @@ def found(path: str | Path) -> tuple[Path, Recipe]:
 
 
 def files_of(path: str | Path) -> list[Path]:
-    """The files of the run at a path, each finished or not: one, or those of all replicas, of which `path` is
-    one or the path of all. Raises SceneError if one is missing or of another run, and as `read_recipe`."""
+    """Return the files of the run at a path, each finished or not.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the run, or of one of its replicas.
+
+    Returns
+    -------
+    list of Path
+        One file, or the files of all replicas.
+
+    Raises
+    ------
+    SceneError
+        If a file is missing or of another run, and as `read_recipe`.
+    """
     first, recipe = found(path)
     if recipe.replica is None:
         return [first]
@@ -115,13 +220,26 @@ def files_of(path: str | Path) -> list[Path]:
 
 
 def _places(path: Path) -> tuple[Path, Path]:
-    """Where a trajectory may be: finished, or not."""
+    """Return the possible paths of a trajectory: finished, and unfinished."""
     return path, partial_path(path)
 
 
 def reached(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Path] | None:
-    """Where all replicas of a run, as of `beside`, are that have so many frames, finished or not; None if one
-    has fewer, or is not begun as its recipe states. A single run is at its path."""
+    """Return the files of all replicas of a run with this number of frames, finished or not.
+
+    Parameters
+    ----------
+    files : sequence of tuple of Path and Recipe
+        Paths and recipes of the replicas, as of `beside`.
+    frames : int
+        Required number of frames.
+
+    Returns
+    -------
+    list of Path or None
+        The files; None if a replica has fewer frames, or was not begun with its recipe. A single run is at
+        its path.
+    """
     if len(files) == 1:
         return [files[0][0]]
     places = [_with_frames(path, recipe, frames) for path, recipe in files]
@@ -129,6 +247,7 @@ def reached(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Path] | N
 
 
 def _with_frames(path: Path, recipe: Recipe, frames: int) -> Path | None:
+    """Return the file of a replica that has this number of frames; None without one."""
     for place in _places(path):
         with suppress(SceneError, OSError, struct.error):  # not there yet, or empty
             with open_regular(place) as file:
@@ -140,6 +259,22 @@ def _with_frames(path: Path, recipe: Recipe, frames: int) -> Path | None:
 
 @contextmanager
 def opened_together(places: Sequence[Path]) -> Iterator[list[xr.Dataset]]:
-    """Several trajectories, open. Raises SceneError as `open_trajectory`."""
+    """Open several trajectories.
+
+    Parameters
+    ----------
+    places : sequence of Path
+        The files.
+
+    Yields
+    ------
+    list of Dataset
+        The open trajectories.
+
+    Raises
+    ------
+    SceneError
+        As `open_trajectory`.
+    """
     with ExitStack() as stack:
         yield [stack.enter_context(open_trajectory(place)) for place in places]
