@@ -383,3 +383,18 @@ def test_memory_is_known_before_a_file_is_read(tmp_path, right, monkeypatch):
         with pytest.raises(gp.SceneError, match="GB of memory for all frames"):
             read_frames(path, radius=RADIUS)
         monkeypatch.undo()
+
+
+def test_ovito_leaves_out_a_corner_at_zero(tmp_path):
+    """As of a container whose lower side is a piston, at 0 in the first frame."""
+    path, text = tmp_path / "piston.xyz", ""
+    for low in (0.0, 0.25):
+        corner = f'Origin="{low} 0.0 0.0" ' if low else ""
+        text += (
+            f'1\nLattice="{8.0 - low} 0 0 0 8 0 0 0 8" {corner}pbc="F T T" Properties=species:S:1:pos:R:3\n'
+        )
+        text += "A 7.3 1.0 1.0\n"
+    path.write_text(text)
+    frames = read_frames(path, radius=0.5)
+    assert frames.at(1).lengths[0] == 7.75
+    assert [float(frames.at(n).positions[0, 0, 0]) for n in (0, 1)] == pytest.approx([7.3, 7.05])

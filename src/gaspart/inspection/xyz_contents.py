@@ -47,6 +47,7 @@ def read_xyz(path: Path, given: Given) -> Contents:
     if not parts:
         raise SceneError("file", str(path), "cannot be read: it has no frame")
     reason = None if given.last else _drop_velocities([part for _, part in parts])
+    _add_origins([part for _, part in parts])
     first = parts[0][1]
     for n, part in parts:
         _require_same_fields(n, part, first, path)
@@ -82,6 +83,14 @@ def _drop_velocities(parts: list[dict]) -> str | None:
                 part.pop(name, None)
             return f"velocities are stored in {stored} of {len(parts)} frames only"
     return None
+
+
+def _add_origins(parts: list[dict]) -> None:
+    """Set the corner of a container to 0 where only other frames state it: OVITO leaves out one of 0."""
+    stated = [part["origin"] for part in parts if "origin" in part]
+    if stated:
+        for part in parts:
+            part.setdefault("origin", np.zeros_like(stated[0]))
 
 
 def _require_same_fields(n: int, part: dict, first: dict, path: Path) -> None:
