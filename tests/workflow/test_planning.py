@@ -133,7 +133,7 @@ def test_editing_modules_reruns_what_uses_them(smoke, paths, expected):
     files = [smoke.path / path for path in paths]
     before = [file.read_text() for file in files]
     for file, text in zip(files, before, strict=True):
-        file.write_text(text + "\n# edited\n")
+        file.write_text(text + ("\n_EDITED = 1\n" if file.suffix == ".py" else "\nedited\n"))
     try:
         assert set(smoke.plan(*SMOKE)) == expected
     finally:
@@ -141,8 +141,17 @@ def test_editing_modules_reruns_what_uses_them(smoke, paths, expected):
             file.write_text(text)
 
 
+def test_editing_a_docstring_or_a_comment_reruns_nothing(smoke):
+    undo = smoke.edit("src/gaspart/kernels/physics/contact.py", '"""', '# edited\n"""Edited. ')
+    try:
+        assert not set(smoke.plan(*SMOKE))
+    finally:
+        undo()
+
+
 def test_editing_the_physics_of_a_contact_simulates_everything_again(smoke):
-    undo = smoke.edit("src/gaspart/kernels/physics/contact.py", '"""', '"""Edited. ')
+    line = "from math import inf, sqrt\n"
+    undo = smoke.edit("src/gaspart/kernels/physics/contact.py", line, f"{line}\n_EDITED = 1\n")
     try:
         plan = smoke.plan(*SMOKE)
     finally:
