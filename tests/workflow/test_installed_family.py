@@ -56,7 +56,7 @@ def test_its_data_state_the_package(made):
 
 def test_a_change_of_the_package_runs_its_figure_again(made):
     copy, within = made
-    (copy.path / "site/speed_moments/figure.py").open("a").write("# changed\n")
+    (copy.path / "site/speed_moments/figure.py").open("a").write("_CHANGED = 1\n")
     result = copy.snakemake("--dry-run", "--cores", "2", "claims", within=within)
     rows = re.findall(r"^(measure|judge|simulate) +(\d+)$", result.stdout, re.MULTILINE)
     assert dict(rows) == {"measure": "1", "judge": "1"}
