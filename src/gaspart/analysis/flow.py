@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from gaspart.analysis.run import Run
 
 ABOUT = FLOW, REST = "flow", "rest"
-"""What motion may be about."""
+"""Frames of reference of motion: the local flow, or rest."""
 _SAMPLES = 500  # particles in frames, in each cell, from which a steady flow is known well enough
 _CELLS = 20  # along an axis, by default
 _CROWD = 8  # particles in a cell whose flow changes, by default

@@ -1,4 +1,4 @@
-"""What other programs take the file of a scene for: the line that `info` and `export` print.
+"""Conventions of other programs for the file of a scene: the line that `info` and `export` print.
 
 Each statement is one of docs/tools.md or docs/conventions.md, which the referees repeat.
 """

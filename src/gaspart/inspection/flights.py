@@ -48,7 +48,7 @@ def flights(frames: Frames) -> Flights:
 
 
 def resolution(values: np.ndarray) -> float:
-    """By how much numbers may be off that a file has in single precision, or with a few decimals."""
+    """Return the rounding error of numbers in single precision, or with a few decimals."""
     if np.array_equal(values, values.astype(np.float32)):
         return _SINGLE * float(np.abs(values).max(initial=0.0))
     sample = values.reshape(-1)[:1000]

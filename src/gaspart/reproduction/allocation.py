@@ -188,7 +188,7 @@ def _page(
     demanded: Sequence[Demand],
     prices: Sequence[float],
 ) -> str:
-    """Return a table of all points, the dearest first, and one of the claims that cost most."""
+    """Return a table of all points, the most expensive first, and one of the claims that cost most."""
     rows = ["| point | s in the run | multiple | claim that needs it most |", "| --- | --- | --- | --- |"]
     for point in sorted(multiples, key=lambda name: -cost[name]):
         neediest = max(demanded, key=lambda one: one.parts.get(point, 0.0) / one.most, default=None)

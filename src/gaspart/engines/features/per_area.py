@@ -1,4 +1,4 @@
-"""What faces are given per area that centres can reach, where particles of several sizes reach other areas.
+"""Momentum and heat given to faces per area that centres can reach, for particles of several sizes.
 
 Areas are those of the container at the start, with faces and walls that move where they then are.
 """

@@ -78,7 +78,7 @@ class KernelLocator(caching.UserProvidedCacheLocator):
         return None if self.digested else super().get_source_stamp()
 
     def get_disambiguator(self) -> str:
-        """Return what tells functions of one name in a file apart: there are none in `kernels`."""
+        """Return the suffix that separates functions of one name in a file; `kernels` need none."""
         return "" if self.digested else super().get_disambiguator()
 
 

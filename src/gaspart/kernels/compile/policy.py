@@ -78,7 +78,7 @@ def _compile(function: F, part: bool = False, **options: Any) -> F:
 
 
 def _use_own_files(compiled: Any) -> None:
-    """Let numba keep a function in files of its own. Raises RuntimeError if it finds no folder for them."""
+    """Enable numba's own cache of a function. Raises RuntimeError if it finds no folder."""
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(_CACHE)
     try:

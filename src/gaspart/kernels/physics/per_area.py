@@ -1,4 +1,4 @@
-"""What particles of several sizes give to faces, per area that their centres can reach there.
+"""Momentum and heat that particles of several sizes give to faces, per area that their centres can reach.
 
 Particles of one size need no sums of their own: their area is one number.
 """

@@ -13,7 +13,7 @@ from typing import Any
 from gaspart.reproduction.points.point_keys import LENGTHS
 
 _LEAST_REPLICAS = 6
-"""Number of replicas below which their scatter no longer tells the uncertainty."""
+"""Number of replicas below which their scatter is no measure of the uncertainty."""
 _LEAST_SAMPLES = 32
 """Number of samples below which runs have no fewer: blocks are made of them."""
 _LEAST_TIMINGS = 3
