@@ -114,7 +114,8 @@ def play(folder, process, generator):
     outcome = list(zip(codes, printed, writers, strict=True))
     assert set(codes) <= {0, 2} and 0 in codes, outcome
     for code, text, _ in outcome:
-        assert (text == "") if code == 0 else (text.count("\n") == 1 and "gaspart: error" in text), outcome
+        line = "gaspart: error" if code else "gaspart: in other programs: "
+        assert text.count("\n") == text.count(line) == 1 or (text == "" and code == 0), outcome
     path = folder / output
     assert path.read_bytes() in alone, outcome
     left = {path.name for path in folder.iterdir()} - before

@@ -16,6 +16,8 @@ ALIKE = 2e-5
 """Relative difference of variables, some of which are in single precision, after `FEW` intervals."""
 COSTS = {"pair_tests", "box_visits", "crossings", "rebuilds", "worst_contact", "deepest_overlap"}
 """What depends on how particles are found."""
+CELL = {"cell_lengths", "cell_origin"}
+"""The container of the moment: it follows from the scene and from `piston`, which is compared."""
 DRAWN = ("thermal", "thermal_walls", "sliding", "thermostat")
 """Features that draw random numbers, for each particle and face by their numbers."""
 
@@ -102,7 +104,7 @@ def _compared(symmetry, engine, name, start, other, change, limit=ALIKE, left_ou
         expected, found = change(start.record(form, FEW)), other.record(form, FEW)
         assert set(expected.variables) == set(found.variables)
         lengths = np.array(other.scene.container.lengths)
-        for key in sorted(set(expected.data_vars) - set(left_out) - {"cell_lengths"}):
+        for key in sorted(set(expected.data_vars) - set(left_out) - CELL):
             old, new = (_without_constant(one, other) if key == "momentum_flux_sum" else one[key]
                         for one in (expected, found))  # fmt: skip
             apart = _apart(old.values, new, _size(key, found), lengths)

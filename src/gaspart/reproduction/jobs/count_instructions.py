@@ -27,9 +27,10 @@ if TYPE_CHECKING:
 RESULT = "the machine code of both engines for the scene, with and without the source of absent features"
 KEYS: dict[str, Kind] = {}
 FEATURES = {
-    "accommodation", "collapse", "duration", "faces", "gravity", "impulses", "law", "masses", "motion",
-    "moving", "opened", "oversized", "pace", "pairs", "piston", "ramp", "record", "row", "rules", "shear",
-    "sliding", "sticky", "stress", "support", "velocity", "vibrations", "viscous", "walls", "warm",
+    "accommodation", "collapse", "duration", "faces", "fixed", "gravity", "impulses", "law",
+    "masses", "motion", "moving", "opened", "oversized", "pace", "pairs", "per_area", "piston",
+    "ramp", "record", "reservoirs", "row", "rules", "shear", "sliding", "sticky", "stress",
+    "support", "velocity", "vibrations", "viscous", "walls", "warm",
 }  # fmt: skip
 """Arguments of the kernels that are None for a plain gas."""
 COUNTED_ENGINES = ("event", "step")
