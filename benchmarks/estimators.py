@@ -30,8 +30,7 @@ from scipy import stats
 import gaspart as gp
 from gaspart.analysis.bond_order import radial_distribution
 from gaspart.analysis.impulses import mixture, numbers_by_impulses
-from gaspart.analysis.pair_impulses import g_by_impulses
-from gaspart.analysis.pairs import STRETCHES
+from gaspart.analysis.pairs import STRETCHES, g_by_impulses
 from gaspart.analysis.run import Run, open_run
 from gaspart.engines import Engine
 from gaspart.state.optional_tallies import ImpulseTally

@@ -11,7 +11,7 @@ import gaspart as gp
 from gaspart.state.initial import initial_state
 
 START = """
-from gaspart.kernels.compile.loading import load_numba
+from gaspart.kernels.compile.cache import load_numba
 load_numba(ours=True)
 import gaspart as gp
 scene = gp.Scene(gp.Container((20.0, 20.0)), [gp.Species(10, 0.5, speed=1.0)])

@@ -7,7 +7,7 @@ import platform
 import sys
 from pathlib import Path
 
-from gaspart.reproduction.budget import budgets
+from gaspart.reproduction.cost import budgets
 
 PAGE = Path(__file__).parent / "at-scale.md"
 HEADING, NEXT = "## The cost of each figure\n", "## In another workflow\n"

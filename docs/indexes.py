@@ -13,8 +13,7 @@ import thumbnails
 from sphinx.pycode import ModuleAnalyzer
 
 from gaspart.cli import lines
-from gaspart.reproduction.claims.captions import filled
-from gaspart.reproduction.claims.table import read
+from gaspart.reproduction.claims.table import filled, read
 from gaspart.reproduction.families.registry import chapter, families
 from gaspart.reproduction.report.page import CHAPTERS
 from gaspart.yaml_text import read_yaml

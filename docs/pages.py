@@ -22,7 +22,7 @@ from gaspart.cli import commands
 from gaspart.cli.arguments import WIDTH
 from gaspart.cli.new import templates
 from gaspart.public import stated
-from gaspart.reproduction.claims.captions import filled
+from gaspart.reproduction.claims.table import filled
 from gaspart.reproduction.families.registry import families, titles
 
 ROOT = Path(__file__).parents[1]

@@ -11,8 +11,8 @@ from pathlib import Path
 from PIL import Image, ImageSequence
 
 import gaspart as gp
-from gaspart.cli.films import colour_of, run_template
 from gaspart.cli.new import templates
+from gaspart.cli.view import colour_of, run_template
 
 WIDTH, HEIGHT = 640, 480  # pixels
 PALETTE = 128  # colours of a PNG file

@@ -23,7 +23,7 @@ from pathlib import Path
 import numba
 
 from gaspart.cli.new import Template, templates
-from gaspart.kernels.compile.shipped import FEATURES, FOLDER, LIST, PROCESSOR
+from gaspart.kernels.compile.cache import FEATURES, FOLDER, LIST, PROCESSOR
 
 PROJECT = Path(__file__).parents[1]
 PYTHON = f"cp{sys.version_info.major}{sys.version_info.minor}"

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from scenes import gas
 
-from gaspart.kernels.compile.loading import load_numba
+from gaspart.kernels.compile.cache import load_numba
 
 KINDS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 EXPECTED = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGKILL: -9}

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from numba.core.event import install_timer
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.points.config_keys import POINT
+from gaspart.reproduction.points.points import POINT
 from gaspart.yaml_text import dump_yaml
 
 ROOT = Path(__file__).parents[1]
@@ -171,7 +171,7 @@ def mutated_texts(draw):
 @cache
 def configs():
     """The smoke config's experiments, one of each kind, each as a config of its own with a figure."""
-    from gaspart.reproduction.config_files import merged_with_default
+    from gaspart.reproduction.config import merged_with_default
 
     whole, _ = merged_with_default(ROOT / "config/smoke.yaml")
     found = {}

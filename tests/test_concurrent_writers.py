@@ -10,7 +10,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.analysis.collisions import record_collisions
-from gaspart.trajectory.partial import TRAJECTORY
+from gaspart.trajectory.opening import TRAJECTORY
 from gaspart.trajectory.provenance import git_revision
 
 GAS = """\

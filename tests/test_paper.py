@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from gaspart.reproduction.claims.captions import filled, place_fault
+from gaspart.reproduction.claims.table import filled, place_fault
 from gaspart.reproduction.families.registry import families
 
 TEXT = (Path(__file__).parents[1] / "docs/paper.md").read_text(encoding="utf-8")

@@ -7,11 +7,10 @@ import gaspart as gp
 from gaspart.accuracy.reached import Examiner
 from gaspart.cli import main
 from gaspart.trajectory import run as trajectory
-from gaspart.trajectory.partial import partial_path
+from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.replicas import in_replicas, reached
-from gaspart.trajectory.run import WriteOptions
-from gaspart.trajectory.stage import examination
+from gaspart.trajectory.run import WriteOptions, examination
 from gaspart.trajectory.until import Until
 
 GAS = gas(3, 32, 0.2)

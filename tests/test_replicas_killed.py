@@ -11,8 +11,8 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.trajectory.frames import frame_count
-from gaspart.trajectory.partial import partial_path
+from gaspart.trajectory.amber import frame_count
+from gaspart.trajectory.opening import partial_path
 
 GASPART = [sys.executable, "-m", "gaspart"]
 RUN = ["run", "scene.yaml", "-o", "run.nc", "--replicas", "2", "--seed", "4", "--sample-interval", "0.5"]

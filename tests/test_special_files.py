@@ -14,7 +14,7 @@ import gaspart as gp
 from gaspart.cli import main
 from gaspart.errors import SceneError
 from gaspart.files import is_same_file, open_regular
-from gaspart.reproduction.archive.citation import read_citation
+from gaspart.reproduction.archive.metadata import read_citation
 from gaspart.reproduction.config import checked
 from gaspart.yaml_text import write_yaml
 

@@ -3,7 +3,7 @@ from gaspart import theory as theory
 from gaspart.accuracy.reached import reached_accuracy as reached_accuracy
 from gaspart.analysis.collisions import collision_data as collision_data
 from gaspart.analysis.collisions import contact_value as contact_value
-from gaspart.analysis.measuring import measure as measure
+from gaspart.analysis.measure import measure as measure
 from gaspart.engines import DSMC as DSMC
 from gaspart.engines import EventDriven as EventDriven
 from gaspart.engines import TimeStepped as TimeStepped
@@ -11,7 +11,7 @@ from gaspart.engines import engine_from_dict as engine_from_dict
 from gaspart.engines import engine_to_dict as engine_to_dict
 from gaspart.errors import SceneError as SceneError
 from gaspart.errors import SimulationError as SimulationError
-from gaspart.inspection.start import read_state as read_state
+from gaspart.inspection.readers import read_state as read_state
 from gaspart.rendering.films import film as film
 from gaspart.rendering.frames import render as render
 from gaspart.rendering.live import live as live
@@ -36,7 +36,7 @@ from gaspart.scene.thermostat import Thermostat as Thermostat
 from gaspart.scene.walls import Plate as Plate
 from gaspart.scene.walls import Wall as Wall
 from gaspart.simulation import Simulation as Simulation
-from gaspart.state.compression import compress as compress
+from gaspart.state.insertion import compress as compress
 from gaspart.state.state import State as State
 from gaspart.state.tally import Tally as Tally
 from gaspart.trajectory.correlator import Correlations as Correlations

@@ -7,11 +7,11 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.accuracy import table
+from gaspart.accuracy import cost_table as table
+from gaspart.accuracy.cost_table import EQUILIBRATION
 from gaspart.accuracy.option import WORTH
 from gaspart.accuracy.plan import plan, tabulated
-from gaspart.accuracy.table import EQUILIBRATION
-from gaspart.analysis.measuring import measure
+from gaspart.analysis.measure import measure
 from gaspart.cli.advise import _lines
 from gaspart.engines import DSMC
 from gaspart.errors import SceneError
@@ -140,7 +140,7 @@ def test_a_look_up_runs_and_compiles_nothing(monkeypatch):
         raise AssertionError("a simulation was made")
 
     monkeypatch.setattr("gaspart.simulation.Simulation.__init__", refuse)
-    monkeypatch.setattr("gaspart.kernels.compile.loading.load_numba", refuse)
+    monkeypatch.setattr("gaspart.kernels.compile.cache.load_numba", refuse)
     made = plan(gas(0.2), "D", 1e-2)
     assert any(line.startswith("command") for line in _lines(made, "gas.yaml"))
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gaspart.accuracy import fit, table
+from gaspart.accuracy import cost_table as fit
+from gaspart.accuracy import cost_table as table
 
 
 @pytest.fixture

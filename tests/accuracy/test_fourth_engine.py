@@ -6,14 +6,15 @@ from types import SimpleNamespace
 import pytest
 
 import gaspart as gp
-from gaspart.accuracy import pilot, plan, table
-from gaspart.accuracy.candidates import candidates
+from gaspart.accuracy import cost_table as table
+from gaspart.accuracy import pilot, plan
 from gaspart.accuracy.conditions import even_conditions
-from gaspart.accuracy.price import price_of
+from gaspart.accuracy.cost_table import price_of
+from gaspart.accuracy.option import candidates
 from gaspart.accuracy.target import Target
 from gaspart.cli.advise import _lines
 from gaspart.engines import ENGINES, EventDriven
-from gaspart.engines.asked import Candidate
+from gaspart.engines.engine import Candidate
 from gaspart.reproduction import cost
 
 GAS = gp.Scene(gp.Container((12.0,) * 3, "periodic"), [gp.Species(200, 0.5, temperature=1.0)])

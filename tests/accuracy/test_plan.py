@@ -9,21 +9,19 @@ import pytest
 import gaspart as gp
 from gaspart.accuracy import pilot, plan
 from gaspart.accuracy import target as target_module
-from gaspart.accuracy.candidates import candidates, suited
-from gaspart.accuracy.column import pulled
+from gaspart.accuracy.conditions import pulled
 from gaspart.accuracy.estimates import Component
-from gaspart.accuracy.option import Option
-from gaspart.accuracy.pilot import Pilot
-from gaspart.accuracy.scatter import start_scatter
+from gaspart.accuracy.option import Option, candidates, suited
+from gaspart.accuracy.pilot import Pilot, Trials, raised_bias
+from gaspart.accuracy.reached import start_scatter
 from gaspart.accuracy.tabulated import is_tabulated
 from gaspart.accuracy.target import Target
-from gaspart.accuracy.trials import Trials, raised_bias
-from gaspart.analysis.measuring import measure
+from gaspart.analysis.measure import measure
 from gaspart.cli import main
 from gaspart.cli.advise import _lines, _shortfall
 from gaspart.engines import EventDriven
-from gaspart.engines.asked import Candidate
 from gaspart.engines.dsmc.defaults import CELL_LOSS
+from gaspart.engines.engine import Candidate
 from gaspart.state import initial
 
 BOX = gp.Scene(gp.Container((12.0, 12.0)), [gp.Species(40, 0.5, temperature=1.0)])
@@ -361,7 +359,7 @@ def test_a_plain_gas_between_walls_has_one_pilot_or_two(monkeypatch):
         made.append(seconds)
         return whole(target, engine, seconds, *more)
 
-    monkeypatch.setattr("gaspart.accuracy.trials.run_pilot", counted)
+    monkeypatch.setattr("gaspart.accuracy.pilot.run_pilot", counted)
     plan.piloted(BOX, "pressure", 0.05, pilot_seconds=0.4)
     assert len(made) <= 2 and sum(made) <= 0.4
 

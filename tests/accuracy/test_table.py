@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from gaspart.accuracy import speed, table
+from gaspart.accuracy import cost_table as speed
+from gaspart.accuracy import cost_table as table
 from gaspart.analysis.observables import having
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.bins import Grid
+from gaspart.analysis.flow import Grid
 from gaspart.analysis.profiles import ratio
 from gaspart.analysis.run import open_run
 from gaspart.analysis.series import Blocks, over

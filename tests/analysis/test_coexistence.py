@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from gaspart.analysis.coexistence import plateau
+from gaspart.analysis.series import plateau
 
 VOLUME = np.linspace(1.0, 2.0, 15)
 

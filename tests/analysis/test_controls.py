@@ -6,7 +6,7 @@ import pytest
 import gaspart as gp
 from gaspart.accuracy.estimates import components
 from gaspart.accuracy.target import Target
-from gaspart.analysis.controls import controlled, group_count, wall_controls
+from gaspart.analysis.impulses import controlled, group_count, wall_controls
 from gaspart.analysis.run import open_run
 from gaspart.analysis.series import face_pressures
 from gaspart.runs.ending import Accuracy

@@ -6,7 +6,7 @@ from scenes import gas
 from scipy import stats
 
 import gaspart as gp
-from gaspart.analysis.free_flights import COMPLETE
+from gaspart.analysis.collisions import COMPLETE
 
 
 def recorded(scene, collisions, seed=1):

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.insertion import _covered, insertions
-from gaspart.analysis.waves import admitted, factors, shells_of
+from gaspart.analysis.structure_factors import admitted, factors, shells_of
 
 A = gp.analysis
 SCENES = {

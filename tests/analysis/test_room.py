@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.room import face_areas, sides, touched
+from gaspart.analysis.flow import face_areas, sides, touched
 from gaspart.analysis.run import open_run
 
 A = gp.analysis

@@ -8,8 +8,8 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.analysis.expected.walls import plates_of
-from gaspart.analysis.measuring import measure
+from gaspart.analysis.expected.flows import plates_of
+from gaspart.analysis.measure import measure
 from gaspart.analysis.run import open_run
 from gaspart.errors import SceneError
 from gaspart.theory.heat import INTERPOLATED

@@ -5,8 +5,8 @@ from pathlib import Path
 from PIL import Image
 
 from gaspart.cli import main
-from gaspart.cli.films import _BY_SPECIES
 from gaspart.cli.new import templates
+from gaspart.cli.view import _BY_SPECIES
 
 
 def test_a_film_of_a_scene_is_made_once_and_kept(tmp_path, monkeypatch, capsys):

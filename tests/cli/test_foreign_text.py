@@ -94,7 +94,7 @@ def forge(path, name):
     old = str(attributes.get(name, ""))
     attributes[name] = old + FAKE.replace("\0", "").encode("utf-8", "replace").decode()
     header = layout.header(attributes, particles)
-    from gaspart.trajectory.frames import Frames, frames_of
+    from gaspart.trajectory.amber import Frames, frames_of
     from gaspart.trajectory.opening import checked
 
     with checked(path) as (source, before, count):

@@ -7,7 +7,7 @@ import pytest
 import gaspart as gp
 from gaspart.accuracy.reached import AccuracyStatus
 from gaspart.cli import main, run
-from gaspart.trajectory.partial import partial_path
+from gaspart.trajectory.opening import partial_path
 
 GAS = """\
 container: {lengths: [5.0, 5.0, 5.0], boundary: periodic}

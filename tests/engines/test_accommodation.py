@@ -7,7 +7,7 @@ import pytest
 from referee import restored
 
 import gaspart as gp
-from gaspart.analysis.expected.walls import plates_of
+from gaspart.analysis.expected.flows import plates_of
 from gaspart.analysis.run import open_run
 
 A = gp.analysis

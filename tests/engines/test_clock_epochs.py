@@ -5,7 +5,7 @@ import pytest
 from referee import check_restored
 
 import gaspart as gp
-from gaspart.engines.event.clock_epochs import QUIET, Epochs
+from gaspart.engines.event.tally import QUIET, Epochs
 
 
 def alone(side, restitution=None, radius=0.5, velocity=(1.0, 0.3), boundary="wall"):

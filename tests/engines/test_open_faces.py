@@ -367,7 +367,7 @@ def test_attempts_to_enter_are_events():
 def test_numbers_beyond_the_first_block_are_found():
     """Of a thousand numbers those of the first 256 are taken, then the lowest that is vacant."""
     from gaspart.kernels.model import Open
-    from gaspart.kernels.obstacles.open_face import NUMBERS, lowest_vacant
+    from gaspart.kernels.obstacles.face import NUMBERS, lowest_vacant
 
     present = np.ones(1000, dtype=np.uint8)
     opened = Open(present, np.zeros(4, dtype=np.int64), np.zeros(4, dtype=np.int64))

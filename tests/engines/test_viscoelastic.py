@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from referee import check_restored, events_of, same_bits
 
 import gaspart as gp
-from gaspart.kernels.physics.viscoelastic import fifth_root, restitution_of
+from gaspart.kernels.physics.contact import fifth_root, restitution_of
 
 LAW = gp.Restitution(0.8, -0.5, reference_speed=2.0)
 ROOM = gp.Container((40.0, 40.0))

@@ -9,10 +9,9 @@ from scenes import gas
 import gaspart as gp
 from gaspart import theory
 from gaspart.inspection.checks import judge
-from gaspart.inspection.contact_value import contact_values
-from gaspart.inspection.diffusion import diffusion
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.readers import read_frames
+from gaspart.inspection.statistics import contact_values, diffusion
 
 RUNS = {"spheres": (3, 0.3), "discs": (2, 0.3), "dense": (3, 0.45)}
 

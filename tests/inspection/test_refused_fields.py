@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from inspection.foreign import RNG, ROWS, change, gas_of, gsd_with, refused, unfill, write_netcdf, xyz
 
-from gaspart.inspection.netcdf_size import needed_bytes
+from gaspart.inspection.netcdf_contents import needed_bytes
 from gaspart.inspection.readers import read_frames
 
 REFUSED = {

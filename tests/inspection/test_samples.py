@@ -9,7 +9,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.readers import read_frames
-from gaspart.inspection.samples import (
+from gaspart.inspection.statistics import (
     collided,
     decorrelated_frames,
     density_modulation,

@@ -9,8 +9,7 @@ from gaspart.cli import main
 from gaspart.rendering import films
 from gaspart.rendering.films import _pieces, film, poster
 from gaspart.rendering.frames import particles_of
-from gaspart.rendering.labels import Labels, round_length, time_format
-from gaspart.rendering.particles import legend_of
+from gaspart.rendering.particles import Labels, legend_of, round_length, time_format
 
 
 @pytest.fixture(scope="module")

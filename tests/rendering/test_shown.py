@@ -14,7 +14,7 @@ from PIL import Image
 from scenes import gas
 
 import gaspart as gp
-from gaspart.rendering import shown
+from gaspart.rendering import frames as shown
 from gaspart.scene import scene as scene_module
 
 BOX = gas(2, 30, 0.2, "wall")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.rendering.labels import Labels
+from gaspart.rendering.particles import Labels
 from gaspart.rendering.surfaces import INK, colour_of, surfaces_of
 
 LENGTHS = (20.0, 10.0)

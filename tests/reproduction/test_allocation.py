@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from reproduction.claims.data import claim
 
-from gaspart.reproduction import allocation, budget
+from gaspart.reproduction import allocation
+from gaspart.reproduction import cost as budget
 from gaspart.reproduction.allocation import IN_HAND, LONGEST, SHORTEST, Demand, allocated
 from gaspart.reproduction.points.lengths import scaled
 from gaspart.reproduction.table import Table, table

@@ -15,10 +15,8 @@ import yaml
 from malformed import one_line
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.config import check, explained
-from gaspart.reproduction.config_files import merged_with_default, read_numbers
+from gaspart.reproduction.config import check, explained, judge_config, merged_with_default, read_numbers
 from gaspart.reproduction.cost import predict
-from gaspart.reproduction.validation import judge_config
 from gaspart.yaml_text import dump_yaml, read_yaml
 
 ROOT = Path(__file__).parents[2]

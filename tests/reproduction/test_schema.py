@@ -8,12 +8,11 @@ import jsonschema
 import pytest
 from malformed import SCENES
 
-from gaspart.reproduction.config import check
-from gaspart.reproduction.config_files import merged_with_default
+from gaspart.reproduction.config import check, merged_with_default, scene_schema, schema
 from gaspart.reproduction.families.registry import families, settings
-from gaspart.reproduction.points import config_keys, point_keys
+from gaspart.reproduction.points import point_keys
+from gaspart.reproduction.points import points as config_keys
 from gaspart.reproduction.reference import documents, in_words
-from gaspart.reproduction.schema import scene_schema, schema
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[2]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.reproduction.sweep_plot import SweepTable
+from gaspart.reproduction.sweep_table import SweepTable
 
 ETA, FACES = np.array([0.1, 0.2, 0.3]), ["x low", "x high"]
 ALONG = ("packing_fraction", "count")

@@ -9,8 +9,7 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.state.boxes import NOWHERE, make_boxes, sides_for
-from gaspart.state.oversized import boxes_and_largest
+from gaspart.state.boxes import NOWHERE, boxes_and_largest, make_boxes, sides_for
 
 
 def neighbours(boxes, at):

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaspart.state.overlaps import deepest_overlap
+from gaspart.state.boxes import deepest_overlap
 
 
 @given(st.integers(0, 10**6))

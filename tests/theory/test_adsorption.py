@@ -5,7 +5,7 @@ from scipy.special import gammaln
 
 import gaspart as gp
 from gaspart.theory import adsorption
-from gaspart.theory.potential import packing_fraction_at
+from gaspart.theory.tables import packing_fraction_at
 
 
 def test_the_ratio_is_that_of_two_boltzmann_integrals():

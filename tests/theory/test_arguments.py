@@ -7,7 +7,7 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.theory import _arguments
+from gaspart.theory import geometry as _arguments
 
 GOOD = {"packing_fraction": 0.1, "dimension": 3, "width": 3.0, "length": 9.0, "collisions": 2.0, "hot": 2.0}
 GOOD |= {"inertia": 0.5, "tangential": 0.5, "restitution": 0.9, "energy": 5.0, "count": 8, "probability": 0.5}

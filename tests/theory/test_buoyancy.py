@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaspart import theory
-from gaspart.theory import buoyancy
+from gaspart.theory import brownian as buoyancy
 
 ETA = np.linspace(0.02, 0.6, 12)
 

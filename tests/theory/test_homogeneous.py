@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaspart import theory
-from gaspart.theory.homogeneous import homogeneous_gas, rough_discs
+from gaspart.theory.boltzmann import homogeneous_gas, rough_discs
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

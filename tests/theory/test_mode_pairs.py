@@ -9,9 +9,9 @@ from scipy.signal import fftconvolve
 
 from gaspart import theory
 from gaspart.errors import SceneError
-from gaspart.theory import mode_pairs, relaxing_modes
-from gaspart.theory.modes import heat_capacities
-from gaspart.theory.relaxing_modes import Relaxation
+from gaspart.theory import mode_pairs
+from gaspart.theory import modes as relaxing_modes
+from gaspart.theory.modes import Relaxation, heat_capacities
 
 QUANTITIES = ["viscosity", "conductivity"]
 

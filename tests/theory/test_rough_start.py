@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from gaspart import theory
+from gaspart.theory.boltzmann import rough_start
 from gaspart.theory.granular import ROUGH_START_UNCERTAINTY
-from gaspart.theory.homogeneous import rough_start
 
 
 def test_the_table_is_that_of_the_program():

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from gaspart import theory
-from gaspart.theory.homogeneous import relaxing_speeds
-from gaspart.theory.tagged import tagged_paths
+from gaspart.theory.boltzmann import relaxing_speeds, tagged_paths
 
 MAXWELL = np.asarray(theory.maxwell_ppf((np.arange(20_000) + 0.5) / 20_000, 3))
 

@@ -8,7 +8,7 @@ import pytest
 
 from gaspart import theory
 from gaspart.theory import walls
-from gaspart.theory.clusters import cluster_integrals
+from gaspart.theory.film import cluster_integrals
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -7,9 +7,9 @@ import pytest
 from scenes import centred, gas
 
 import gaspart as gp
-from gaspart.analysis.correlations import accumulated, correlate
+from gaspart.analysis.motion import accumulated, correlate
 from gaspart.trajectory.correlator import SUMS, Correlations, Correlator
-from gaspart.trajectory.partial import partial_path
+from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import read_recipe
 
 ASKED = gp.Correlations(interval=0.25, lags=6, start=2.0)

@@ -13,7 +13,7 @@ import gaspart as gp
 from gaspart.cli import main
 from gaspart.trajectory import recording
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint
-from gaspart.trajectory.partial import TRAJECTORY, partial_path
+from gaspart.trajectory.opening import TRAJECTORY, partial_path
 from gaspart.trajectory.recipe import read_recipe
 
 SCENE = gas(2, 10, 0.1)
@@ -167,7 +167,7 @@ def test_exchanged_frames_and_frames_of_another_run_are_detected(tmp_path, capsy
 
 
 def test_only_frames_that_are_read_are_checked_and_each_once(tmp_path, complete, monkeypatch):
-    from gaspart.trajectory import frames as module
+    from gaspart.trajectory import amber as module
 
     size = next(size for size in range(len(complete) // 17, 0, -1) if header_ends(complete, size))
     spoilt = bytearray(complete)

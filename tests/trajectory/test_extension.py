@@ -6,9 +6,10 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.trajectory import extension, recording, run
+from gaspart.trajectory import recording, run
+from gaspart.trajectory import run as extension
 from gaspart.trajectory.checkpoint import checkpoint_path
-from gaspart.trajectory.partial import partial_path
+from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import read_recipe
 
 MIXTURE = gp.Scene(

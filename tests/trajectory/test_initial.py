@@ -8,7 +8,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.state.given import check_apart, state_at_time_zero
-from gaspart.trajectory.partial import partial_path
+from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import read_recipe
 
 PLAIN = gas(3, 100, 0.3)

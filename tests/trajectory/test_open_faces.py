@@ -11,7 +11,7 @@ import gaspart as gp
 from gaspart import analysis
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.cli import main
-from gaspart.inspection.certificate import certificate
+from gaspart.inspection.energy import certificate
 from gaspart.inspection.open_runs import judge_open
 from gaspart.inspection.readers import read_frames
 from gaspart.rendering.live import LiveGas

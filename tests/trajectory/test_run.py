@@ -11,10 +11,11 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.files import only_process
-from gaspart.trajectory import recording, run, stage
+from gaspart.trajectory import recording, run
+from gaspart.trajectory import run as stage
 from gaspart.trajectory.amber import stored_header
 from gaspart.trajectory.checkpoint import checkpoint_path
-from gaspart.trajectory.partial import partial_path
+from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import multiple, read_recipe
 
 

@@ -13,7 +13,7 @@ from workspace import ROOT, Workspace, copy_of_project
 
 from gaspart.cli import main
 from gaspart.reproduction.archive.metadata import METADATA
-from gaspart.reproduction.config_files import merged_with_default
+from gaspart.reproduction.config import merged_with_default
 from gaspart.yaml_text import parse_yaml, write_yaml
 
 pytestmark = pytest.mark.workflow

@@ -19,9 +19,9 @@ HOME = "analysis/observables.py"
 WORDS = {
     "analysis/fields.py": "quantities of a field",
     "rendering/view.py": "by what particles are coloured",
-    "theory/_arguments.py": "names of arguments",
+    "theory/geometry.py": "names of arguments",
     "errors/synonyms.py": "words of other programs",
-    "accuracy/column.py": "what differs between two columns of gas",
+    "accuracy/conditions.py": "what differs between two columns of gas",
 }
 """Modules in which some of the names are words of something else, beside the families, whose data sets have
 columns of these names."""

@@ -9,7 +9,7 @@ from collections import Counter
 import pytest
 from workspace import ROOT, SMOKE
 
-from gaspart.reproduction.config_files import merged_with_default
+from gaspart.reproduction.config import merged_with_default
 from gaspart.reproduction.points.points import points
 from gaspart.yaml_text import dump_yaml, read_yaml
 
@@ -67,7 +67,7 @@ import sys
 before = set(sys.modules)
 sys.path.insert(0, {scripts!r})
 import _job
-from gaspart.kernels.compile.loading import load_numba
+from gaspart.kernels.compile.cache import load_numba
 load_numba(ours=True)
 import gaspart as gp
 discs = gp.Species(16, 0.5, temperature=1.0, arrangement="lattice")

@@ -10,8 +10,8 @@ from browser import CHROMIUM, found_by
 from digests import digests
 
 from gaspart.reproduction import job_time
-from gaspart.reproduction.budget import budgets
 from gaspart.reproduction.claims import CLAIM_KINDS, VERDICTS
+from gaspart.reproduction.cost import budgets
 from gaspart.reproduction.families.registry import families
 from gaspart.yaml_text import read_yaml
 

@@ -8,7 +8,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from gaspart.reproduction.config_files import merged_with_default
+from gaspart.reproduction.config import merged_with_default
 from gaspart.yaml_text import write_yaml
 
 ROOT = Path(__file__).parents[2]

@@ -20,17 +20,17 @@ if " " in sys.executable:
     sys.executable = shlex.quote(sys.executable)
 
 from gaspart.reproduction import job_server
-from gaspart.reproduction.claims.captions import filled
+from gaspart.reproduction.claims.table import filled
 from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import check, explained
-from gaspart.reproduction.config_files import read_numbers
+from gaspart.reproduction.config import read_numbers
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.families.registry import caption, functions, of_claims, titles
 from gaspart.reproduction.points.modules import digest, kernel_digest
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.reproduction.points.points import all_points
 from gaspart.reproduction.points.points import figure_points as points_of_figure
-from gaspart.reproduction.points.variants import compile_task, variant
+from gaspart.reproduction.points.point import compile_task, variant
 from gaspart.errors import SceneError
 
 # A job on a cluster reads this file again, but need not validate ten thousand points again.

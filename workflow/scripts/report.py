@@ -40,8 +40,9 @@ with job(snakemake):
     from gaspart import __version__
     from gaspart.files import whole_file
     from gaspart.reproduction.claims import table
-    from gaspart.reproduction.claims.captions import literal_copies
-    from gaspart.reproduction.report import explore, page, references
+    from gaspart.reproduction.claims.table import literal_copies
+    from gaspart.reproduction.report import explore, page
+    from gaspart.reproduction.report import explore as references
     from gaspart.trajectory import provenance
     from gaspart.yaml_text import read_yaml
 

@@ -4,5 +4,5 @@ import sys
 
 from _job import function, job_time
 
-function("gaspart.reproduction.points.variants", "compile_kernels")(sys.argv[1])
+function("gaspart.reproduction.points.point", "compile_kernels")(sys.argv[1])
 print(job_time.stated())

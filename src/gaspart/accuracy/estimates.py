@@ -92,7 +92,7 @@ class Component:
 def components(data: xr.Dataset, observable: str, start: float | None = None) -> dict[str, Component]:
     """An observable of `gaspart measure` of a trajectory, by component, "" for a scalar or a curve, whose
     value and error are root mean squares. Raises SceneError as the functions of `gaspart.analysis`."""
-    from gaspart.analysis.measuring import measure
+    from gaspart.analysis.measure import measure
     from gaspart.analysis.run import open_run
 
     with open_run(data, start, sheared=True, varying=True) as run:
@@ -145,8 +145,8 @@ def _norm(values: np.ndarray) -> float:
 
 def _on_walls(run: Run, observable: str) -> dict[str, Component]:
     """The pressures or forces on walls, each from a series over intervals of frames."""
-    from gaspart.analysis.controls import stores
     from gaspart.analysis.counters import controlled_on_walls, on_walls
+    from gaspart.analysis.impulses import stores
 
     faces, series = on_walls(run, np.arange(len(run.time)), observable)
     if np.isnan(series).any():

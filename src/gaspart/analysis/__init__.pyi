@@ -1,24 +1,26 @@
-from gaspart.analysis.combination import replicas as replicas
+from gaspart.analysis.collisions import free_flight_times as free_flight_times
 from gaspart.analysis.counters import collision_rate as collision_rate
 from gaspart.analysis.counters import compressibility_factor as compressibility_factor
 from gaspart.analysis.counters import wall_force as wall_force
 from gaspart.analysis.counters import wall_pressure as wall_pressure
 from gaspart.analysis.diffusion import diffusion_coefficient as diffusion_coefficient
+from gaspart.analysis.diffusion import mutual_diffusion as mutual_diffusion
 from gaspart.analysis.fields import field as field
-from gaspart.analysis.flow_profile import velocity_profile as velocity_profile
-from gaspart.analysis.free_flights import free_flight_times as free_flight_times
+from gaspart.analysis.fields import velocity_profile as velocity_profile
+from gaspart.analysis.fluxes import heat_flux as heat_flux
+from gaspart.analysis.fluxes import particle_flux as particle_flux
+from gaspart.analysis.fluxes import particle_number as particle_number
+from gaspart.analysis.fluxes import wall_shear as wall_shear
 from gaspart.analysis.insertion import chemical_potential as chemical_potential
 from gaspart.analysis.lyapunov import lyapunov_exponent as lyapunov_exponent
-from gaspart.analysis.mixtures import contact_values as contact_values
-from gaspart.analysis.mixtures import pair_collision_rates as pair_collision_rates
+from gaspart.analysis.measure import by_species as by_species
+from gaspart.analysis.measure import replicas as replicas
 from gaspart.analysis.motion import mean_squared_displacement as mean_squared_displacement
 from gaspart.analysis.motion import velocity_autocorrelation as velocity_autocorrelation
-from gaspart.analysis.mutual import mutual_diffusion as mutual_diffusion
 from gaspart.analysis.observable import Observable as Observable
-from gaspart.analysis.occupancy import particle_number as particle_number
-from gaspart.analysis.opening import particle_flux as particle_flux
+from gaspart.analysis.pairs import contact_values as contact_values
+from gaspart.analysis.pairs import pair_collision_rates as pair_collision_rates
 from gaspart.analysis.pairs import rdf as rdf
-from gaspart.analysis.species import by_species as by_species
 from gaspart.analysis.structure import density as density
 from gaspart.analysis.structure import order_parameter as order_parameter
 from gaspart.analysis.structure import profile as profile
@@ -30,8 +32,6 @@ from gaspart.analysis.transport import bulk_viscosity as bulk_viscosity
 from gaspart.analysis.transport import pressure_tensor as pressure_tensor
 from gaspart.analysis.transport import shear_viscosity as shear_viscosity
 from gaspart.analysis.transport import thermal_conductivity as thermal_conductivity
-from gaspart.analysis.wall_fluxes import heat_flux as heat_flux
-from gaspart.analysis.wall_fluxes import wall_shear as wall_shear
 
 Z = compressibility_factor
 pressure = wall_pressure

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.engines.dsmc import rates
+from gaspart.engines.dsmc import defaults as rates
 from gaspart.scene.gas import Gas
 
 EXACT, BOLTZMANN, ENSKOG = "exact", "boltzmann", "enskog"

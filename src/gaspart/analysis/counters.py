@@ -9,14 +9,20 @@ from typing import Any
 import numpy as np
 
 from gaspart.analysis import series
-from gaspart.analysis.controls import controlled, group_count, wall_controls
-from gaspart.analysis.estimators import engine_class, estimator, knows_energies
-from gaspart.analysis.expected.described import described
-from gaspart.analysis.impulses import USUAL_BINS
+from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.flow import face_areas, touched
+from gaspart.analysis.impulses import (
+    USUAL_BINS,
+    controlled,
+    engine_class,
+    estimator,
+    group_count,
+    knows_energies,
+    wall_controls,
+)
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.observables import name_of, require_defined
 from gaspart.analysis.profiles import Means, with_freedom
-from gaspart.analysis.room import face_areas, touched
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
@@ -105,7 +111,7 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
 
     Contacts of particles at rest are no events: they press a floor with what gravity gives the particles and
     no event takes. With impulses that the run has kept along an axis, the pressures across it are freed from
-    what fluctuates with them and is known exactly (`gaspart.analysis.controls`); the attribute `estimator`
+    what fluctuates with them and is known exactly (`gaspart.analysis.impulses`); the attribute `estimator`
     says so.
 
     Examples

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from gaspart.analysis.estimate import Estimate, concise
-from gaspart.analysis.occupancy import particle_numbers
+from gaspart.analysis.fluxes import particle_numbers
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean
 

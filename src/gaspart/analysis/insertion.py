@@ -20,7 +20,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from gaspart.analysis.expected.described import described
+from gaspart.analysis.expected.equilibrium import described
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES

@@ -5,19 +5,77 @@ Uncertainties are the scatter of consecutive blocks of the run.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from gaspart.analysis.estimators import estimator
-from gaspart.analysis.expected.described import described
-from gaspart.analysis.observable import Observable, observable
-from gaspart.analysis.observables import require_defined
-from gaspart.analysis.pair_impulses import g_by_impulses, kept, mixed_g, shell_volumes
-from gaspart.analysis.run import Run, Source, open_run
-from gaspart.analysis.statistics import means_of
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.impulses import estimator, mixture
+from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
+from gaspart.analysis.observables import KEPT, require_defined
+from gaspart.analysis.run import Run, Source, open_run, require_collisions
+from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
 from gaspart.scene.impulses import FURTHEST
-from gaspart.state.optional_tallies import PairImpulseTally
+from gaspart.state.optional_tallies import PairImpulseTally, stored_tally
+from gaspart.theory.geometry import unit_sphere_surface
+from gaspart.theory.speeds import mean_speed_factor
+from gaspart.trajectory.pairs import pair_names, pairs_of
+
+# g(r) from the momentum that pairs of particles gain along their separation.
+#
+# In equilibrium this gives k_B T g(r) without the noise of counting, but for what all distances share
+# (`Tally.contact_impulse_sum`; docs/design-notes.md has the derivation). That follows from the number of
+# pairs within the furthest distance, which is counted. Counts have less noise in wide shells of a dense
+# fluid, so both are mixed, as densities are (`gaspart.analysis.impulses`).
+
+
+_ALIKE = 1e-9
+"""Relative difference of two thicknesses of shells that is rounding."""
+
+
+def kept(run: Run) -> PairImpulseTally | None:
+    """What a run has kept of impulses of pairs; None if that is nothing, or not all particles are in the
+    file, from which the temperature follows."""
+    return None if run.is_subset else stored_tally(run.data.attrs.get("tallies", "[]"), PairImpulseTally)
+
+
+def shell_volumes(bins: int, dimension: int) -> np.ndarray:
+    """(bins,) of shells of equal thickness, in that of the first one."""
+    return np.diff(np.arange(bins + 1.0) ** dimension)
+
+
+def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> np.ndarray | None:
+    """(2, S, bins) what the pairs that collide and all others give to g(r), in S stretches of a run that
+    begin at the frames `starts` (S,). None if the run has not kept it, or not in parts of these shells, if a
+    stretch takes no time, and if no pair has collided: then impulses say nothing of g(r), which is not 0."""
+    has = kept(run)
+    if has is None or starts[-1] == len(run.time) - 1 or furthest > has.furthest * (1.0 + _ALIKE):
+        return None
+    each = furthest / bins * has.shells / has.furthest
+    merged = round(each)
+    if merged < 1 or abs(each - merged) > _ALIKE * each:
+        return None
+    ends = np.append(starts, len(run.time) - 1)
+    sums = np.stack([run.data[name].values[ends] for name in ("contact_impulse_sum", "other_impulse_sum")])
+    if not (sums[0, -1] - sums[0, 0]).any():
+        return None
+    rates = np.diff(sums, axis=1) / (run.temperature * np.diff(run.time[ends])[:, None])
+    fine = shell_volumes(bins * merged, run.dimension)
+    parts = (rates[..., : len(fine)] * fine).reshape(2, len(starts), bins, merged).sum(axis=3)
+    return np.asarray(parts / fine.reshape(bins, merged).sum(axis=1))
+
+
+def mixed_g(counted: np.ndarray, parts: np.ndarray, volumes: np.ndarray) -> np.ndarray:
+    """(S, bins) g(r) in S stretches from counts (S, bins) and impulses (2, S, bins), in shells of these
+    volumes (bins,)."""
+    contacts, found = parts[0].mean(axis=0), parts.sum(axis=0)
+    missing = ((counted - found) @ volumes) / (contacts @ volumes)
+    impulses = found + missing[:, None] * contacts
+    return counted + mixture(counted, impulses, periodic=False) * (impulses - counted)
+
 
 STRETCHES = 16
 _BINS = 100
@@ -59,7 +117,7 @@ def rdf(
     1 + (1 - S(0)) / N at large distances, S(0) its reduced compressibility [1]_.
 
     Impulses of pairs, in shells of which each bin has as many, make g(r) more accurate than counts
-    (`gaspart.analysis.pair_impulses`); the attribute `estimator` says so. Theory: the value at contact that
+    (`gaspart.analysis.pairs`); the attribute `estimator` says so. Theory: the value at contact that
     belongs to the pressure of N particles, at the first bins beyond the diameter only.
 
     References
@@ -129,3 +187,188 @@ def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:
     if len(run.time) < STRETCHES:
         raise SceneError("frames", len(run.time), f"an error needs {STRETCHES} or more")
     return values[:: -(-len(run.time) // MOST_FRAMES)]
+
+
+# Collision rates and contact values of each pair of species.
+
+
+def pair_collision_rates(source: Source, start: float | None = None) -> Observable:
+    """Measure the collision rate of a particle of one species with all particles of another one.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory of a run with `pairs`, by its path or open, or a simulation, which is run again.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        Collisions per time of one particle of the first species of each pair with all of the second, (pair,),
+        in [1/time].
+
+    Raises
+    ------
+    SceneError
+        For single particles, too few frames, and a run without `pairs`.
+
+    Notes
+    -----
+    Theory: exact except for the contact values, which are those of an infinite mixture. A particle of N_i has
+    N_i - 1 partners of its own species, and the mean speed is that of a finite number at fixed energy.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> gases = [gp.Species(20, radius, temperature=1.0) for radius in (0.3, 0.5)]
+    >>> scene = gp.Scene(box, gases)
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.pair_collision_rates(simulation).sizes["pair"]
+    3
+    """
+    with open_run(source, start, pairs=True) as run:
+        require_defined("pair_rates", run.scene)
+        return _of_pairs("pair_rates", "pair_collision_rate", run, estimates_of(run, rate_scales(run)))
+
+
+def contact_values(source: Source, start: float | None = None) -> Observable:
+    """Measure the pair distribution at contact, g_ij, of each pair of species from its collision rate.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory of a run with `pairs`, by its path or open, or a simulation, which is run again.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        The contact values (pair,), dimensionless.
+
+    Raises
+    ------
+    SceneError
+        As `pair_collision_rates`, for a scene with walls or contacts that lose energy, and for a polydisperse
+        species.
+
+    Notes
+    -----
+    A number N_ij of collisions in the time t is
+
+        n_ij S sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)) t / V,
+
+    with n_ij = N_i N_j or N_i (N_i - 1) / 2 pairs of particles, S = 2 pi (2D) or 4 pi (3D), and mu_ij the
+    reduced mass. This is exact in equilibrium [1]_, with the mean speed of a finite number of particles at
+    fixed energy.
+
+    References
+    ----------
+    .. [1] S. Chapman and T. G. Cowling (1970).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> gases = [gp.Species(20, radius, temperature=1.0) for radius in (0.3, 0.5)]
+    >>> scene = gp.Scene(box, gases)
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.contact_values(simulation).sizes["pair"]
+    3
+    """
+    with open_run(source, start, pairs=True) as run:
+        found = estimates_of(run, contact_scales(run))
+        return _of_pairs("contact_values", "contact_value", run, found)
+
+
+def rate_scales(run: Run) -> np.ndarray:
+    """Compute the collision rate of a pair of species divided by that of a particle of the first.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    ndarray, shape (pairs,)
+        The ratios.
+    """
+    counts = [kind.count for kind in run.scene.species]
+    pairs = pairs_of(run.scene)
+    return np.array([counts[i] / (2.0 if i == j else 1.0) for i, j in pairs])
+
+
+def contact_scales(run: Run) -> np.ndarray:
+    """Compute the collisions per time of each pair divided by its contact value.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    ndarray, shape (pairs,)
+        The ratios.
+
+    Raises
+    ------
+    SceneError
+        As `contact_values`.
+    """
+    require_defined("contact_values", run.scene)
+    scene, d = run.scene, run.dimension
+    scales = []
+    for i, j in pairs_of(scene):
+        one, other = scene.species[i], scene.species[j]
+        number = one.count * other.count if i != j else one.count * (one.count - 1) / 2.0
+        speed = math.sqrt(run.temperature * (1.0 / one.mass + 1.0 / other.mass) / (2.0 * math.pi))
+        between = (one.radius + other.radius) ** (d - 1)
+        scales.append(number * unit_sphere_surface(d) * between * speed / scene.container.volume)
+    return np.array(scales) * mean_speed_factor(run.freedom)
+
+
+def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
+    """Estimate the collisions of each pair per time, divided by its scale.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    scales : ndarray, shape (pairs,)
+        The scales.
+
+    Returns
+    -------
+    list of Estimate
+        The estimates.
+
+    Raises
+    ------
+    SceneError
+        If there are too few frames, or the run has no counts or no collisions.
+    """
+    if "pair_collisions" not in run.data:
+        raise SceneError(*KEPT["pairs"])
+    if len(run.time) <= LEAST_INTERVALS:
+        raise SceneError("frames", len(run.time), f"an error needs {LEAST_INTERVALS + 1} or more")
+    require_collisions(run)
+    rates = run.increments("pair_collisions") / np.diff(run.time)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):  # of a single particle with its like: no pair
+        series = (rates / scales).T
+    nothing = Estimate(math.nan, math.nan)
+    return [
+        correlated_mean(one, LEAST_INTERVALS).estimate if np.ptp(one) > 0.0 else nothing for one in series
+    ]
+
+
+def _of_pairs(observed: str, name: str, run: Run, found: list[Estimate]) -> Observable:
+    """The result of an observable of pairs, `observed`, whose variable has a name."""
+    along = {"pair": (np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"})}
+    values, errors = np.array([[one.value, one.error] for one in found]).T
+    return observable(name, along, values, errors, **described(observed, run))

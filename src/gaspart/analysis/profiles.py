@@ -13,10 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from gaspart.analysis.bins import Grid
-from gaspart.analysis.flow import Peculiar, about_cells, about_the_flow
+from gaspart.analysis.flow import Grid, Peculiar, about_cells, about_the_flow, sides
 from gaspart.analysis.observable import Observable
-from gaspart.analysis.room import sides
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError

@@ -9,15 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.analysis.bins import Grid
-from gaspart.analysis.expected.described import described
-from gaspart.analysis.flow import FLOW
+from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.flow import FLOW, Grid, left_by_obstacles
 from gaspart.analysis.impulses import default_bins, described_density, mixed_density
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.observables import having, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.profiles import Cells, Means, with_freedom
-from gaspart.analysis.room import left_by_obstacles
 from gaspart.analysis.run import Run, Source, open_run, selected
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import argparse
 
-from gaspart.cli.arguments import Parser, add_output, config_command, print_line, set_command
+from gaspart.cli.arguments import (
+    CheckFailed,
+    Parser,
+    add_output,
+    config_command,
+    integer,
+    print_line,
+    print_lines,
+    set_command,
+)
 from gaspart.cli.progress import waiting
 
 _EXAMPLES = """examples:
@@ -35,3 +44,68 @@ def _archive(given: argparse.Namespace) -> None:
     with waiting("reading the results"):
         line = write(given.results, given.output, given.config, given.trajectories, given.force)
     print_line(line)
+
+
+# `gaspart verify`: whether an archive is what it was, and simulates to the same bits.
+
+
+_EXAMPLES_OF_VERIFY = """examples:
+  gaspart verify archive.zip
+  gaspart verify archive.zip --rerun 3   # and three points simulated again
+  gaspart verify unpacked/               # a folder into which it was unpacked
+
+exit code: 0 if all checks pass, 1 if one fails, 2 if the file is no archive"""
+
+
+def add_verify(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
+    text = (
+        "Recompute the digests of an archive of `gaspart archive`: of its files, and of the data that its "
+        "claims are made of. With --rerun points drawn at random are simulated again, and compared bit for "
+        "bit. Nothing is written but to a temporary folder and the cache of kernels."
+    )
+    set_command(parser, _verify, text, _EXAMPLES_OF_VERIFY)
+    parser.add_argument(
+        "archive", metavar="ARCHIVE", help="an archive (.zip), or the folder of an unpacked one"
+    )
+    text = "number of points to simulate again; default: 0"
+    parser.add_argument("--rerun", type=integer(least=0), default=0, metavar="N", help=text)
+
+
+def _verify(given: argparse.Namespace) -> None:
+    checks = iter(config_command("verify")(given.archive, given.rerun))
+    failed = False
+    while True:
+        with waiting("reading the archive, or simulating a point; the first time, compiling kernels"):
+            check = next(checks, None)
+        if check is None:
+            break
+        print_line(check)
+        failed |= not check.passed
+    if failed:
+        raise CheckFailed
+
+
+# `gaspart budget`: where the time of a finished run of the workflow went, and which length would suffice.
+
+
+_EXAMPLES_OF_BUDGET = """examples:
+  gaspart budget config/config.yaml
+  gaspart budget config/precise.yaml -o budget.csv    # a line for each claim"""
+
+
+def add_budget(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
+    text = (
+        "For each figure of a config of which the workflow has made all: the processor time of its points "
+        "(shared: of those that other figures show as well), how many of its claims that runs decide are "
+        "decided, and the multiple of its runs that would just suffice for these; then each claim that is "
+        "not, with the multiple that would decide it."
+    )
+    set_command(parser, _budget, text, _EXAMPLES_OF_BUDGET)
+    parser.add_argument("config", metavar="FILE", help="config of the workflow (YAML)")
+    parser.add_argument("-o", "--output", metavar="FILE", help="write a line for each claim (CSV) instead")
+
+
+def _budget(given: argparse.Namespace) -> None:
+    print_lines(config_command("budget")(given.config, given.output))

@@ -125,7 +125,7 @@ def add_trajectory(parser: argparse.ArgumentParser) -> None:
 
 def run_files(name: str) -> list[str]:
     """Return the files of the run that a command names: the file itself, or those of all replicas."""
-    from gaspart.trajectory.partial import partial_path, replica_path
+    from gaspart.trajectory.opening import partial_path, replica_path
     from gaspart.trajectory.replicas import files_of
 
     path = Path(name)

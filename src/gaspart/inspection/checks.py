@@ -14,19 +14,26 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 from gaspart.inspection.conserved import judge_conserved
-from gaspart.inspection.contact_value import FIT_ERROR, WIDTH, contact_values
-from gaspart.inspection.diffusion import diffusion, expected_diffusion, groups_of, why_not
 from gaspart.inspection.frames import Frames
-from gaspart.inspection.samples import (
+from gaspart.inspection.statistics import (
+    FIT_ERROR,
+    SPEEDS,
     UNEVEN,
+    WIDTH,
+    contact_values,
     decorrelated_frames,
     density_modulation,
+    diffusion,
+    expected_diffusion,
     first_relaxed_frame,
+    groups_of,
+    judge_speeds,
     path,
+    why_not,
+    why_not_speeds,
 )
-from gaspart.inspection.speeds import SPEEDS, judge_speeds, why_not_speeds
 from gaspart.inspection.verdict import Check, compared
-from gaspart.state.overlaps import deepest_overlap
+from gaspart.state.boxes import deepest_overlap
 
 __all__ = ["Check", "judge", "judge_places"]
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from gaspart.inspection.flights import WRONG, flights, resolution
 from gaspart.inspection.frames import Frames
-from gaspart.inspection.speeds import why_not_speeds
+from gaspart.inspection.statistics import why_not_speeds
 from gaspart.inspection.verdict import Check
 
 DRIFT = 1e-6

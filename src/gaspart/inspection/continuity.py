@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from gaspart.inspection.flights import WRONG, flights
 from gaspart.inspection.frames import Frames
-from gaspart.inspection.samples import steps
+from gaspart.inspection.statistics import steps
 
 _MOST = 0.5
 """Fraction of the particles from which on a finding is no coincidence."""

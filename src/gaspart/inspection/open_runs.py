@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.occupancy import particle_numbers
+from gaspart.analysis.fluxes import particle_numbers
 from gaspart.inspection.checks import judge_places
 from gaspart.inspection.conserved import judge_flights
 from gaspart.inspection.energy import conserved_energy

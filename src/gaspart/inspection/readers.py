@@ -8,17 +8,23 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.inspection.contents import Contents, Given, complete_frames
+from gaspart.inspection.contents import Contents, Given, complete_frames, sort_by_id
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.gsd_contents import read_gsd
 from gaspart.inspection.netcdf_contents import is_own, read_netcdf
 from gaspart.inspection.xyz_contents import read_xyz
+from gaspart.scene.scene import Scene
+from gaspart.state.given import state_at_time_zero
+from gaspart.state.initial import assembled
+from gaspart.state.insertion import per_particle
+from gaspart.state.state import State
 from gaspart.system import memory
 from gaspart.trajectory.recipe import read_recipe
 
@@ -96,3 +102,116 @@ def _require_memory(path: Path) -> None:
     if there is not None and needed > there:
         rule = f"needs {needed / 1e9:.3g} GB of memory for all frames; this machine has {there / 1e9:.3g} GB"
         raise SceneError("file", str(path), rule)
+
+
+# The last frame of a file of another program, GSD or XYZ, as the initial state of a scene.
+
+
+STARTS = (".gsd", ".xyz", ".extxyz")
+"""Suffixes of the files that `read_state` reads."""
+_SAME = 1e-6
+"""Relative deviation of a size or a mass that is attributed to rounding, as in `contents`."""
+
+
+def read_state(path: str | Path, scene: Scene) -> State:
+    """The state at time 0 of a scene, with the positions and velocities of the last frame of a GSD file or an
+    XYZ file (extended, with velocities), in the precision that the file has.
+
+    Its particles are those of the scene: in the order of their ids, if it has them; in that order, or, if the
+    radii and masses that it states are in another one, by these. Radii, masses and the container are the
+    scene's. Velocities are about the flow of a sheared scene; spins are 0.
+
+    Raises SceneError for a file without velocities, of another number of particles, other sizes or masses,
+    another container, a file that `gaspart check` cannot read, and as `Simulation` does for a given state.
+    """
+    path = Path(path)
+    if path.suffix not in STARTS:
+        raise SceneError("file", str(path), f"must end in {', '.join(STARTS)}")
+    contents = read_contents(path, Given(last=True))
+    if contents.velocities is None:
+        raise SceneError("file", str(path), "has no velocities in its last frame, which a run starts from")
+    count = contents.positions.shape[1]
+    if count != scene.count:
+        raise SceneError("file", str(path), f"has {count} particles, and the scene {scene.count}")
+    sort_by_id(contents, str(path))
+    _check_container(contents, scene, path)
+    order = _order(contents, scene, path)
+    places, velocities = (
+        _in_dimensions(name, values[-1], scene, path)[order]
+        for name, values in (("positions", contents.positions), ("velocities", contents.velocities))
+    )
+    turning = (scene.count,) if scene.dimension == 2 else (scene.count, 3)
+    state = assembled(scene, places - _origin(contents, scene), velocities, np.zeros(turning))
+    plain = replace(state, piston=None, piston_face=None, displaced=None, shear_rate=None)
+    try:
+        return state_at_time_zero(scene, plain)
+    except SceneError as error:
+        raise SceneError(error.key, error.value, error.rule, str(path)) from None
+
+
+def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> np.ndarray:
+    """(N, d) of the values (N, 2 or 3) of a frame. Refused: discs that are not in a plane, and spheres in
+    one."""
+    d, stated = scene.dimension, values.shape[1]
+    if stated < d:
+        raise SceneError("file", str(path), f"has {name} in {stated} dimensions, and the scene has {d}")
+    beyond = values[:, d:]
+    if beyond.size and np.ptp(beyond) > 0.0:
+        rule = f"has {name} that differ along z, and the scene has two dimensions"
+        raise SceneError("file", str(path), rule)
+    return values[:, :d].astype(float)
+
+
+def _origin(contents: Contents, scene: Scene) -> np.ndarray:
+    """(d,) the lower corner of the container. A file has the part of it up to a piston, which is at its side
+    when a run begins."""
+    low, sides = np.zeros(scene.dimension), np.array(scene.container.lengths)
+    for number, _ in scene.pistons if contents.lengths is not None else ():
+        axis, high = divmod(number, 2)
+        sides[axis] = np.asarray(contents.lengths)[-1, axis]
+        low[axis] = 0.0 if high else scene.container.lengths[axis] - sides[axis]
+    if contents.centred:
+        return -0.5 * sides - low
+    if contents.origin is None:
+        return -low
+    return np.atleast_2d(contents.origin)[-1, : scene.dimension] - low
+
+
+def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
+    """Refuse a container of other sides; those between walls may be unknown, 0, and those up to a piston
+    smaller."""
+    if contents.flat is not None and contents.flat != (scene.dimension == 2):
+        has = "two" if contents.flat else "three"
+        raise SceneError("file", str(path), f"has {has} dimensions, and the scene {scene.dimension}")
+    if contents.lengths is None:
+        return
+    wanted = np.array(scene.container.lengths)
+    stated = np.asarray(contents.lengths, dtype=float)[-1, : scene.dimension]
+    movable = np.isin(np.arange(scene.dimension), [number // 2 for number, _ in scene.pistons])
+    within = (stated == 0.0) | (movable & (stated < wanted)) | (np.abs(stated - wanted) <= _SAME * wanted)
+    if not within.all():
+        rule = f"the container of the scene is {scene.container.lengths}"
+        raise SceneError("lengths", tuple(stated.tolist()), rule, str(path))
+
+
+def _order(contents: Contents, scene: Scene, path: Path) -> np.ndarray:
+    """(N,) which particle of a file each of the scene is, by the radii and masses that it states."""
+    pairs: list[tuple[str, np.ndarray, np.ndarray]] = []
+    for name, stated in (("radius", contents.radii), ("mass", contents.masses)):
+        if stated is not None:
+            its = np.atleast_2d(np.asarray(stated, dtype=float))[-1]
+            pairs.append((name, its, per_particle(scene, name).astype(float)))
+    order = np.arange(scene.count)
+    if not pairs or all(_alike(its, mine).all() for _, its, mine in pairs):
+        return order
+    order[np.lexsort([mine for _, _, mine in pairs[::-1]])] = np.lexsort([its for _, its, _ in pairs[::-1]])
+    for name, its, mine in pairs:
+        for n in np.flatnonzero(~_alike(its[order], mine)).tolist():
+            rule = f"no particle of the file has the {name} of particle {n} of the scene, {mine[n]:g}"
+            raise SceneError(name, float(its[order[n]]), rule, str(path))
+    return order
+
+
+def _alike(values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """(N,) whether values are the wanted ones but for their rounding."""
+    return np.abs(values - wanted) <= _SAME * wanted

@@ -3,11 +3,11 @@ from gaspart.keys.classes import from_mapping as from_mapping
 from gaspart.keys.classes import instance_of as instance_of
 from gaspart.keys.classes import instances_of as instances_of
 from gaspart.keys.classes import refuse_unknown as refuse_unknown
+from gaspart.keys.classes import require as require
 from gaspart.keys.classes import schema_of as schema_of
 from gaspart.keys.classes import set_fields as set_fields
 from gaspart.keys.classes import stated as stated
 from gaspart.keys.classes import validate as validate
-from gaspart.keys.files import require as require
 from gaspart.keys.kinds import COUNT as COUNT
 from gaspart.keys.kinds import FLAG as FLAG
 from gaspart.keys.kinds import NOT_NEGATIVE as NOT_NEGATIVE

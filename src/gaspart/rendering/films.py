@@ -14,11 +14,9 @@ import numpy as np
 from gaspart.errors import SceneError, optional
 from gaspart.files import FileKind, begins_with, output_path, whole_file, writing
 from gaspart.keys.values import count_of, number
-from gaspart.rendering.frames import opened, particles_of, scene_of
-from gaspart.rendering.labels import Labels, time_format
-from gaspart.rendering.particles import FASTEST, colours_of, legend_of
+from gaspart.rendering.frames import Film, opened, particles_of, scene_of
+from gaspart.rendering.particles import FASTEST, Labels, colours_of, legend_of, time_format
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
-from gaspart.rendering.shown import Film
 from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation

@@ -7,11 +7,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from gaspart.accuracy.scales import scales
+from gaspart.accuracy.target import scales
 from gaspart.engines import Engine
 from gaspart.errors import SceneError, SimulationError, optional
-from gaspart.rendering.frames import render
-from gaspart.rendering.shown import Picture
+from gaspart.rendering.frames import Picture, render
 from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.simulation import Simulation

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.rendering.style import COLOURS
 from gaspart.rendering.surfaces import DrawnSurface
+
+if TYPE_CHECKING:
+    from PIL.ImageDraw import ImageDraw
+
 
 COLOURINGS = ("speed", "species")
 FASTEST = 2.0
@@ -143,3 +150,192 @@ def colours_of(
             "colour", f"an array of shape {given.shape}", "must have three columns, and a row per particle"
         )
     return given
+
+
+# The parameters, the meaning of the colours, the time and the scale, written above and below a picture.
+
+
+_PART = 0.035
+"""Height of the letters over that of the picture, or over 1.5 times its width if that is less; at least
+10 pixels."""
+_LINE = 1.5
+"""Height of a line over that of its letters."""
+_INK, _PAPER = (40, 40, 40), (255, 255, 255)
+_LEAST = 16
+"""The least height of a picture between its labels, in pixels."""
+
+
+def round_length(longest: float) -> float:
+    """The largest of 1, 2 and 5 times a power of ten that is not above `longest`.
+
+    >>> round_length(37.0), round_length(0.7)
+    (20.0, 0.5)
+    """
+    power = 10.0 ** math.floor(math.log10(longest))
+    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= longest)
+
+
+def time_format(times: np.ndarray) -> str:
+    """The format of the times of a film: as many decimals for all, up to three, as they need.
+
+    >>> time_format([0.0, 0.25, 0.5]), time_format([0.0, 1e-9])
+    ('.2f', '.4g')
+    """
+    for decimals in range(4):
+        if np.allclose(np.round(times, decimals), times, rtol=1e-9, atol=0.0):
+            return f".{decimals}f"
+    return ".4g"
+
+
+@dataclass(frozen=True)
+class Labels:
+    """What is written above and below a picture so that both have a size (W, H).
+
+    parameters: short texts, above; legend and surfaces: below them; the time and a bar of a round length are
+    below the picture, whose size is `inner`. Raises SceneError if nothing is left for it.
+    """
+
+    size: tuple[int, int]
+    parameters: tuple[str, ...] = ()
+    legend: Legend | None = None
+    surfaces: tuple[DrawnSurface, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.inner[1] < _LEAST:
+            raise SceneError(
+                "size",
+                self.size,
+                "is too small for a clock and a scale: leave them out (clock=False, --plain)",
+            )
+
+    @property
+    def letters(self) -> int:
+        """Height of the letters in pixels."""
+        width, height = self.size
+        return max(10, round(_PART * min(height, 1.5 * width)))
+
+    @property
+    def line(self) -> int:
+        """Height of a line in pixels."""
+        return round(_LINE * self.letters)
+
+    @cached_property
+    def font(self) -> Any:
+        """The font of all labels."""
+        from PIL import ImageFont
+
+        return ImageFont.load_default(self.letters)
+
+    @cached_property
+    def lines(self) -> list[str]:
+        """The parameters in lines that are not wider than the picture, as far as these leave half of it."""
+        lines: list[str] = []
+        for text in self.parameters:
+            longer = f"{lines[-1]}, {text}" if lines else text
+            if lines and self.font.getlength(longer) <= self.size[0] - self.letters:
+                lines[-1] = longer
+            else:
+                lines.append(text)
+        return lines if 2 * self.line * (len(lines) + 2) <= self.size[1] else []
+
+    @property
+    def top(self) -> int:
+        """Height of the strip above the picture."""
+        rows = len(self.lines) + (self.legend is not None) + len(self.rows)
+        return self.line * rows + self.letters // 3
+
+    @cached_property
+    def rows(self) -> list[list[DrawnSurface]]:
+        """Surfaces in rows that are not wider than the picture, as far as these leave half of it."""
+        rows: list[list[DrawnSurface]] = []
+        free = 0.0
+        for surface in self.surfaces:
+            width = self._sample + self.letters + self.font.getlength(surface.text)
+            if not rows or width > free:
+                rows.append([])
+                free = self.size[0] - self.letters // 2
+            rows[-1].append(surface)
+            free -= width
+        used = len(self.lines) + (self.legend is not None) + len(rows) + 1
+        return rows if 2 * self.line * used <= self.size[1] else []
+
+    @property
+    def _sample(self) -> int:
+        """Length of the line that shows the look of a surface, in pixels."""
+        return 2 * self.letters
+
+    @property
+    def inner(self) -> tuple[int, int]:
+        """(W, H) of the picture itself."""
+        return self.size[0], self.size[1] - self.top - self.line - self.letters // 3
+
+    def around(self, image: np.ndarray, time: str, pixels_per_length: float) -> np.ndarray:
+        """A picture (h, W, 3) of the size `inner` with its labels, (H, W, 3)."""
+        from PIL import Image, ImageDraw
+
+        width, height = self.size
+        paper = Image.new("RGB", self.size, _PAPER)
+        paper.paste(Image.fromarray(image), (0, self.top))
+        draw = ImageDraw.Draw(paper)
+        gap = self.letters // 2
+        for n, text in enumerate(self.lines):
+            self._write(draw, (gap, (n + 0.75) * self.line), text)
+        if self.legend is not None:
+            self._draw_legend(draw, self.legend, (len(self.lines) + 0.75) * self.line)
+        first = len(self.lines) + (self.legend is not None) + 0.75
+        for n, row in enumerate(self.rows):
+            self._draw_surfaces(draw, row, (first + n) * self.line)
+        base = height - gap - 1
+        self._write(draw, (gap, base), f"t = {time}")
+        length = round_length(0.25 * width / pixels_per_length)
+        right = width - gap
+        left = right - length * pixels_per_length
+        y = base - round(0.35 * self.letters)
+        draw.line([(left, y), (right, y)], _INK, max(2, self.letters // 8))
+        for end in (left, right):
+            draw.line([(end, y - gap // 2), (end, y + gap // 2)], _INK, 1)
+        self._write(draw, (left - gap, base), f"length {length:g}", "rs")
+        return np.asarray(paper)
+
+    def _draw_surfaces(self, draw: ImageDraw, row: list[DrawnSurface], base: float) -> None:
+        """Draw the line of each surface of a row, with its meaning."""
+        x, y, thick = self.letters / 2, base - 0.3 * self.letters, max(3, self.letters // 5)
+        for surface in row:
+            count = 5 if surface.dashed else len(surface.colours)
+            for n in range(0, count, 2 if surface.dashed else 1):
+                colour = surface.colours[n * len(surface.colours) // count]
+                left, right = (x + self._sample * part / count for part in (n, n + 1))
+                fill = tuple(np.rint(255.0 * colour).astype(int).tolist())
+                draw.line([(left, y), (right, y)], fill, thick)
+            for tick in range(5) if surface.hatched else ():
+                at = x + self._sample * (tick + 0.5) / 5
+                draw.line([(at, y), (at - thick, y + 1.5 * thick)], _INK, 1)
+            x = (
+                self._write(draw, (x + self._sample + self.letters // 3, base), surface.text)
+                + self.letters // 2
+            )
+
+    def _write(self, draw: ImageDraw, place: tuple[float, float], text: str, anchor: str = "ls") -> float:
+        """Write a text; returns where it ends, to the right."""
+        draw.text(place, text, _INK, self.font, anchor)
+        return draw.textbbox(place, text, self.font, anchor)[2]
+
+    def _draw_legend(self, draw: ImageDraw, legend: Legend, base: float) -> None:
+        """The title, and a bar between the numbers of its ends, or each colour with its text."""
+        letters, gap = self.letters, self.letters // 2
+        colours = [tuple(colour) for colour in np.rint(255.0 * legend.colours).astype(int).tolist()]
+        x = self._write(draw, (gap, base), legend.title) + gap
+
+        def block(end: float, colour: tuple[int, ...]) -> float:
+            draw.rectangle([x, base - 0.7 * letters, end, base], colour)
+            return end
+
+        if legend.continuous:
+            x = self._write(draw, (x, base), legend.texts[0]) + gap // 2
+            start, length = x, 0.2 * self.size[0]
+            for n, colour in enumerate(colours, start=1):
+                x = block(start + n * length / len(colours), colour)
+            self._write(draw, (x + gap // 2, base), legend.texts[1])
+            return
+        for colour, text in zip(colours, legend.texts, strict=True):
+            x = self._write(draw, (block(x + letters, colour) + gap // 2, base), text) + gap

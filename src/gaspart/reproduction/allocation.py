@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gaspart.reproduction import budget
+from gaspart.reproduction import cost as budget
 from gaspart.reproduction.claims.judging import judge, sufficient
 from gaspart.reproduction.config import checked
 from gaspart.reproduction.table import MADE_OF

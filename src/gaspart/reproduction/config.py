@@ -3,24 +3,133 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import chdir, contextmanager
+from contextlib import chdir, contextmanager, suppress
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from gaspart.errors import SceneError, unknown_word
-from gaspart.keys import require
+from gaspart.files import resolved
+from gaspart.inspection.checks import Check
+from gaspart.keys import Kind, choice, names, record, require
 from gaspart.keys.values import finite, size
-from gaspart.reproduction.claims.captions import filled, place_fault
-from gaspart.reproduction.config_files import merged_with_default, origin
+from gaspart.reproduction.claims.table import filled, place_fault
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.points import jobs, point_keys
-from gaspart.reproduction.points.config_keys import POINT
+from gaspart.reproduction.points import points as config_keys
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
-from gaspart.reproduction.points.points import figure_points, points
-from gaspart.reproduction.report.caption import divided
-from gaspart.reproduction.schema import schema
-from gaspart.yaml_text import DEEPEST, MOST_VALUES, read_yaml
+from gaspart.reproduction.points.points import POINT, figure_points, points
+from gaspart.reproduction.report.page import divided
+from gaspart.yaml_text import DEEPEST, MOST_VALUES, is_exponential, read_yaml
+
+# The files that a config consists of: merged as by Snakemake, and which of them holds a key.
+
+
+def merged_with_default(path: Path, base: Path | None = None) -> tuple[dict[str, Any], list[Path]]:
+    """A config merged over another, as by the workflow, and the files that it consists of.
+
+    base: the other one, by default the `config.yaml` beside it. Raises SceneError for a file that cannot be
+    read.
+    """
+    path = resolved(path)
+    base = path.parent / "config.yaml" if base is None else resolved(base)
+    files = [base, path] if base.exists() and base != path else [path]
+    merged: dict[str, Any] = {}
+    for file in files:
+        content = read_yaml(file)
+        if not isinstance(content, dict):
+            raise SceneError("config", content, "must be a mapping of keys to values", str(file))
+        merged = _merged(merged, content)
+    return merged, files
+
+
+def _merged(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
+    """Mappings are merged, key by key; anything else is replaced."""
+    both = {key: value for key, value in above.items() if isinstance(value, dict)}
+    both = {key: value for key, value in both.items() if isinstance(below.get(key), dict)}
+    return {**below, **above, **{key: _merged(below[key], value) for key, value in both.items()}}
+
+
+def read_numbers(config: dict, files: Sequence[str | Path]) -> None:
+    """Change numbers such as 1e3, which Snakemake's reader takes for text, into numbers, in a merged config.
+
+    files: those that were merged, in that order; what is in quotes there stays text. Raises SceneError for a
+    file that cannot be read.
+    """
+    _read_numbers(config, [read_yaml(file) for file in files])
+
+
+def _read_numbers(block: Any, held: list[Any]) -> None:
+    """held: what the files have in this place."""
+    for key, value in block.items() if isinstance(block, dict) else enumerate(block):
+        below = []
+        for part in held:
+            with suppress(LookupError, TypeError):  # where this file has something else, or nothing
+                below.append(part[key])
+        if isinstance(value, dict | list):
+            _read_numbers(value, below)
+        elif isinstance(value, str) and is_exponential(value) and value not in below:
+            block[key] = float(value)
+
+
+def origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | None:
+    """The last of the files, given with their contents, that holds the longest part of ``key``; or the option
+    of Snakemake, for a value that is in none of them."""
+    parts = key.replace("[", ".").split(".")
+    dotted = parts.index("scene") if "scene" in parts else len(parts)  # `scene.` and what follows is one key
+    parts[dotted:] = [".".join(parts[dotted:])]
+
+    def held(block: Any) -> tuple[int, Any]:
+        reached = 0
+        for part in parts:
+            if not isinstance(block, dict) or part not in block:
+                break
+            block, reached = block[part], reached + 1
+        return reached, block
+
+    depth, value = held(config)
+    if contents and depth and not isinstance(value, dict):
+        # in their written form, in which nan is equal to itself
+        if repr((depth, value)) not in [repr(held(content)) for _, content in contents]:
+            return "--config"
+    return max(reversed(contents), key=lambda content: held(content[1])[0])[0] if contents else None
+
+
+# The JSON schemas of a config and of a scene file, from the declarations of their keys.
+
+
+_DRAFT = "https://json-schema.org/draft/2020-12/schema"
+_EXPERIMENTS = names("the experiments whose points the figure is made of, in this order")
+
+
+@cache
+def schema(installed: tuple[tuple[str, str], ...] = ()) -> Kind:
+    """The JSON schema of a config. Scenes and engines are validated by themselves when a point makes them.
+
+    installed: figures of the config whose kind another installed package brings, each with its kind.
+    """
+    figures = {
+        figure: record({"experiments": _EXPERIMENTS, **settings})
+        for figure, settings in registry.settings().items()
+    }
+    figures |= {figure: _of_kind(kind) for figure, kind in installed}
+    (own,) = map(_of_kind, registry.kinds())
+    return Kind({"$schema": _DRAFT, **record(config_keys.config(figures, own))})
+
+
+def _of_kind(kind: str) -> Kind:
+    """The entry of a figure with a name of one's own."""
+    stated = choice("the kind of a figure with a name of one's own", kind)
+    return record({"kind": stated, "experiments": _EXPERIMENTS, **registry.settings_of_kind(kind)})
+
+
+def scene_schema() -> Kind:
+    """The JSON schema of a scene file; rules that concern several keys are not part of it."""
+    from gaspart.keys import schema_of
+    from gaspart.scene.scene import Scene
+
+    return Kind({"$schema": _DRAFT, **schema_of(Scene)})
 
 
 @contextmanager
@@ -204,3 +313,17 @@ def explained(error: SceneError, config: dict, module: bool) -> SceneError:
         return SceneError("config", config, rule)
     rule = "has no config/config.yaml, over which others are laid: run Snakemake in the project's folder"
     return SceneError("folder", str(Path.cwd()), rule)
+
+
+# Validation of configs of the workflow.
+
+
+def judge_config(path: Path) -> list[Check]:
+    """Every point of every grid, and every figure. Raises SceneError for a config that cannot be run.
+
+    A config next to `config.yaml` is merged over it, as in the workflow.
+    """
+    with checked(path) as (merged, planned):
+        counts = [point.extents.particles for points in planned.values() for point in points.values()]
+    text = f"{len(planned)} experiments of {len(counts)} points, up to {max(counts)} particles; "
+    return [Check("config", True, text + f"{len(merged['figures'])} figures")]

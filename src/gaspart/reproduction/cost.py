@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
+import csv
 import math
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from gaspart import theory
-from gaspart.accuracy import speed, table
+from gaspart.accuracy import cost_table as speed
+from gaspart.accuracy import cost_table as table
+from gaspart.errors import SceneError
+from gaspart.files import whole_file
+from gaspart.reproduction import job_time
+from gaspart.reproduction.claims.judging import Claim, judge, sufficient
 from gaspart.reproduction.config import checked
+from gaspart.reproduction.families import registry
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import Gas
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def predict(path: str) -> list[str]:
@@ -62,3 +76,147 @@ def _seconds(point: Point) -> float | None:
 def _speed(gas: Gas, engine: str, precision: str) -> float:
     """Relative speed at the nearest power of ten of the number of particles, so that few sizes are timed."""
     return speed.factor(gas.dimension, engine, precision, 10 ** round(math.log10(max(gas.count, 10))))
+
+
+# Where the processor time of a reproduction went, and how long the runs of each figure need to be.
+#
+# An uncertainty falls as the inverse root of the length of the runs: a claim with the uncertainty u that
+# requires u0 needs (u / u0)^2 times what was measured.
+
+
+_WITHOUT_CHANCE = ("identity", "family")
+"""Kinds of claims that longer runs do not decide."""
+_COLUMNS = ("figure", "cpu_seconds", "shared_seconds", "claim", "verdict", "required", "reached", "multiple")
+
+
+@dataclass(frozen=True)
+class Need:
+    """A claim; required, reached: uncertainties; multiple: of the measurement, which would just decide it."""
+
+    claim: str
+    verdict: str
+    required: float
+    reached: float
+    multiple: float
+
+
+@dataclass(frozen=True)
+class Budget:
+    """A figure; seconds: processor time of its points, its numbers and its picture; shared: of points that
+    other figures show as well; needs: its claims that runs decide, the most demanding first."""
+
+    figure: str
+    seconds: float
+    shared: float
+    needs: tuple[Need, ...]
+
+    @property
+    def conclusive(self) -> tuple[Need, ...]:
+        """The claims that are decided."""
+        return tuple(need for need in self.needs if need.multiple <= 1.0)
+
+    @property
+    def sufficient(self) -> float:
+        """The multiple of the figure's runs at which all claims that are decided just would be; 0 without."""
+        return max((need.multiple for need in self.conclusive), default=0.0)
+
+
+def budgets(path: str | Path) -> list[Budget]:
+    """The budget of each figure of a config of which the workflow has made all, the dearest figure first.
+
+    Raises SceneError for an invalid config, and if a figure or a time is not there.
+    """
+    import xarray as xr
+
+    with checked(path) as (config, planned):
+        results = Path("results") / (config.get("run") or "")
+        every = shown_points(config, planned)
+        made = []
+        for figure, points in every.items():
+            dataset = results / "measurements" / f"{figure}.nc"
+            if not dataset.is_file():
+                raise SceneError("results", str(dataset), "is not there: run the workflow first")
+            others = {point for other in every if other != figure for point in every[other]}
+            times = {point: point_seconds(results, point) for point in points}
+            made.append(
+                Budget(
+                    figure,
+                    sum(times.values()) + _made(results, figure),
+                    sum(seconds for point, seconds in times.items() if point in others),
+                    _needs(claims_of(figure, config["figures"][figure], xr.load_dataset(dataset))),
+                )
+            )
+    return sorted(made, key=lambda one: -one.seconds)
+
+
+def lines(path: str | Path, target: str | Path | None = None) -> list[str]:
+    """The lines that `gaspart budget` prints of a config; raises as `budgets` does. target: a CSV file, to
+    which they are written instead, a line for each claim."""
+    found = budgets(path)
+    if target is not None:
+        _write(found, target)
+        return []
+    text = [f"{'figure':26s} {'CPU s':>8s} {'shared':>8s}  decided  of {'length that suffices':>22s}"]
+    for one in found:
+        length = f"{one.sufficient:.2g}" if one.conclusive else ""
+        counted = f"{len(one.conclusive):7d} {len(one.needs):4d}"
+        text.append(f"{one.figure:26s} {one.seconds:8.1f} {one.shared:8.1f}  {counted} {length:>22s}")
+        text += [f"    {need.multiple:8.2g} times: {need.claim}" for need in one.needs if need.multiple > 1.0]
+    return text
+
+
+def _write(found: Sequence[Budget], target: str | Path) -> None:
+    with whole_file(target) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(_COLUMNS)
+        for one in found:
+            own = one.figure, f"{one.seconds:.1f}", f"{one.shared:.1f}"
+            for need in one.needs:
+                numbers = (f"{number:.3g}" for number in (need.required, need.reached, need.multiple))
+                table.writerow((*own, need.claim, need.verdict, *numbers))
+
+
+def shown_points(
+    config: Mapping, planned: Mapping[str, Mapping[str, Point]]
+) -> dict[str, list[tuple[str, str]]]:
+    """Return the experiment and the name of each point of each figure."""
+    return {
+        figure: [(experiment, name) for experiment in block["experiments"] for name in planned[experiment]]
+        for figure, block in config["figures"].items()
+    }
+
+
+def point_seconds(results: Path, point: tuple[str, str]) -> float:
+    """Return the processor time of a point's job. Raises SceneError if it was not made."""
+    for rule in ("simulate", "compute"):
+        if used := job_time.used(results, rule, *point):
+            return used.seconds
+    raise SceneError("results", str(results / "logs"), f"has no time of the point {'/'.join(point)}")
+
+
+def _made(results: Path, figure: str) -> float:
+    """Return the processor time of the jobs that make a figure of its points: numbers, verdicts, picture."""
+    jobs = (job_time.used(results, rule, figure) for rule in ("measure", "judge", "draw"))
+    return sum(used.seconds for used in jobs if used)
+
+
+def claims_of(figure: str, block: Mapping, dataset: xr.Dataset) -> list[Claim]:
+    """Return the claims of a figure, as the workflow judges them."""
+    family, name = registry.functions(figure, block)
+    state = getattr(import_module(registry.module(family, "claims")), name)
+    return list(state(dataset, *registry.stated_claims(block)))
+
+
+def is_decided_by_runs(claim: Claim) -> bool:
+    """Return True if longer runs may decide a claim."""
+    return not (claim.kind in _WITHOUT_CHANCE or claim.form == "distribution" or claim.no_verdict)
+
+
+def _needs(stated: Sequence[Claim]) -> tuple[Need, ...]:
+    """Return those claims of a figure that runs decide, the most demanding first."""
+    found = []
+    for claim, verdict in zip(stated, judge(stated), strict=True):
+        multiple = sufficient(claim)
+        if is_decided_by_runs(claim) and math.isfinite(multiple):
+            found.append(Need(claim.claim, verdict, claim.required, claim.measured.error, multiple))
+    return tuple(sorted(found, key=lambda need: -need.multiple))

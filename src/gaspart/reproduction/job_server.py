@@ -38,8 +38,8 @@ _PRELOADED = (
     *("matplotlib.backends.backend_svg", "gaspart.rendering.style", "gaspart.rendering.legibility"),
     *("gaspart.simulation", "gaspart.trajectory.run", "gaspart.trajectory.provenance", "gaspart.files"),
     *("gaspart.reproduction.claims", "gaspart.reproduction.job_time", "gaspart.reproduction.points.point"),
-    *("gaspart.reproduction.points.variants", "gaspart.reproduction.points.jobs"),
-    *("gaspart.reproduction.jobs.arguments", "gaspart.state.initial"),
+    *("gaspart.reproduction.points.point", "gaspart.reproduction.points.jobs"),
+    *("gaspart.reproduction.jobs.data", "gaspart.state.initial"),
 )
 _PARTS = ("measure", "claims", "figure")
 _WITH_PARENT = 1
@@ -112,7 +112,7 @@ def serve(listener: socket.socket, path: Path) -> None:
 
 def _preload() -> None:
     """Load what jobs load. What cannot be loaded is reported by the job that needs it."""
-    from gaspart.kernels.compile.loading import load_numba
+    from gaspart.kernels.compile.cache import load_numba
     from gaspart.reproduction.families.registry import module, titles
 
     os.environ["OPENBLAS_NUM_THREADS"] = "1"  # a process with threads cannot be copied

@@ -23,10 +23,8 @@ from gaspart.reproduction.jobs.simulate import recipes
 from gaspart.reproduction.points.measurable import distinct, require_observable
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.points.point_keys import ENGINE_KEYS, EXTENTS, GAS, PREFIX
-from gaspart.reproduction.sweep_axes import axes_of, names_of
-from gaspart.reproduction.sweep_plot import SweepTable
-from gaspart.reproduction.sweep_points import make_all
-from gaspart.reproduction.sweep_table import Measured, measured, table
+from gaspart.reproduction.sweep_points import axes_of, make_all, names_of
+from gaspart.reproduction.sweep_table import Measured, SweepTable, measured, table
 from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations

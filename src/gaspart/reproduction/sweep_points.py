@@ -6,18 +6,24 @@ the files of all, such as a full disk or a trajectory of another sweep, ends the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import numbers
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence, Set
 from contextlib import suppress
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from gaspart.analysis.observables import known
 from gaspart.errors import SceneError, SimulationError
 from gaspart.files import only_process
-from gaspart.kernels.compile.loading import load_numba
+from gaspart.kernels.compile.cache import load_numba
+from gaspart.reproduction.config import check_values
 from gaspart.reproduction.jobs.replicas import replica_paths, write_replicas
 from gaspart.reproduction.jobs.simulate import recipes, record
-from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.points.variants import compile_kernels, compile_task, variant
+from gaspart.reproduction.points.point import Point, compile_kernels, compile_task, variant
+from gaspart.reproduction.points.points import MOST_POINTS
 from gaspart.workers import in_processes, require_processes
 
 
@@ -70,3 +76,93 @@ def _make_in_process(tell: Callable[[Any], None], values: dict, path: str, overw
     """Make a point, given as a dictionary, in a process of its own; see `make`."""
     load_numba(ours=True)
     return make(Point.from_dict(values, path), overwrite)
+
+
+# The request of a sweep: the values of each key that varies, and the observables, as plain values.
+
+
+_SAME_FOR_ALL = (
+    *("duration", "until", "at_most", "samples", "equilibration", "correlations", "replicas"),
+    *("seed", "workers", "engine", "observables", "scene"),
+)
+"""Arguments of a sweep, which are no keys."""
+
+
+def axes_of(over: object) -> dict[str, list]:
+    """The values of each key that varies, as Python's own numbers, words and lists; a single value counts as
+    a list of one. Raises SceneError."""
+    if not isinstance(over, Mapping):
+        rule = "must be a mapping from each key that varies to its values, such as {'count': [50, 100]}"
+        raise SceneError("over", over, rule)
+    axes = {}
+    for key, values in over.items():
+        if not isinstance(key, str):
+            raise SceneError("over", key, "a key must be text, such as 'packing_fraction'")
+        if key in _SAME_FOR_ALL:
+            rule = "is an argument of a sweep and the same for all points"
+            raise SceneError(f"over.{key}", values, rule + ("; replicas differ by it" * (key == "seed")))
+        axes[key] = _values(f"over.{key}", values)
+    check_values({"over": axes})
+    for key, listed in axes.items():
+        _refuse_repeated(f"over.{key}", listed)
+    return axes
+
+
+def names_of(observables: object, axes: Mapping[str, list]) -> list[str]:
+    """The observables, each once; a single name counts as a list of one. Raises SceneError."""
+    given = [observables] if isinstance(observables, str) else observables
+    if not isinstance(given, Iterable) or isinstance(given, bytes | Mapping):
+        raise SceneError("observables", observables, "must be the names of observables")
+    names = list(dict.fromkeys([known(name) for name in given]))
+    for name in names:
+        if name in axes:
+            rule = f"is also a key that varies: vary species.0.{name} instead"
+            raise SceneError("observables", name, rule)
+    return names
+
+
+def _values(where: str, given: Any) -> list:
+    """The values of a key. Raises SceneError for too many, or an iterator that fails."""
+    plain = _plain(given)
+    if isinstance(plain, str | bytes | Mapping) or not isinstance(plain, Iterable):
+        return [plain]
+    try:
+        listed = list(islice(plain, MOST_POINTS + 1))
+    except Exception:  # an iterator of the user's own
+        raise SceneError(where, given, "must be a list of values") from None
+    if len(listed) > MOST_POINTS:
+        raise SceneError(where, len(listed), f"a grid may have {MOST_POINTS} points")
+    if not listed:
+        raise SceneError(where, listed, "must not be empty")
+    return [_plain(value) for value in listed]
+
+
+def _plain(value: Any) -> Any:
+    """A value with the numbers and arrays of numpy, and of what converts to these, as Python's."""
+    if hasattr(value, "__array__"):
+        value = np.asarray(value).tolist()
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, str | bytes | range):
+        return [_plain(item) for item in value]
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        return value
+    return int(value) if isinstance(value, numbers.Integral) else float(value)
+
+
+def _refuse_repeated(where: str, values: list) -> None:
+    """Raise SceneError for a value that is there twice, also as 1 and as 1.0."""
+    seen = set()
+    for value in values:
+        one = _hashable(value)
+        if one in seen:
+            raise SceneError(where, value, "is there twice: every point of a grid must be different")
+        seen.add(one)
+
+
+def _hashable(value: Any) -> Hashable:
+    if isinstance(value, Mapping):
+        return tuple((key, _hashable(item)) for key, item in value.items())
+    if isinstance(value, list | Set):
+        return tuple(_hashable(item) for item in value)
+    return value if isinstance(value, Hashable) else repr(value)

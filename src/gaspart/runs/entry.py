@@ -30,7 +30,7 @@ from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.last_state import last_state
-from gaspart.trajectory.partial import partial_path
+from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.recording import Progress
 from gaspart.trajectory.replicas import found, in_replicas, replica_paths
@@ -245,7 +245,7 @@ def _start(
     paths = replica_paths(_required(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
     if not isinstance(initial, str | Path):
         return initial
-    from gaspart.inspection.start import STARTS, read_state  # which few runs need
+    from gaspart.inspection.readers import STARTS, read_state  # which few runs need
 
     for output in map(output_path, paths):
         for place in (output, partial_path(output), checkpoint_path(output)):

@@ -15,9 +15,9 @@ from gaspart.accuracy.reached import AccuracyStatus, Examiner
 from gaspart.errors import SceneError, SimulationError
 from gaspart.files import output_path
 from gaspart.interruption import set_note
-from gaspart.kernels.compile.loading import load_numba
+from gaspart.kernels.compile.cache import load_numba
 from gaspart.trajectory import run as trajectory
-from gaspart.trajectory.partial import partial_path
+from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.replicas import beside, path_of_all, replica_paths
 from gaspart.trajectory.run import WriteOptions, begun

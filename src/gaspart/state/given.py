@@ -16,9 +16,9 @@ from gaspart.scene.features import FEATURES
 from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow_of_rate
+from gaspart.state.boxes import deepest_overlap
 from gaspart.state.initial import assembled, in_flow, masses_of
 from gaspart.state.insertion import per_particle
-from gaspart.state.overlaps import deepest_overlap
 from gaspart.state.state import State
 
 _SINGLE = 2.0**-24

@@ -33,7 +33,7 @@ def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     walls : ndarray of int, shape (M,)
         Index of the wall of each row.
     """
-    from gaspart.kernels.obstacles.distance import PLATE, SEGMENT
+    from gaspart.kernels.obstacles.interior_wall import PLATE, SEGMENT
 
     lengths, reach = np.array(scene.container.lengths), scene.largest_radius * (1 + _SLACK)
     rows, walls = [], []

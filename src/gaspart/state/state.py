@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from gaspart.scene.faces import FLOW, GRADIENT
+from gaspart.scene.scene import Scene
+from gaspart.scene.shear import flow
 
 
 @dataclass(repr=False)
@@ -408,3 +410,30 @@ def _cross(state: State) -> np.ndarray:
     """Return r x v of each particle in 2D, (N,)."""
     r, v = state.unwrapped, state.velocities
     return r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0]
+
+
+# Velocity of the centre of mass of a gas, about which its fluxes are.
+
+
+_ROUNDED = 2.0**-46  # of the rms speed: a mean velocity that is only rounding
+
+
+def drift_of(scene: Scene, state: State) -> np.ndarray:
+    """Return the velocity of the centre of mass of a state without fixed particles.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of the state. In a sheared gas the velocity is about the flow.
+    state : State
+        State.
+
+    Returns
+    -------
+    ndarray, shape (d,), [length/time]
+        Velocity; 0 if it is only rounding.
+    """
+    velocities = state.velocities - flow(scene, state.positions)
+    shares = (state.masses / state.masses.sum())[:, None] if state.count else np.zeros((0, 1))
+    drift = (shares * velocities).sum(axis=0)
+    return np.where(abs(drift) > _ROUNDED * np.sqrt((shares * velocities**2).sum()), drift, 0.0)

@@ -6,10 +6,9 @@ centre is within w of the lowest position that it can reach.
 
 import numpy as np
 
-from gaspart.theory._arguments import Numbers, Values, checked, checked_packing_fraction
 from gaspart.theory.equations import STABLE_DISCS
-from gaspart.theory.geometry import particle_volume
-from gaspart.theory.potential import packing_fraction_at
+from gaspart.theory.geometry import Numbers, Values, checked, checked_packing_fraction, particle_volume
+from gaspart.theory.tables import packing_fraction_at
 
 _EXACT = np.sqrt(0.75)
 """Height above a layer of spheres of diameter 1 above which a point is near one sphere at most."""

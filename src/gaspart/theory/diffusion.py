@@ -8,10 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
-from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 from gaspart.theory.brownian import langevin_msd
 from gaspart.theory.enskog import collision_rate, enskog_diffusion, enskog_viscosity, mean_free_path
-from gaspart.theory.geometry import number_density
+from gaspart.theory.geometry import (
+    Numbers,
+    Values,
+    checked,
+    checked_dimension,
+    checked_packing_fraction,
+    number_density,
+)
 
 ERPENBECK_WOOD_UNCERTAINTY = 0.007
 """Relative uncertainty of `erpenbeck_wood_ratio` up to eta = 0.45: the largest difference from the table of

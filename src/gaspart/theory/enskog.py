@@ -13,8 +13,14 @@ import math
 
 import numpy as np
 
-from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
-from gaspart.theory.geometry import number_density, unit_sphere_surface
+from gaspart.theory.geometry import (
+    Numbers,
+    Values,
+    checked,
+    checked_dimension,
+    number_density,
+    unit_sphere_surface,
+)
 from gaspart.theory.speeds import mean_speed, mean_speed_factor
 from gaspart.theory.state import compressibility_factor, contact_value, finite_size_correction
 

@@ -7,7 +7,7 @@ ValueError, outside the stated range. `state` defines the reference equation.
 import numpy as np
 
 from gaspart.scene.geometry import CLOSE_PACKING
-from gaspart.theory._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
+from gaspart.theory.geometry import Numbers, Values, checked_dimension, checked_packing_fraction
 
 STABLE_DISCS = 0.70
 """Highest packing fraction of the disc fluid, by Bernard and Krauth (2011): see `freezing`."""

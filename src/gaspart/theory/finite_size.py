@@ -23,12 +23,13 @@ from functools import cache
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
-from gaspart.theory.geometry import particle_volume
-from gaspart.theory.potential import (
-    chemical_potential_uncertainty,
-    excess_chemical_potential,
-    insertion_finite_size_correction,
+from gaspart.theory.geometry import (
+    Numbers,
+    Values,
+    checked,
+    checked_dimension,
+    checked_packing_fraction,
+    particle_volume,
 )
 from gaspart.theory.state import (
     HIGHEST_PACKING_FRACTION,
@@ -36,7 +37,12 @@ from gaspart.theory.state import (
     compressibility_uncertainty,
     finite_size_correction,
 )
-from gaspart.theory.tables import small_systems
+from gaspart.theory.tables import (
+    chemical_potential_uncertainty,
+    excess_chemical_potential,
+    insertion_finite_size_correction,
+    small_systems,
+)
 
 _PAIR_HIGHEST = {2: math.pi / 4.0, 3: math.pi / (6.0 * math.sqrt(2.0))}
 """Packing fraction of two particles in a container of side sqrt(2) diameters, where the spheres about the

@@ -13,8 +13,8 @@ import math
 import numpy as np
 from scipy.special import erf, ive
 
-from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 from gaspart.theory.enskog import collision_rate
+from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension
 from gaspart.theory.speeds import maxwell_pdf, mean_speed
 
 _SPEEDS = 160

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
 from gaspart.theory.enskog import collision_rate
+from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension
 
 DISCHARGE_EXPONENT = 1.5
 """Exponent of the width of an orifice, minus some diameters of the grains, in the flow rate of grains in two

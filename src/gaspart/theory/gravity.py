@@ -10,9 +10,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
-from gaspart.theory.geometry import particle_volume
-from gaspart.theory.potential import packing_fraction_at
+from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension, particle_volume
+from gaspart.theory.tables import packing_fraction_at
 
 
 @checked

@@ -19,8 +19,14 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.theory._arguments import Numbers, checked, checked_dimension, checked_packing_fraction
-from gaspart.theory.geometry import particle_volume, unit_sphere_surface
+from gaspart.theory.geometry import (
+    Numbers,
+    checked,
+    checked_dimension,
+    checked_packing_fraction,
+    particle_volume,
+    unit_sphere_surface,
+)
 from gaspart.theory.state import HIGHEST_PACKING_FRACTION, contact_value
 
 MIXTURE_THEORIES = {"boublik": (3,), "linear": (2, 3), "santos": (2, 3)}

@@ -34,11 +34,16 @@ from typing import TypeAlias
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.theory._arguments import Numbers, Values, checked
 from gaspart.theory.enskog import enskog_conductivity, enskog_viscosity, mean_free_path
-from gaspart.theory.geometry import number_density
-from gaspart.theory.modes import heat_capacities, sound_attenuation
-from gaspart.theory.relaxing_modes import Modes, Relaxation, longitudinal_modes, transverse_modes
+from gaspart.theory.geometry import Numbers, Values, checked, number_density
+from gaspart.theory.modes import (
+    Modes,
+    Relaxation,
+    heat_capacities,
+    longitudinal_modes,
+    sound_attenuation,
+    transverse_modes,
+)
 from gaspart.theory.state import compressibility_factor, speed_of_sound
 
 QUANTITIES = ("viscosity", "conductivity")

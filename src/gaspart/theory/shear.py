@@ -6,8 +6,8 @@ accommodation, a distance `length` apart, and their velocities differ by `veloci
 
 import numpy as np
 
-from gaspart.theory._arguments import Numbers, Values, checked
 from gaspart.theory.enskog import enskog_conductivity, enskog_viscosity
+from gaspart.theory.geometry import Numbers, Values, checked
 from gaspart.theory.heat import FULL
 
 VELOCITY_SLIP = 1.1113

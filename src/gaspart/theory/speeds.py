@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension
+from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension
 
 _TABLES = Path(__file__).parent / "data"
 

@@ -6,8 +6,8 @@ Everything here is dimensionless and depends on the packing fraction alone.
 
 import numpy as np
 
-from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 from gaspart.theory.equations import METASTABLE_SPHERES, STABLE_DISCS, kolafa_labik_malijevsky, liu
+from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension, checked_packing_fraction
 from gaspart.theory.virial import (
     HIGHEST_ORDER,
     linear_tail,

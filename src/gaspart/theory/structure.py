@@ -9,8 +9,8 @@ from functools import cache
 
 import numpy as np
 
-from gaspart.theory._arguments import Numbers, Values, checked, checked_packing_fraction
 from gaspart.theory.equations import METASTABLE_SPHERES, carnahan_starling
+from gaspart.theory.geometry import Numbers, Values, checked, checked_packing_fraction
 
 _NODES = 64  # on a circle around each zero, of `_PART` of the distance to the nearest other one
 _PART = 0.35

@@ -1,12 +1,21 @@
 """Tables of values that programs have measured: this program and others."""
 
+from __future__ import annotations
+
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.theory._arguments import checked_dimension
+from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension, checked_packing_fraction
+from gaspart.theory.state import (
+    HIGHEST_PACKING_FRACTION,
+    compressibility_factor,
+    compressibility_uncertainty,
+    contact_value,
+    reduced_compressibility,
+)
 
 
 def literature(quantity: str, dimension: int) -> np.recarray:
@@ -152,3 +161,266 @@ def _read(table: str) -> np.recarray:
     """Return the rows of a table."""
     path = Path(__file__).parent / "data" / f"{table}.csv"
     return np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8").view(np.recarray)
+
+
+# Chemical potential of the fluid, from the reference equation of state.
+#
+# It is in units of k_B T, beyond the potential of an ideal gas. The activity is eta e^{mu_excess}, which
+# is eta when dilute.
+
+
+_LOWEST = 1e-9
+"""Packing fraction below which the fluid is an ideal gas to nine digits."""
+_STEP = 2e-3  # of central differences of the compressibility
+
+
+def excess_free_energy(packing_fraction: Numbers, dimension: int) -> Values:
+    """Compute the excess free energy per particle from the equation of state.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        F_excess / (N k_B T).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    The integral from 0 to eta of (Z - 1) / eta' (exact thermodynamics), with Z of `compressibility_factor`,
+    by Gauss and Legendre. N times its negative is the logarithm of the configuration integral Q of source C,
+    Eq. 46, of a large container.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.excess_free_energy(0.3, dimension=3).round(4))
+    1.9015
+    """
+    eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    inner = 0.5 * eta[..., None] * (nodes + 1.0)
+    return 0.5 * eta * 2.0 ** (dimension - 1) * (contact_value(inner, dimension) @ weights)
+
+
+def excess_chemical_potential(packing_fraction: Numbers, dimension: int) -> Values:
+    """Compute the excess chemical potential from the equation of state.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Excess potential mu_excess / (k_B T).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    See Also
+    --------
+    chemical_potential_uncertainty : Standard uncertainty of this value.
+
+    Notes
+    -----
+    Z - 1 + `excess_free_energy` (exact thermodynamics).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.excess_chemical_potential(0.3, dimension=3).round(4))
+    4.8854
+    """
+    excess = compressibility_factor(packing_fraction, dimension) - 1.0
+    return excess + excess_free_energy(packing_fraction, dimension)
+
+
+def chemical_potential_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
+    """Compute the standard uncertainty of `excess_chemical_potential`.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Standard uncertainty of mu_excess / (k_B T).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    The uncertainty of Z at this packing fraction and below, of one sign throughout (computed estimate).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(f"{theory.chemical_potential_uncertainty(0.3, dimension=3):.2g}")
+    2.4e-05
+    """
+    eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    inner = 0.5 * eta[..., None] * (nodes + 1.0)
+    below = (compressibility_uncertainty(inner, dimension) / (nodes + 1.0)) @ weights
+    return compressibility_uncertainty(eta, dimension) + below
+
+
+def activity(packing_fraction: Numbers, dimension: int) -> Values:
+    """Compute the activity from the packing fraction.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        Activity eta exp(mu_excess / k_B T).
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    See Also
+    --------
+    packing_fraction_at : Inverse of this function.
+
+    Notes
+    -----
+    mu_excess is `excess_chemical_potential`.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.activity(0.3, dimension=3).round(2))
+    39.7
+    """
+    return np.asarray(packing_fraction) * np.exp(excess_chemical_potential(packing_fraction, dimension))
+
+
+@checked
+def insertion_finite_size_correction(packing_fraction: Numbers, dimension: int, count: int) -> Values:
+    """Compute the shift of the insertion potential in a periodic container of N particles.
+
+    Parameters
+    ----------
+    packing_fraction : array_like, [1]
+        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
+    dimension : {2, 3}
+        Discs or spheres.
+    count : int
+        Number N of particles.
+
+    Returns
+    -------
+    ndarray, same shape as `packing_fraction`, [1]
+        -ln P_N - mu_excess / (k_B T), to the first order in 1/N. P_N is the chance that a random position in
+        the container is free for another particle.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    See Also
+    --------
+    mixture_insertion_correction : Correction for a mixture.
+
+    Notes
+    -----
+    With the configuration integral Q_N as in `state.finite_size_correction`, P_N = Q_(N+1) / (V Q_N) is
+
+        (1 / 2N) [1 / S - 1 + eta S' / S],    S = `reduced_compressibility`, S' its derivative by eta
+
+    [1]_. It is zero in the first order in the density, as is exact.
+
+    References
+    ----------
+    .. [1] J. I. Siepmann, I. R. McDonald and D. Frenkel, J. Phys.: Condens. Matter 4, 679 (1992).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.insertion_finite_size_correction(0.3, dimension=3, count=100).round(4))
+    0.0345
+    """
+    highest = HIGHEST_PACKING_FRACTION[checked_dimension(dimension)]
+    eta = np.clip(checked_packing_fraction(packing_fraction, highest), _STEP, highest - _STEP)
+    s = reduced_compressibility(eta, dimension)
+    low, high = (reduced_compressibility(eta + step, dimension) for step in (-_STEP, _STEP))
+    slope = (high - low) / (2.0 * _STEP)
+    return 0.5 / count * (1.0 / s - 1.0 + eta * slope / s)
+
+
+@cache
+def _table(dimension: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return ln(eta) and ln(activity) from `_LOWEST` to the end of the reference."""
+    eta = np.geomspace(_LOWEST, HIGHEST_PACKING_FRACTION[dimension], 12001)
+    eta[-1] = HIGHEST_PACKING_FRACTION[dimension]
+    return np.log(eta), np.log(eta) + excess_chemical_potential(eta, dimension)
+
+
+@checked
+def packing_fraction_at(activity: Numbers, dimension: int) -> Values:
+    """Compute the packing fraction from the activity.
+
+    Parameters
+    ----------
+    activity : array_like, [1]
+        Activity eta exp(mu_excess / k_B T), above 0.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, same shape as `activity`, [1]
+        Packing fraction eta, with a relative error of at most 1e-5.
+
+    Raises
+    ------
+    SceneError
+        If `dimension` is not 2 or 3, or if an activity is negative or not finite.
+    ValueError
+        If an activity is above the reference's range.
+
+    See Also
+    --------
+    activity : Inverse of this function.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> float(theory.packing_fraction_at(15.0, dimension=3).round(4))
+    0.2697
+    """
+    activity = np.asarray(activity, dtype=float)
+    eta, table = _table(checked_dimension(dimension))
+    if np.any(np.log(activity) > table[-1]):
+        raise ValueError(f"activity: {np.max(activity):g} (above the reference's range)")
+    return np.where(activity < _LOWEST, activity, np.exp(np.interp(np.log(activity), table, eta)))

@@ -11,7 +11,7 @@ Contacts with the floor are as inelastic as contacts of particles. All results a
 
 import math
 
-from gaspart.theory._arguments import Numbers, Values, checked_range
+from gaspart.theory.geometry import Numbers, Values, checked_range
 
 # Of the first order in the packing fraction: 2/3 of that of the contact value, b_3 / 2 of discs (Rowlinson
 # 1964), less 4/3, since the volume of the discs lifts the bed.

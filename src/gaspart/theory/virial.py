@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.scene.geometry import CLOSE_PACKING
-from gaspart.theory._arguments import Numbers, Values, checked_dimension, checked_packing_fraction
+from gaspart.theory.geometry import Numbers, Values, checked_dimension, checked_packing_fraction
 
 HIGHEST_ORDER = 10
 """Order up to which all virial coefficients are known."""

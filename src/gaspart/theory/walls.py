@@ -26,8 +26,14 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.theory._arguments import Numbers, Values, checked, checked_dimension, checked_packing_fraction
-from gaspart.theory.geometry import number_density
+from gaspart.theory.geometry import (
+    Numbers,
+    Values,
+    checked,
+    checked_dimension,
+    checked_packing_fraction,
+    number_density,
+)
 from gaspart.theory.state import compressibility_factor, compressibility_uncertainty
 
 _DENSEST = 0.49

@@ -1,23 +1,112 @@
-"""Opening the file of a trajectory, with its header and its number of frames checked against its size."""
+"""The file of a trajectory while it is being written: its name, what it is, and its lock."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import netCDF4
+import numpy as np
+import xarray as xr
+from xarray.backends import BackendArray, NetCDF4DataStore
+from xarray.core import indexing
 
 from gaspart.errors import SceneError
-from gaspart.files import open_regular
+from gaspart.files import FileKind, may_replace, only_process, open_regular
 from gaspart.scene.scene import Scene
-from gaspart.system import descriptor_path
+from gaspart.system import NO_LINK, descriptor_path
 from gaspart.trajectory import amber
-from gaspart.trajectory.frames import CheckedFrames, damaged_frame, frame_count
-from gaspart.trajectory.partial import PARTIAL, replica_path
+from gaspart.trajectory.amber import CheckedFrames, damaged_frame, frame_count
 
 if TYPE_CHECKING:
     import netCDF4
+
+
+PARTIAL = ".partial"
+"""The suffix of a trajectory that is being written."""
+
+
+def partial_path(path: Path) -> Path:
+    """Where a trajectory is while it is being written. Raises SceneError for a path without a name."""
+    if not path.name:
+        raise SceneError("path", str(path), "must be the name of a file")
+    return path.with_name(path.name + PARTIAL)
+
+
+def is_blank(path: Path) -> bool:
+    """Whether nothing was written to the file yet."""
+    with open_regular(path) as file:
+        return amber.is_blank(file)
+
+
+def _is_trajectory(path: Path) -> bool:
+    with open_regular(path) as file:
+        head = file.read(4096)
+    return head.startswith(b"CDF") and b"AMBER" in head and b"gaspart" in head
+
+
+TRAJECTORY = FileKind("a trajectory written by gaspart", _is_trajectory)
+UNFINISHED = FileKind("an unfinished trajectory", lambda path: is_blank(path) or _is_trajectory(path))
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Raise SceneError for OSError: a full disk, a read-only folder, and the like."""
+    try:
+        yield
+    except OSError as error:
+        rule = f"cannot be written: {error.strerror}; what was written before is kept"
+        raise SceneError("path", str(path), rule) from None
+
+
+@contextmanager
+def locked(partial: Path) -> Iterator[BinaryIO]:
+    """The partial file, open to read and write, without a buffer, locked by this process. It may be closed
+    within the block, as before it is renamed; the lock stays.
+
+    Raises SceneError for a file that gaspart did not write, for a link, and for a file with a second name:
+    what is written to it would change what the user has under that name.
+    """
+    with suppress(FileNotFoundError):  # another process has finished it just now
+        may_replace(partial, UNFINISHED, overwrite=True)
+    with _alone(partial), open(partial, "r+b", buffering=0, opener=_open_or_create) as file:
+        may_replace(partial, UNFINISHED, overwrite=True)  # again: it may have appeared before it was opened
+        if os.fstat(file.fileno()).st_nlink > 1:
+            rule = "is a file with a second name (a hard link), which would change too; copy it instead"
+            raise SceneError("path", str(partial), rule)
+        try:
+            yield file
+        finally:
+            file.close()
+            with suppress(FileNotFoundError):  # it was renamed
+                if not partial.lstat().st_size:
+                    partial.unlink()
+
+
+@contextmanager
+def _alone(partial: Path) -> Iterator[None]:
+    """Hold the lock of a partial file. Raises SceneError if another process does."""
+    try:
+        with only_process(partial):
+            yield
+    except BlockingIOError:
+        raise SceneError("path", str(partial), "is being written by another process") from None
+
+
+def _open_or_create(path: str, flags: int) -> int:
+    """The opener of a file that may not exist yet, and is no link."""
+    return os.open(path, flags | os.O_CREAT | NO_LINK, 0o666)
+
+
+def replica_path(path: Path, number: int) -> Path:
+    """Return the file of a replica of the run at a path: `run-1.nc`, `run-2.nc` ... of `run.nc`."""
+    return path.with_name(f"{path.stem}-{number}{path.suffix}")
+
+
+# Opening the file of a trajectory, with its header and its number of frames checked against its size.
 
 
 def run_path(given: object) -> Path:
@@ -110,3 +199,58 @@ def check_frames(path: Path, numbers: range | None = None) -> None:
 def damage(frame: int) -> str:
     """The message about a frame whose checksum is wrong."""
     return f"frame {frame} is damaged: its checksum does not match"
+
+
+# A trajectory for xarray, whose frames are checked against their sums before values of them are returned.
+
+
+_EVEN = 1e-9
+"""Relative deviation of a frame's time from a multiple of the interval, beyond which the frame is checked."""
+
+
+class CheckedStore(NetCDF4DataStore):
+    """The variables of a trajectory. Those of frames are read through the frames' checksums.
+
+    The times are read at once, and only those that are not multiples of `interval` through the checksums:
+    otherwise opening a file would read all of it.
+    """
+
+    def __init__(self, file: netCDF4.Dataset, path: Path, frames: CheckedFrames, interval: float) -> None:
+        super().__init__(file)
+        self._path, self._frames = path, frames
+        time = np.asarray(file["time"][:].data, dtype=float)
+        expected = interval * np.arange(len(time))
+        right = np.abs(time - expected) <= _EVEN * (expected + interval)  # False for NaN
+        self.require(np.flatnonzero(~right))
+
+    def require(self, numbers: np.ndarray) -> None:
+        """Raise SceneError if one of these frames is damaged."""
+        damaged = self._frames.damaged(numbers)
+        if damaged is not None:
+            raise SceneError("file", str(self._path), damage(damaged))
+
+    def open_store_variable(self, name: str, var: netCDF4.Variable) -> xr.Variable:
+        """A variable that is read as it is used."""
+        variable = super().open_store_variable(name, var)
+        if variable.dims[:1] != ("frame",) or name == "time":
+            return variable
+        var.set_auto_maskandscale(False)
+        data = indexing.LazilyIndexedArray(_CheckedArray(var, self))
+        return xr.Variable(variable.dims, data, variable.attrs, variable.encoding)
+
+
+class _CheckedArray(BackendArray):
+    """A variable of frames, of which any part can be read."""
+
+    def __init__(self, variable: netCDF4.Variable, store: CheckedStore) -> None:
+        self._variable, self._store = variable, store
+        self.shape, self.dtype = variable.shape, variable.dtype
+
+    def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
+        support = indexing.IndexingSupport.OUTER
+        return indexing.explicit_indexing_adapter(key, self.shape, support, self._part)
+
+    def _part(self, key: tuple) -> np.ndarray:
+        self._store.require(np.atleast_1d(np.arange(self.shape[0])[key[0]]))
+        with self._store.lock:
+            return self._variable[key]

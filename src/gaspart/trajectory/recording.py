@@ -16,9 +16,9 @@ from gaspart.interruption import Deferral, deferred, set_note
 from gaspart.simulation import Simulation
 from gaspart.state.state import State, by_number
 from gaspart.trajectory import amber
+from gaspart.trajectory.amber import Frames
 from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
 from gaspart.trajectory.correlator import correlator_for
-from gaspart.trajectory.frames import Frames
 from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.recipe import Recipe, multiple
 from gaspart.trajectory.until import examined_before, examined_from, is_examined

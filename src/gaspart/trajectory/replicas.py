@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import count_of
-from gaspart.trajectory.frames import frame_count
-from gaspart.trajectory.partial import PARTIAL, partial_path, replica_path
+from gaspart.trajectory.amber import frame_count
+from gaspart.trajectory.opening import PARTIAL, partial_path, replica_path
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe, begun_as, read_recipe
 

@@ -8,29 +8,222 @@ A checkpoint that is kept is then the state at the end, from which a longer run 
 from __future__ import annotations
 
 import os
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from enum import Enum
 from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
 from gaspart.errors import SceneError
 from gaspart.files import OVERWRITE, may_replace, open_regular, output_path, place
 from gaspart.keys.values import number
 from gaspart.simulation import Simulation
 from gaspart.trajectory import amber, provenance
+from gaspart.trajectory.amber import Frames, frame_count, frames_of
 from gaspart.trajectory.checkpoint import (
     CHECKPOINT,
+    Checkpoint,
     checkpoint_path,
     kept_beside,
     read_checkpoint,
     remove_checkpoint,
+    write_checkpoint,
 )
-from gaspart.trajectory.extension import is_beginning, longer, take_over
-from gaspart.trajectory.frames import Frames, frame_count
-from gaspart.trajectory.opening import check_frames, checked, run_path
-from gaspart.trajectory.partial import TRAJECTORY, locked, partial_path, writing
+from gaspart.trajectory.opening import (
+    TRAJECTORY,
+    UNFINISHED,
+    check_frames,
+    checked,
+    is_blank,
+    locked,
+    partial_path,
+    run_path,
+    writing,
+)
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
-from gaspart.trajectory.recording import Progress, Recording
-from gaspart.trajectory.stage import Examiner, examination, is_complete, is_finished
+from gaspart.trajectory.recording import Examine, Progress, Recording
+from gaspart.trajectory.replicas import beside, opened_together, reached
+from gaspart.trajectory.until import Until, is_examined
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# A finished run that goes on: the same recipe with a longer duration.
+#
+# The frames of the shorter run are the first ones of the longer, and the state at its end, if its
+# checkpoint was kept, is that from which the longer one continues. Both get the header of the longer run:
+# its duration is part of it, and the checksums of all frames depend on it. The shorter file is not touched
+# until the longer one is complete, so that a kill at any moment loses neither.
+
+
+def longer(path: Path, duration: float) -> Recipe:
+    """The recipe of a trajectory with a longer duration than it has.
+
+    Raises SceneError for a file that is no undamaged trajectory of this version of the program, and for a
+    duration that is no longer, or that the recipe refuses.
+    """
+    recipe = read_recipe(path)
+    if not begun_as(path, recipe):
+        rule = "was made by another version of gaspart, Python or a package: it could go on otherwise"
+        raise SceneError("path", str(path), rule)
+    check_frames(path)
+    with checked(path) as (_, _, frames):
+        reached = (frames - 1) * recipe.sample_interval
+    rule = f"must be longer than the {reached:g} that {path.name} has"
+    duration = number("duration", duration, rule, above=reached)
+    extended = replace(recipe, duration=duration, until=None)
+    if extended.frames <= frames:  # longer by a rounding error
+        raise SceneError("duration", duration, rule)
+    return extended
+
+
+def is_beginning(path: Path, wanted: Recipe) -> bool:
+    """Whether the file at `path` is of a run that differs from the wanted one in being shorter only."""
+    try:
+        recipe, revision = read_recipe(path), stored_revision(path)
+        with checked(path) as (_, _, frames):
+            shorter = frames < wanted.frames
+        same = replace(recipe, duration=wanted.duration, until=wanted.until)
+    except SceneError:  # as for a duration that is no multiple of its interval
+        return False
+    return shorter and begun_as(path, recipe) and same.header(revision) == wanted.header(revision)
+
+
+def take_over(path: Path, wanted: Recipe, frames: Frames) -> Checkpoint | None:
+    """Give the frames and the last state of the shorter run at `path` to the longer one that is begun in
+    `frames`. None, with nothing changed, if there is no such run, or its last state was not kept.
+
+    The checkpoint of the shorter run is replaced last: after a kill before that, all this is done again.
+    Raises SceneError for a damaged file, and OSError.
+    """
+    if not (path.exists() and is_beginning(path, wanted)):
+        return None
+    with checked(path) as (source, header, count):
+        kept = read_checkpoint(checkpoint_path(path), header)
+        if kept is None or kept.frames != count:
+            return None
+        check_frames(path)
+        for frame in frames_of(source, header, count):
+            frames.append_bytes(frame)
+    frames.sync()
+    write_checkpoint(checkpoint_path(path), frames.header, count, kept.arrays)
+    return Checkpoint(count, kept.arrays)
+
+
+# How far a run has come, by what lies at its path and beside it: a table states what is done then.
+
+
+Examiner: TypeAlias = "Callable[[Sequence[xr.Dataset], Until, int], float]"
+"""Examines the first frames of a run, or of all its replicas: the largest error over the required one, inf if
+unknown, 0 to give up."""
+_LOOK = 0.05  # seconds between two looks at other replicas
+
+
+class Content(Enum):
+    """The content of a file, compared with a run that is wanted."""
+
+    NOTHING = "there is no file, or an empty one"
+    BEGUN = "this run, unfinished"
+    COMPLETE = "this run, complete and undamaged"
+    SHORTER = "this run, complete with a shorter duration"
+    OTHER = "another run or version, or damaged data"
+
+
+class Action(Enum):
+    """The next step of a run."""
+
+    NONE = "the run is finished"
+    WRITE = "begin or continue in the partial file"
+    REPLACE = "begin, and replace a file: only with overwrite"
+
+
+_ACTIONS: dict[Content, Action | dict[Content, Action]] = {
+    Content.NOTHING: {
+        Content.NOTHING: Action.WRITE,
+        Content.BEGUN: Action.WRITE,
+        Content.OTHER: Action.REPLACE,
+    },
+    Content.SHORTER: {
+        Content.NOTHING: Action.REPLACE,
+        Content.BEGUN: Action.WRITE,  # it is being extended
+        Content.OTHER: Action.REPLACE,
+    },
+    Content.COMPLETE: Action.NONE,
+    Content.OTHER: Action.REPLACE,
+}
+"""By what is at the path, and where that does not decide, by the partial file beside it."""
+
+
+def is_finished(wanted: Recipe, path: Path, examiner: Examiner | None, overwrite: bool) -> bool:
+    """Whether a run is complete at `path`. Raises SceneError if it may not be begun or continued."""
+    partial, content = partial_path(path), _content(path, wanted, examiner)
+    action = _ACTIONS[content]
+    if isinstance(action, dict):
+        action = action[_partial_content(partial, wanted)]
+    if action is Action.REPLACE and not overwrite:
+        rule = f"exists, of another run or version, or damaged; move it away, or {OVERWRITE}"
+        raise SceneError("path", str(partial if content is Content.NOTHING else path), rule)
+    return action is Action.NONE
+
+
+def _content(path: Path, wanted: Recipe, examiner: Examiner | None) -> Content:
+    """The content at the path of a run. Raises SceneError for a file of another kind."""
+    if not may_replace(path, TRAJECTORY, overwrite=True):
+        return Content.NOTHING
+    if begun_as(path, wanted):
+        with suppress(SceneError), open_regular(path) as file:
+            check_frames(path)
+            if is_complete(wanted, path, frame_count(file), examiner):
+                return Content.COMPLETE
+    return Content.SHORTER if is_beginning(path, wanted) else Content.OTHER
+
+
+def _partial_content(partial: Path, wanted: Recipe) -> Content:
+    """The content of the partial file of a run. Raises SceneError for a file of another kind."""
+    with suppress(FileNotFoundError):  # another process has finished it just now
+        if may_replace(partial, UNFINISHED, overwrite=True) and not is_blank(partial):
+            if begun_as(partial, wanted):
+                return Content.BEGUN
+            return Content.OTHER if partial.exists() else Content.NOTHING
+    return Content.NOTHING
+
+
+def is_complete(wanted: Recipe, path: Path, frames: int, examiner: Examiner | None) -> bool:
+    """Whether the complete trajectory of a run has so many frames. Waits for other replicas."""
+    examine = examination(wanted, path, examiner)
+    if frames == wanted.frames or examine is None or not is_examined(frames):
+        return frames == wanted.frames
+    while (excess := examine(frames)) is None:
+        time.sleep(_LOOK)
+    return excess <= 1.0
+
+
+def examination(wanted: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
+    """The examination of the first frames of a run that ends when it is accurate; None for other runs. One
+    of several replicas is examined with the others."""
+    until = wanted.until
+    if until is None:
+        return None
+    if examiner is None:
+        raise ValueError("examiner: None (a run that ends when it is accurate needs one)")
+    files = beside(path, wanted)
+
+    def examine(frames: int) -> float | None:
+        places = reached(files, frames)
+        if places is None:
+            return None
+        try:
+            with opened_together(places) as runs:
+                return examiner(runs, until, frames)
+        except SceneError:
+            if reached(files, frames) == places:
+                raise
+            return None  # the process of another one has just renamed it, or cut it to its checkpoint
+
+    return examine
 
 
 @dataclass(frozen=True)

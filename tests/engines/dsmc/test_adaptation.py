@@ -10,9 +10,8 @@ from engines.dsmc.steps import make
 from referee import WHOLE_TALLY, check_same, restored
 
 import gaspart as gp
-from gaspart.engines.dsmc.crowding import EPOCH
-from gaspart.engines.dsmc.pace import LONGEST, MOST, ROOM, reach_of
-from gaspart.engines.dsmc.rates import rates
+from gaspart.engines.dsmc.defaults import LONGEST, MOST, ROOM, rates, reach_of
+from gaspart.engines.dsmc.resolution import EPOCH
 
 PARTS = ("state.unwrapped", "state.velocities", "state.spins", *WHOLE_TALLY)
 

@@ -8,7 +8,7 @@ from engines.dsmc.steps import advanced, make
 from scenes import gas
 
 import gaspart as gp
-from gaspart.engines.dsmc.rates import contact_values
+from gaspart.engines.dsmc.defaults import contact_values
 from gaspart.scene.geometry import ball_volume
 
 

@@ -6,8 +6,8 @@ import pytest
 
 import gaspart as gp
 from gaspart.cli import main
+from gaspart.reproduction.points.point import compile_kernels, compile_task, variant
 from gaspart.reproduction.points.points import points
-from gaspart.reproduction.points.variants import compile_kernels, compile_task, variant
 
 DILUTE = gp.Scene(gp.Container((20.0,) * 3, "periodic"), [gp.Species(2000, 0.1, temperature=1.0)])
 

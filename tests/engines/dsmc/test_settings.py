@@ -8,8 +8,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.engines.dsmc.defaults import cells_for, predicted_error
-from gaspart.engines.dsmc.rates import Rates, rates
+from gaspart.engines.dsmc.defaults import Rates, cells_for, predicted_error, rates
 
 BOX = gp.Container((10.0, 10.0, 10.0))
 FEW = gp.Species(20, 0.1, temperature=1.0)

@@ -7,7 +7,7 @@ import pytest
 
 CODE = """
 import gc, sys
-from gaspart.kernels.compile.loading import load_numba
+from gaspart.kernels.compile.cache import load_numba
 load_numba(ours={ours})
 assert gc.isenabled() and (gc.get_freeze_count() > 100_000) == {ours}
 assert "scipy.linalg.cython_blas" not in sys.modules or not {ours}

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 import gaspart
-from gaspart.kernels.compile import files, shipped
+from gaspart.kernels.compile import cache as shipped
+from gaspart.kernels.compile import files
 from gaspart.kernels.compile.files import KernelFiles
 
 SPEC = importlib.util.spec_from_file_location(

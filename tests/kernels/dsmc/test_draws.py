@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from gaspart.kernels.dsmc import draws
+from gaspart.kernels.dsmc import model as draws
 
 
 @pytest.mark.parametrize(

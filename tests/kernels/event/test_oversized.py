@@ -10,8 +10,8 @@ from referee import events_of, same_bits
 from scenes import gas, uneven
 
 import gaspart as gp
+from gaspart.state.boxes import largest_in_boxes, work
 from gaspart.state.initial import initial_state
-from gaspart.state.oversized import largest_in_boxes, work
 
 
 @given(uneven(), st.integers(0, 2**32), st.integers(8, 16))

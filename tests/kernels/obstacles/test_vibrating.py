@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaspart.kernels.obstacles.vibrating import place_and_velocity, time_to_vibrating
+from gaspart.kernels.obstacles.moving import place_and_velocity, time_to_vibrating
 
 _SEARCHED, _FINE = 6, 2000  # periods of the search by brute force, and its steps in each
 LONG = 0.0, 1e6  # clocks that have just begun

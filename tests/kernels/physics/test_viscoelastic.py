@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from gaspart.kernels.physics.viscoelastic import fifth_root, restitution_of
+from gaspart.kernels.physics.contact import fifth_root, restitution_of
 
 
 def integrated(damping):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gaspart.kernels.compile.policy import kernel
-from gaspart.kernels.step.cells import Cells, divide_cells, order_part
+from gaspart.kernels.step.model import Cells, divide_cells, order_part
 
 CELLS = 50
 

@@ -7,8 +7,8 @@ from numpy import uint32, uint64
 from gaspart.kernels.compile.policy import kernel
 from gaspart.kernels.model import Space
 from gaspart.kernels.step.model import StepParticles
+from gaspart.kernels.step.neighbour_list import bits, compact_eight, equals, nearer, roomy
 from gaspart.kernels.step.resolve import distance_squared
-from gaspart.kernels.step.simd import bits, compact_eight, equals, nearer, roomy
 
 
 @kernel

@@ -3,7 +3,7 @@
 import pytest
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.archive.citation import Creator, read_citation
+from gaspart.reproduction.archive.metadata import Creator, read_citation
 
 TEXT = """
 title: a gas

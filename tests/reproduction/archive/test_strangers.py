@@ -29,8 +29,8 @@ from strangers import (
 from gaspart.cli import main
 from gaspart.errors import SceneError
 from gaspart.reproduction.archive import limits, stored, tables
-from gaspart.reproduction.archive.scenes import scene_files
-from gaspart.reproduction.archive.verification import verify
+from gaspart.reproduction.archive.contents import scene_files
+from gaspart.reproduction.archive.stored import verify
 
 
 def outcome(capsys, path):

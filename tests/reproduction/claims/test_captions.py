@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from gaspart.reproduction.claims.captions import (
+from gaspart.reproduction.claims.table import (
     NOT_MEASURED,
     concise,
     filled,

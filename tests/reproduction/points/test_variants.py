@@ -5,8 +5,8 @@ import json
 import pytest
 
 import gaspart as gp
-from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.points.variants import (
+from gaspart.reproduction.points.point import (
+    Point,
     compile_kernels,
     compile_task,
     compiled_features,

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from gaspart.reproduction.families.registry import families
-from gaspart.reproduction.report.caption import divided
+from gaspart.reproduction.report.page import divided
 
 REPORT = Path(__file__).parents[3] / "workflow/report"
 MOST_WORDS = 120

@@ -3,7 +3,7 @@
 import pytest
 
 from gaspart.cli import main
-from gaspart.reproduction.report.caption import divided, html_of
+from gaspart.reproduction.report.page import divided, html_of
 from gaspart.yaml_text import write_yaml
 
 UNCLOSED = [

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from gaspart.reproduction.report.references import (
+from gaspart.reproduction.report.explore import (
     CITATION,
     Reference,
     cited,

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from gaspart.reproduction.report.strip import LIMIT, deviation, dots
+from gaspart.reproduction.report.page import LIMIT, deviation, dots
 
 
 def row(sigma=math.nan, low=math.nan, high=math.nan, measured=1.0):

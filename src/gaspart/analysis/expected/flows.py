@@ -1,22 +1,266 @@
 """The mean velocity of a gas along an axis: at rest, sheared, and between plates that slide or that a force
-drives it along."""
+drives it along.
+"""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.bulk import BOLTZMANN
-from gaspart.analysis.expected.run import Expected, equation_of
-from gaspart.analysis.expected.walls import FLUID, FREE, Plates, dilute, heating_of, plates_of
+from gaspart.analysis.expected.equilibrium import Expected, equation_of
 from gaspart.analysis.run import Run
+from gaspart.scene.faces import Thermal
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
 from gaspart.scene.walls import Plate
-from gaspart.theory.heat import TEMPERATURE_JUMP
+from gaspart.theory.heat import INTERPOLATED, TEMPERATURE_JUMP
+
+# What a gas between two thermal plates gives to them: heat and shear stress, from free flight to a fluid.
+
+
+FREE, FLUID = 100.0, 0.1
+"""The Knudsen number from which on particles fly freely, and up to which the gas is a fluid."""
+_FIRST = 0.3
+"""Relative change of a flux of free flight by collisions, times the Knudsen number: 0.27 of the heat flux of
+spheres, 0.18 of that of discs, 0.50 of a stress, by addition of the resistances of both limits."""
+_DILUTE = 0.02
+"""Packing fraction up to which Enskog's coefficients and the equation of state are those of the gas."""
+_POINTS = 1e-4
+"""Scale of the diameter at which the free path stays and the packing fraction vanishes."""
+_EQUAL = 1e-12
+_PLAIN = {"thermal", "sliding", "accommodation", "centres_to_walls"}
+"""Features of a scene of equal smooth and elastic particles between plates."""
+
+
+@dataclass(frozen=True)
+class Plates:
+    """Equal smooth and elastic particles between two thermal plates, with a force along these at most.
+
+    axis: across them; length: of the gap, where centres can be; density: the mean number density there;
+    temperatures: of the low and the high plate; slide (d,): the velocity of the high one relative to the low
+    one; components: that they draw; accommodation: of the low and the high one; knudsen: the mean free path
+    over the gap.
+    """
+
+    axis: int
+    length: float
+    density: float
+    dimension: int
+    diameter: float
+    mass: float
+    temperatures: tuple[float, float]
+    slide: np.ndarray
+    components: str
+    accommodation: tuple[float, float]
+    knudsen: float
+
+    @property
+    def accommodating(self) -> bool:
+        """Whether both draw velocities after every hit, as theory of a fluid has it."""
+        return min(self.accommodation) == 1.0
+
+    @property
+    def freedom(self) -> float:
+        """The mean free path over the way that a particle flies between two hits after which its velocity is
+        drawn, at the plate that does so more rarely: the Knudsen number where both always do."""
+        return self.knudsen * min(self.accommodation)
+
+    @property
+    def equal(self) -> bool:
+        """Whether both have one temperature."""
+        low, high = self.temperatures
+        return abs(low - high) <= _EQUAL * high
+
+    @property
+    def filled(self) -> float:
+        """The packing fraction of the gap."""
+        return float(theory.packing_fraction(self.density, self.dimension, self.diameter))
+
+
+def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
+    """(face,) heat that these faces, by their numbers, take per area and time in a steady state."""
+    if _in_equilibrium(run):
+        return np.zeros(len(faces)), 0.0, "equilibrium"
+    plates = plates_of(run)
+    if plates is None:
+        return None
+    if plates.slide.any():
+        return _friction(plates, run)
+    found = _conducted(plates, equation_of(run) == BOLTZMANN)
+    if found is None:
+        return None
+    flux, error, source = found
+    towards_high = 1.0 if plates.temperatures[0] > plates.temperatures[1] else -1.0
+    return np.where(faces % 2 == 1, towards_high, -towards_high) * flux, error, source
+
+
+def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
+    """(face, component) momentum along these axes that these faces are given per area and time in a steady
+    state."""
+    if found := _driven(run, faces, axes):
+        return found
+    plates = plates_of(run)
+    if plates is None or not plates.equal or not plates.slide.any():
+        return None
+    stress = _sheared(plates, run)
+    if stress is None:
+        return None
+    value, error, source = stress
+    direction = plates.slide[axes] / np.hypot.reduce(plates.slide)
+    signs = np.where(faces % 2 == 1, -1.0, 1.0)
+    return np.multiply.outer(signs, direction) * value, error * np.abs(direction), source
+
+
+def plates_of(run: Run, driven: bool = False) -> Plates | None:
+    """The plates of a run, None for any other scene. driven: of one whose gas a force drives along them."""
+    scene, thermal = run.scene, run.scene.faces_of(Thermal)
+    numbers = [number for number, _ in thermal]
+    if not scene.alike or scene.features - _PLAIN - {"gravity"} or not run.moving.all():
+        return None
+    pulled = {axis for axis, pull in enumerate(scene.gravity or ()) if pull != 0.0}
+    if bool(pulled) != driven or pulled != set(scene.driven_axes):
+        return None
+    if len(numbers) != 2 or numbers[0] // 2 != numbers[1] // 2 or len(scene.faces) != 2:
+        return None
+    (_, low), (_, high) = thermal
+    if low.components != high.components:
+        return None
+    axis, sides = numbers[0] // 2, np.subtract(*scene.reach(scene.largest_radius)[::-1])
+    density, rest = run.count / float(sides.prod()), (0.0,) * run.dimension
+    diameter = 2.0 * scene.largest_radius
+    path = _free_path(density, diameter, run)
+    return Plates(
+        axis=axis,
+        length=float(sides[axis]),
+        density=density,
+        dimension=run.dimension,
+        diameter=diameter,
+        mass=float(run.masses[0]),
+        temperatures=(low.temperatures[0], high.temperatures[0]),
+        slide=np.subtract(high.velocity or rest, low.velocity or rest),
+        components=low.components,
+        accommodation=(low.accommodation or 1.0, high.accommodation or 1.0),
+        knudsen=path / float(sides[axis]),
+    )
+
+
+def _free_path(density: float, diameter: float, run: Run) -> float:
+    """Of spheres that touch as often as the equation of the run states; without end where theory ends."""
+    if equation_of(run) == BOLTZMANN:
+        scaled = density / _POINTS ** (run.dimension - 1)
+        filled = theory.packing_fraction(scaled, run.dimension, diameter * _POINTS)
+        return float(theory.mean_free_path(filled, run.dimension, diameter * _POINTS))
+    filled = float(theory.packing_fraction(density, run.dimension, diameter))
+    if filled > theory.HIGHEST_PACKING_FRACTION[run.dimension]:
+        return 0.0
+    return float(theory.mean_free_path(filled, run.dimension, diameter))
+
+
+def _in_equilibrium(run: Run) -> bool:
+    """Whether all that exchanges energy with the gas has one temperature and is at rest."""
+    scene = run.scene
+    faces = [face for _, face in scene.faces_of(Thermal)]
+    still = len(faces) == len(scene.faces) and not any(face.slides for face in faces)
+    temperatures = scene.face_temperatures
+    one = max(temperatures, default=0.0) - min(temperatures, default=0.0) <= _EQUAL * max(
+        temperatures, default=0.0
+    )
+    return still and one and not (run.dissipates or scene.thermostat or scene.driven_axes)
+
+
+def _conducted(plates: Plates, points: bool) -> tuple[float, float, str] | None:
+    """The heat flux from the hot to the cold plate."""
+    hot, cold = max(plates.temperatures), min(plates.temperatures)
+    fractions = plates.accommodation if plates.temperatures[0] == hot else plates.accommodation[::-1]
+    free = theory.free_molecular_flux(
+        plates.density, hot, cold, plates.dimension, plates.mass, plates.components, fractions
+    )
+    at = f"Knudsen number {plates.knudsen:.2g}"
+    if plates.freedom > FREE:
+        return float(free), float(free) * _FIRST / plates.freedom, f"free flight between plates, {at}"
+    whole = plates.components == "all" and plates.accommodating
+    if plates.dimension == 2 or not whole or not plates.knudsen > 0.0:
+        return None
+    unit, scale = 1.0 / math.sqrt(plates.mass), _POINTS if points else 1.0
+    gap = (plates.length, plates.density / scale**2, hot, cold, plates.diameter * scale)
+    if plates.knudsen > FLUID:
+        flux = unit * scale**2 * theory.interpolated_flux(*gap)
+        return flux, flux * INTERPOLATED, f"{_between('heat')}, {at}"
+    try:
+        flux = unit * scale**2 * theory.conducting_slab(*gap).flux
+    except ValueError:  # its own estimate of the Knudsen number is a little larger
+        return None
+    known = points or plates.filled < _DILUTE
+    error = flux * plates.knudsen**2 if known else math.nan
+    return flux, error, f"Fourier's law with Enskog's conductivity and temperature jumps, {at}"
+
+
+def _sheared(plates: Plates, run: Run) -> tuple[float, float, str] | None:
+    """The shear stress on plates of one temperature that slide."""
+    speed, temperature = float(np.hypot.reduce(plates.slide)), plates.temperatures[0]
+    gas = plates.density, speed, temperature, plates.mass, plates.accommodation
+    free = float(theory.free_molecular_stress(*gas))
+    at = f"Knudsen number {plates.knudsen:.2g}"
+    if plates.freedom > FREE:
+        return free, free * 2.0 * _FIRST / plates.freedom, f"free flight between plates, {at}"
+    if plates.dimension == 2 or not plates.accommodating or not dilute(plates, run):
+        return None
+    unit = math.sqrt(plates.mass * temperature)
+    gap = (plates.length, plates.density, speed, plates.diameter)
+    if plates.knudsen > FLUID:
+        stress = unit * float(theory.interpolated_stress(*gap))
+        return stress, stress * INTERPOLATED, f"{_between('stress')}, {at}"
+    stress = unit * float(theory.slip_flow_stress(*gap))
+    error = stress * (plates.knudsen**2 + heating_of(plates))
+    return stress, error, f"Enskog's viscosity with slip, {at}"
+
+
+def dilute(plates: Plates, run: Run) -> bool:
+    """Whether the coefficients of a dilute gas are those of the run."""
+    return equation_of(run) == BOLTZMANN or plates.filled < _DILUTE
+
+
+def heating_of(plates: Plates) -> float:
+    """By how much friction warms spheres in the middle between sliding plates, over the temperature: 2/15 m
+    u^2 in units of k_B T, u half the speed."""
+    square = float((plates.slide**2).sum())
+    return plates.mass * square / (30.0 * max(plates.temperatures))
+
+
+def _between(what: str) -> str:
+    limits = {"heat": "free flight and Fourier's law", "stress": "free flight and Newton's law"}[what]
+    return f"interpolation (Sherman) of {limits}, for Knudsen numbers from {FLUID:g} to {FREE:g}"
+
+
+def _friction(plates: Plates, run: Run) -> Expected | None:
+    """Each of two equal plates takes half the work of the stress."""
+    if not plates.equal or (stress := _sheared(plates, run)) is None:
+        return None
+    value, error, source = stress
+    half = 0.5 * float(np.hypot.reduce(plates.slide))
+    return np.full(2, half * value), half * error, f"half the work of the stress: {source}"
+
+
+def _driven(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
+    """The weight of the gas along the faces, half on each of two equal ones, exactly."""
+    scene, driven = run.scene, run.scene.driven_axes
+    equal = len(faces) == 2 and faces[0] // 2 == faces[1] // 2 and len(scene.faces) == 2
+    if not driven or not equal or scene.walls or not run.moving.all():
+        return None
+    low, high = scene.faces.values()
+    across = [g for axis, g in enumerate(scene.gravity or ()) if g and not run.periodic[axis]]
+    if low != high or across:
+        return None
+    sides = np.subtract(*scene.reach(scene.largest_radius)[::-1])
+    area = float(np.delete(sides, faces[0] // 2).prod())
+    pull = np.where(run.periodic, scene.gravity or 0.0, 0.0)[axes] * float(run.masses.sum()) / (2.0 * area)
+    return np.tile(pull, (2, 1)), 0.0, "balance of momentum"
+
 
 _ROUNDING = 1e-6
 """Of the largest velocity: a drift below it is the rounding of frames."""
@@ -30,7 +274,7 @@ def velocity(run: Run, axis: int, places: np.ndarray) -> Expected | None:
         middle[:, axis] = places
         return flow(scene, middle).T + _drift(run), 0.0, "the flow of sheared images"
     if plates := plates_of(run):
-        return _between(plates, run, axis, places)
+        return _between_plates(plates, run, axis, places)
     if plates := plates_of(run, driven=True):
         return _pushed(plates, run, axis, places)
     if scene.faces or scene.thermostat or run.dissipates or scene.driven_axes or scene.walls:
@@ -52,7 +296,7 @@ def _drift(run: Run) -> np.ndarray:
     return np.where(run.conserved & seen, drift, 0.0)[:, None]
 
 
-def _between(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expected | None:
+def _between_plates(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expected | None:
     """Between plates of one temperature, or that do not slide."""
     velocities = dict(run.scene.sliding_faces)
     ends = [velocities.get(2 * plates.axis + side) for side in (0, 1)]

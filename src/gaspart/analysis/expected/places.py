@@ -8,7 +8,7 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.bulk import BOLTZMANN, ENSKOG
-from gaspart.analysis.expected.run import Expected, contact_of_number, equation_of, scale_of_number
+from gaspart.analysis.expected.equilibrium import Expected, contact_of_number, equation_of, scale_of_number
 from gaspart.analysis.run import Run
 from gaspart.trajectory.pairs import pairs_of
 

@@ -11,10 +11,17 @@ import numpy as np
 from gaspart import theory
 from gaspart.analysis import bulk
 from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
-from gaspart.analysis.expected.run import OF_NUMBER, SOURCES, Expected, bias_of, engine_of, equation_of
+from gaspart.analysis.expected.equilibrium import (
+    OF_NUMBER,
+    SOURCES,
+    Expected,
+    bias_of,
+    engine_of,
+    equation_of,
+)
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine
-from gaspart.engines.dsmc import rates
+from gaspart.engines.dsmc import defaults as rates
 from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
 from gaspart.theory.dsmc import diffusion_by_modes

@@ -6,28 +6,32 @@ and of equal length unless stated. Probabilities `p_value` are those of a chi-sq
 model holds. Inputs that are too short, of unequal length or not finite raise ValueError.
 """
 
-from gaspart.analysis.statistics.blocks import CorrelatedMean, autocorrelation_time, correlated_mean
-from gaspart.analysis.statistics.distributions import Histogram, histogram_chi_square
-from gaspart.analysis.statistics.fits import (
-    Fit,
-    PowerLaw,
-    fit_curve,
-    fit_linear,
-    fit_polynomial,
-    fit_power_law,
+from gaspart.analysis.statistics.blocks import (
+    CorrelatedMean,
+    Histogram,
+    autocorrelation_time,
+    correlated_mean,
+    histogram_chi_square,
 )
-from gaspart.analysis.statistics.means import (
+from gaspart.analysis.statistics.fits import (
     Combination,
+    Fit,
+    Optimum,
+    PowerLaw,
     average,
     bootstrap,
     combine,
     combine_estimates,
+    fit_curve,
+    fit_linear,
+    fit_polynomial,
+    fit_power_law,
     jackknife,
     mean_of,
     means_of,
+    optimum,
     steady_mean,
 )
-from gaspart.analysis.statistics.minimum import Optimum, optimum
 
 __all__ = [
     "Combination",

@@ -1,13 +1,47 @@
 """Correlated series: the error of their mean, whether blocks confirm it, and their autocorrelation time."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import chdtrc
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.statistics.inputs import series_of
+
+# Checks of the arrays that statistics are made of.
+
+
+def series_of(name: str, values: ArrayLike, shortest: int) -> np.ndarray:
+    """Return `values` as a float64 series; raise ValueError if it is too short or not finite."""
+    values = np.asarray(values, dtype=float)
+    if values.ndim != 1 or values.size < shortest:
+        raise ValueError(f"{name}: shape {values.shape} (must be a series of at least {shortest} values)")
+    if not np.all(np.isfinite(values)):
+        raise ValueError(f"{name}: not all values are finite")
+    return values
+
+
+def positive_errors(errors: ArrayLike, size: int) -> np.ndarray:
+    """Return `errors` broadcast to (size,); raise ValueError unless positive and finite."""
+    errors = np.broadcast_to(np.asarray(errors, dtype=float), (size,))
+    if not np.all((errors > 0.0) & np.isfinite(errors)):
+        raise ValueError("errors: must be positive and finite")
+    return errors
+
+
+def positive_freedoms(freedoms: ArrayLike, size: int) -> np.ndarray:
+    """Return degrees of freedom broadcast to (size,); raise ValueError unless positive. They may be
+    infinite."""
+    freedoms = np.broadcast_to(np.asarray(freedoms, dtype=float), (size,))
+    if not np.all(freedoms > 0.0):
+        raise ValueError("freedoms: must be positive")
+    return freedoms
+
 
 ORDER = 1.25
 """Order of the autoregressive process fitted to n samples, over the cube root of n."""
@@ -126,3 +160,31 @@ def _autoregression(covariances: np.ndarray) -> tuple[float, float]:
         coefficients = np.append(coefficients - partial * coefficients[::-1], partial)
         unpredicted, rest = left, rest * (1.0 - partial)
     return unpredicted / rest**2, unpredicted * inverse / rest**2
+
+
+# Tests of samples against a distribution.
+
+
+@dataclass(frozen=True)
+class Histogram:
+    """Counts in bins of equal expected count, and their chi-square."""
+
+    chi_square: float
+    degrees_of_freedom: int
+    p_value: float
+    counts: np.ndarray
+    expected: float
+
+
+def histogram_chi_square(samples: ArrayLike, cdf: Callable[[np.ndarray], Any], bins: int) -> Histogram:
+    """Chi-square of independent samples against a distribution without fitted parameters, given by its `cdf`.
+
+    The bins have equal probability: cdf(samples) is uniform on [0, 1]. At least 5 samples a bin.
+    """
+    samples = series_of("samples", samples, 1)
+    if bins < 2 or samples.size < 5 * bins:
+        raise ValueError(f"bins: {bins} (at least 2, with 5 or more of the {samples.size} samples each)")
+    counts = np.bincount(np.minimum((cdf(samples) * bins).astype(int), bins - 1), minlength=bins)
+    expected = samples.size / bins
+    chi_square = float(np.sum((counts - expected) ** 2) / expected)
+    return Histogram(chi_square, bins - 1, float(chdtrc(bins - 1, chi_square)), counts, expected)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.asked import Asked, Candidate, Local
+from gaspart.engines.engine import Asked, Candidate, Local
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:

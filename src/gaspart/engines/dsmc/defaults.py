@@ -1,21 +1,280 @@
-"""The cells and the time step of a scene, and the error that they bring."""
+"""How often particles collide, what the engine's settings follow from, and with what error.
+
+Mean values of a gas that fills its container evenly, with Maxwellian velocities of each kind's mean square.
+"""
 
 from __future__ import annotations
 
 import math
 import operator
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from gaspart.engines.dsmc.pace import CROSSED, LONGEST, falling_axis, reach_of
-from gaspart.engines.dsmc.rates import Rates, accessible
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, SimulationError
+from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.species import Particle, Species
 from gaspart.state.boxes import cube_side
+from gaspart.state.state import State
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.kernels.dsmc.model import Pace
+
+
+SLOPE, BEND = {2: 0.5625, 3: 1.5}, {2: 0.0, 3: 0.5}
+"""Coefficients of the contact value, see `contact_values`, by dimension."""
+_HIGHEST = 0.7  # packing fraction up to which contact values are evaluated
+
+
+@dataclass(frozen=True)
+class Rates:
+    """frequency: collisions of a particle per time; speed: the mean speed; path: the mean free path with all
+    kinds of particles at one temperature, infinite if nothing collides."""
+
+    frequency: float
+    speed: float
+    path: float
+
+    def crowded(self, times: float) -> Rates:
+        """The rates where the density is so many times as high."""
+        return Rates(times * self.frequency, self.speed, self.path / times)
+
+
+def accessible(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """(d,), (d,): the lowest and highest coordinates of centres of the smallest particles."""
+    lower, upper = scene.reach(scene.smallest_radius)
+    return np.array(lower), np.array(upper)
+
+
+def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: int) -> np.ndarray:
+    """(K, K) pair distributions at contact of a mixture.
+
+    Boublik, J. Chem. Phys. 53, 471 (1970), and Mansoori et al., J. Chem. Phys. 54, 1523 (1971), for spheres,
+    which for one species is Carnahan & Starling's; Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987), for
+    discs, which is Henderson's.
+    """
+    filled = ball_volume(dimension) * float((number_densities * radii**dimension).sum())
+    free = 1.0 - min(filled, _HIGHEST)
+    surface = ball_volume(dimension) * float((number_densities * radii ** (dimension - 1)).sum())
+    ratio = surface * 2.0 * radii[:, None] * radii / (radii[:, None] + radii)
+    return 1.0 / free + SLOPE[dimension] * ratio / free**2 + BEND[dimension] * ratio**2 / free**3
+
+
+Kinds: TypeAlias = Sequence[Species | Particle]
+
+
+def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
+    """The rates of a scene at its start, or as hot as its faces; dense: with contact values of a dense gas;
+    instead: fewer kinds of particles that stand for those of the scene, each pair of which is evaluated."""
+    d, kinds = scene.dimension, scene.moving_kinds if instead is None else instead
+    heat = max(scene.face_temperatures, default=0.0)
+    if not kinds:
+        return Rates(0.0, 0.0, math.inf)
+    squares = [max(square_of(kind, d), heat / kind.mass) for kind in kinds]
+    often, speed = _rates(scene, kinds, dense, [1.0 / kind.mass for kind in kinds])
+    return Rates(*_rates(scene, kinds, dense, squares), path=speed / often if often > 0.0 else math.inf)
+
+
+def highest_speed(scene: Scene) -> float:
+    """The highest mean speed that particles can come to have with the energy of the start, all of it shared
+    so that each has the same momentum."""
+    kinds = scene.moving_kinds
+    energy = sum(
+        0.5 * kind.count * kind.mass * scene.dimension * square_of(kind, scene.dimension) for kind in kinds
+    )
+    inverse, number = sum(kind.count / kind.mass for kind in kinds), sum(kind.count for kind in kinds)
+    return math.sqrt(2.0 * energy * inverse) / max(1, number)
+
+
+def _rates(scene: Scene, kinds: Kinds, dense: bool, squares: list[float]) -> tuple[float, float]:
+    """Frequency and speed of kinds with these mean squares of a velocity component."""
+    d, square = scene.dimension, np.array(squares)
+    radius = np.array([kind.radius for kind in kinds])
+    number = np.array([float(kind.count) for kind in kinds])
+    lower, upper = accessible(scene)
+    density = number / float((upper - lower).prod())
+    sigma = radius[:, None] + radius
+    section = math.pi * sigma**2 if d == 3 else 2.0 * sigma
+    mean = 8.0 / math.pi if d == 3 else math.pi / 2.0  # of <v>^2 / (kT/m)
+    relative = np.sqrt(mean * (square[:, None] + square))
+    pairs = density[:, None] * (number - np.eye(len(number)))
+    contact = contact_values(density, radius, d) if dense else 1.0
+    frequency = float((np.maximum(pairs, 0.0) * section * relative * contact).sum() / number.sum())
+    return frequency, float((number * np.sqrt(mean * square)).sum() / number.sum())
+
+
+def square_of(kind: Species | Particle, dimension: int) -> float:
+    """The mean square of a velocity component at the start."""
+    if isinstance(kind, Particle):
+        return sum(v * v for v in kind.velocity) / dimension
+    return (
+        kind.temperature / kind.mass if kind.temperature is not None else (kind.speed or 0.0) ** 2 / dimension
+    )
+
+
+# The lengths of a step that fit a scene, whatever speeds its particles come to.
+#
+# A step is short enough if a particle of the mean speed flies at most 0.2 mean free paths and half of the
+# container in it, and no faster by what gravity and kicks give it in the step. Where speeds can rise, an
+# own step is divided into 2^level parts, as many as the present speeds require to within a factor sqrt 2.
+# The level is found again before each part; it follows from the state, and so do all bits. A step that was
+# given is never divided: the run stops before one in which particles would meet more than `MOST` others.
+
+
+LONGEST = 0.2
+"""The longest step that is recommended, in mean free times."""
+CROSSED = 0.5
+"""Of the time that a particle takes to cross the container: the longest step in a gas without collisions."""
+FALLEN = 0.125
+"""Of the container's length along the way that particles fall: the longest way in a step."""
+MOST = 1024.0
+"""Mean free paths, or crossings between walls, that a particle of the mean speed may make in a step."""
+FINEST = 40
+"""The highest level."""
+ROOM = math.sqrt(2.0)
+"""By so much a step may be longer than recommended before it is divided."""
+_HOTTER = 2.0
+"""By so much a given state may be faster than the scene's own: steps are then too long by as much, which
+changes coefficients by 1 %."""
+_KICKED = 0.09
+"""Of the mean speed: the width of the kicks of a step, unless a step has one kick at most. They come at its
+end, and the energy there is above its mean over time by half of what they give, 0.35 % at most."""
+_FIRST = 20
+"""The level of parts that are as short as a start from rest needs, however many kicks are due in one."""
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Bounds of the way of a particle in a step. path: the mean free path; across: the shortest side;
+    fall: that between walls along which particles fall; walled: the shortest side between walls; pull: the
+    acceleration towards walls; push: the mean width of kicks over the square root of time; interval: between
+    kicks."""
+
+    path: float
+    across: float
+    fall: float
+    walled: float
+    pull: float
+    push: float
+    interval: float
+
+    @property
+    def recommended(self) -> float:
+        """The longest way that is."""
+        return min(LONGEST * self.path, CROSSED * self.across, FALLEN * self.fall)
+
+    @property
+    def most(self) -> float:
+        """The longest way that is possible."""
+        return MOST * min(self.path, self.walled)
+
+    def steady(self) -> bool:
+        """Whether nothing accelerates the particles."""
+        return self.pull == 0.0 and self.push == 0.0
+
+    def way(self, speed: float, step: float) -> float:
+        """How far a particle flies in a step."""
+        return (speed + self.pull * step + self.push * math.sqrt(step)) * step
+
+    def speed(self, way: float, step: float) -> float:
+        """The speed at which it flies that far."""
+        return way / step - self.pull * step - self.push * math.sqrt(step)
+
+    def longest(self, speed: float, way: float) -> float:
+        """The longest step in which it flies no farther."""
+        low, high = -300.0, 300.0  # of the logarithm to base 2; the way grows with the step
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self.way(speed, 2.0**middle) <= way else (low, middle)
+        return 2.0**low
+
+
+def reach_of(scene: Scene, path: float) -> Reach:
+    """The bounds of a scene, for a mean free path."""
+    lengths, periodic = scene.container.lengths, scene.container.periodic
+    walled = [length for length, around in zip(lengths, periodic, strict=True) if not around]
+    pull = [g for g, around in zip(scene.gravity or (), periodic, strict=False) if not around]
+    push, interval = 0.0, math.inf
+    if scene.thermostat is not None and scene.count:
+        light = sum(kind.count / math.sqrt(kind.mass) for kind in scene.kinds) / scene.count
+        push, interval = math.sqrt(2.0 * scene.thermostat.power) * light, scene.thermostat.interval
+    axis = falling_axis(scene)
+    fall = math.inf if axis is None else lengths[axis]
+    return Reach(path, min(lengths), fall, min(walled, default=math.inf), math.hypot(*pull), push, interval)
+
+
+def falling_axis(scene: Scene) -> int | None:
+    """The axis between walls along which gravity is strongest, if any."""
+    periodic = scene.container.periodic
+    pulls = [0.0 if around else abs(g) for g, around in zip(scene.gravity or (), periodic, strict=False)]
+    return pulls.index(max(pulls)) if any(pulls) else None
+
+
+def may_speed_up(scene: Scene) -> bool:
+    """Whether the mean speed can come to be so much above that of the start that steps must follow it."""
+    if scene.gravity is not None or scene.thermostat is not None or scene.faces or scene.rough:
+        return True
+    return highest_speed(scene) > ROOM * rates(scene, False).speed
+
+
+def is_hotter(state: State, found: Rates) -> bool:
+    """Whether a state that was given is so much faster than the scene's own, about its mean velocity, that
+    steps must follow its speeds."""
+    velocities = state.velocities[np.isfinite(state.masses)]
+    if not len(velocities):
+        return False
+    apart = velocities - velocities.mean(axis=0)
+    return float(np.sqrt((apart**2).sum(axis=1)).mean()) > _HOTTER * found.speed
+
+
+def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.ndarray]:
+    """The lowest and the highest mean speed (levels,) that fit each level of a step; only one level if it is
+    not divided."""
+    if not divided:
+        return np.zeros(1), np.array([reach.speed(reach.most, step)])
+    steps = [math.ldexp(step, -level) for level in range(FINEST + 1)]
+    several = [part > reach.interval and level < _FIRST for level, part in enumerate(steps)]
+    kicked = [
+        reach.push * math.sqrt(part) / _KICKED * many for many, part in zip(several, steps, strict=True)
+    ]
+    return np.array(kicked), np.array([reach.speed(ROOM * reach.recommended, part) for part in steps])
+
+
+def pace_for(scene: Scene, reach: Reach, step: float, divided: bool) -> Pace:
+    """The kernels' form of it."""
+    from gaspart.kernels.dsmc import model as pace
+
+    pulls = scene.gravity or (0.0,) * scene.dimension
+    drifts = tuple(around and g != 0.0 for around, g in zip(scene.container.periodic, pulls, strict=True))
+    return pace.Pace(*levels(reach, step, divided), 0, drifts, np.zeros(1))
+
+
+_TOO_LONG = f"lets particles fly more than {MOST:g} mean free paths, or {MOST:g} times from wall to wall"
+
+
+def check_step(reach: Reach, step: float, found: Rates) -> None:
+    """Raise SceneError for a step in which particles would meet more than `MOST` others, or cross the
+    container more often between walls."""
+    if reach.way(found.speed, step) > reach.most:
+        fit = reach.longest(found.speed, reach.most)
+        raise SceneError("time_step", step, f"{_TOO_LONG}: {fit:.2g} at most")
+
+
+def too_fast(time: float, step: float, reach: Reach, pace: Pace) -> SimulationError:
+    """The error for particles that have become so fast that no level fits."""
+    if len(pace.low) > 1:
+        rule = f"at time {time:g} the speeds have risen so much that a step needs more than 2^{FINEST} parts"
+        return SimulationError(f"{rule}: give a shorter time_step")
+    fit = reach.longest(float(pace.fastest[0]), reach.most)
+    return SimulationError(f"at time {time:g} time_step = {step:g} {_TOO_LONG}: {fit:.2g} would do")
+
+
+# The cells and the time step of a scene, and the error that they bring.
+
 
 WIDEST = 1.0 / 3.0
 """The widest cell that is recommended, in mean free paths."""

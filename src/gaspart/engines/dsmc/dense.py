@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from gaspart.engines.dsmc.rates import BEND, SLOPE
+from gaspart.engines.dsmc.defaults import BEND, SLOPE
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.enskog import Dense
 from gaspart.kernels.dsmc.model import Grid

@@ -3,34 +3,112 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.engines.checkpoint_identity import check_parts
 from gaspart.engines.dsmc.arrays import TALLY, empty_particles, faces_for, kinds_of, law_for, workspace_for
-from gaspart.engines.dsmc.crowding import EPOCH, HIGHEST
-from gaspart.engines.dsmc.limits import check_made, check_scene
-from gaspart.engines.dsmc.pace import FINEST
-from gaspart.engines.dsmc.resolution import Resolution
-from gaspart.engines.dsmc.tallies import WallShearPart, tally_parts
+from gaspart.engines.dsmc.defaults import FINEST
+from gaspart.engines.dsmc.resolution import EPOCH, HIGHEST, Resolution
+from gaspart.engines.dynamics import SteppedDynamics, check_parts
 from gaspart.engines.features.law import LawPart, contact_law
+from gaspart.engines.features.part import Part, TallyPart, step_kicks
 from gaspart.engines.features.per_area import ThreadedPerAreaPart
-from gaspart.engines.features.thermostat import step_kicks
-from gaspart.engines.stepped import SteppedDynamics
-from gaspart.errors import SceneError
+from gaspart.engines.step.limits import oversized_particles
+from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.dsmc import loop
 from gaspart.kernels.dsmc import model as layout
-from gaspart.kernels.dsmc.kicks import kick_all
+from gaspart.kernels.dsmc.boltzmann import Stress
+from gaspart.kernels.dsmc.model import kick_all
 from gaspart.kernels.model import Space
-from gaspart.kernels.physics.exact_sum import WIDTH, exact_parts, joined
+from gaspart.kernels.physics.sums import WIDTH, exact_parts, joined
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
-from gaspart.state.state import State
+from gaspart.state.state import State, drift_of
+from gaspart.state.tally import tallied_fluxes
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
+
+
+# The scenes that the DSMC engine can model.
+
+
+MOST_PARTICLES = 2**32 - 1
+_OVERSIZED = (
+    'needs the "event" or the "step" engine: a few particles that are much larger than the others have no '
+    "partners to be drawn from"
+)
+
+
+def check_scene(scene: Scene, state: State) -> None:
+    """Raise SceneError for particles, or so many of them, that this engine does not model."""
+    if oversized_particles(state).any():
+        raise SceneError("radius", scene.largest_radius, _OVERSIZED)
+    if state.count > MOST_PARTICLES:
+        raise SceneError("count", state.count, f"the DSMC engine takes {MOST_PARTICLES} particles at most")
+
+
+def check_made(counts: np.ndarray, time: float) -> None:
+    """Raise SimulationError for steps that could not be finished; counts: see `kernels.dsmc.model`."""
+    from gaspart.kernels.dsmc.model import FAR, UNFINISHED
+
+    if counts[:, UNFINISHED].any():
+        raise SimulationError(
+            f"at time {time:g} a particle has met faces of the container more than 2^24 times in a step,"
+            " which is not finished: give a shorter time_step"
+        )
+    if counts[:, FAR].any():
+        raise SimulationError(
+            f"at time {time:g} a particle has crossed the container 2^31 times along a periodic axis,"
+            " more often than is counted"
+        )
+
+
+# Tallies of the DSMC engine that not every run has. Threads add to them, exactly.
+
+
+class StressPart(TallyPart):
+    """The stress tensor and the heat flux, about the velocity of the centre of mass of a state at time 0."""
+
+    kernel: Stress
+
+    def __init__(self, asked: OptionalTally, scene: Scene, state: State, threads: int) -> None:
+        d = scene.dimension
+        number = 2 * d * d + d
+        sums, cell = np.zeros((threads, number, WIDTH), np.int64), np.zeros((threads, number))
+        kernel = Stress(sums, cell, np.zeros((threads, 2, d + 1)), drift_of(scene, state))
+        super().__init__("stress", kernel, {}, {"stress": sums})
+
+    def read(self, clock: float) -> np.ndarray:
+        """(2 d^2 + d,) the sums of the stress tensor, of its collisional part and of the heat flux."""
+        return exact_parts(self.kernel.sums)[:, 0]
+
+    def counts(self, clock: float) -> dict[str, Any]:
+        """The sums, by the fields of `Tally`."""
+        return tallied_fluxes(self.read(clock), self.kernel.drift)
+
+
+class WallShearPart(Part):
+    """shear (threads, 2d, d, WIDTH): the momentum that faces were given along themselves."""
+
+    def __init__(self, shear: np.ndarray) -> None:
+        super().__init__({}, sums={"shear": shear})
+
+    def counts(self, clock: float) -> dict[str, Any]:
+        """The momentum, by the field of `Tally`."""
+        return {"wall_shear": exact_parts(self.sums["shear"])[..., 0]}
+
+
+PARTS = {"stress": StressPart}
+"""Classes of the parts of optional tallies, by name."""
+
+
+def tally_parts(asked: Iterable[OptionalTally], scene: Scene, state: State, threads: int) -> list[TallyPart]:
+    """The parts of optional tallies. state: that at time 0."""
+    return [PARTS[tally.name](tally, scene, state, threads) for tally in asked]
+
 
 _WHOLE = 2**FINEST
 """Parts of a step, in which the place within it is counted."""

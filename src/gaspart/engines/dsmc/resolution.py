@@ -2,33 +2,76 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaspart.engines.dsmc.arrays import grid_for
-from gaspart.engines.dsmc.crowding import crowding, may_crowd, next_level
-from gaspart.engines.dsmc.defaults import cells_for, coarse, recommended_cells, step_for
-from gaspart.engines.dsmc.dense import dense_for, moved_fields
-from gaspart.engines.dsmc.pace import (
+from gaspart.engines.dsmc.defaults import (
     FINEST,
+    Rates,
+    accessible,
+    cells_for,
     check_step,
+    coarse,
     is_hotter,
     may_speed_up,
     pace_for,
+    rates,
     reach_of,
+    recommended_cells,
+    step_for,
     too_fast,
 )
-from gaspart.engines.dsmc.rates import Rates, rates
+from gaspart.engines.dsmc.dense import dense_for, moved_fields, spreads
 from gaspart.kernels.dsmc.enskog import Dense
-from gaspart.kernels.dsmc.model import Grid, Particles
-from gaspart.kernels.dsmc.pace import Pace, fitting_level
+from gaspart.kernels.dsmc.model import Grid, Pace, Particles, fitting_level
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
+
+
+# How much denser a gas is where its particles are than on average, which its cells must fit.
+#
+# It is the mean over particles of the density around them, over the density of the container: the number of
+# pairs in cells over that of a uniform gas. It is found at the start and after every `EPOCH` steps, counted
+# from time 0, so that it does not depend on where a run is split or sampled.
+
+
+EPOCH = 64
+"""Steps from one look to the next."""
+HIGHEST = 6
+"""Of the level of a density, 2^level times the mean: more cells would be too many for the particles."""
+_CHANGED = 0.75
+"""Of a level: by so much a density is off the present one before it is another."""
+
+
+def may_crowd(scene: Scene) -> bool:
+    """Whether the density can come to be other than uniform."""
+    return scene.count > 1 and (
+        bool(scene.gravity and any(scene.gravity)) or bool(scene.faces) or not spreads(scene)
+    )
+
+
+def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> float:
+    """The crowding of particles at these positions (N, d), by the pairs in each of some cells; 1 in
+    a uniform gas."""
+    lower, upper = accessible(scene)
+    places = (positions - lower) / (upper - lower) * cells
+    at = np.clip(places.astype(np.int64), 0, np.array(cells) - 1)
+    found = np.bincount(np.ravel_multi_index(tuple(at.T), cells)).astype(float)
+    number = len(positions)
+    return float((found * (found - 1.0)).sum()) * math.prod(cells) / (number * (number - 1.0))
+
+
+def next_level(level: int, times: float) -> int:
+    """The level of a gas so many times as dense, which was at a level."""
+    exact = math.log2(max(times, 1.0))
+    return level if abs(exact - level) <= _CHANGED else min(round(exact), HIGHEST)
 
 
 class Resolution:

@@ -11,8 +11,8 @@ from gaspart.engines.engine import Engine, register
 from gaspart.keys import choice, count, declared, per_side, positive
 
 if TYPE_CHECKING:
-    from gaspart.engines.asked import Asked, Candidate
     from gaspart.engines.dsmc.dynamics import DsmcDynamics
+    from gaspart.engines.engine import Asked, Candidate
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
@@ -95,8 +95,7 @@ class DSMC(Engine):
 
     def resolved(self, scene: Scene, interval: float | None = None) -> DSMC:
         """With the cells and the step for a scene, of which an interval has a whole number."""
-        from gaspart.engines.dsmc.defaults import cells_for, step_for
-        from gaspart.engines.dsmc.rates import rates
+        from gaspart.engines.dsmc.defaults import cells_for, rates, step_for
 
         found = rates(scene, self.model == "enskog")
         step = step_for(self, scene, found)
@@ -118,8 +117,7 @@ class DSMC(Engine):
 
     def predictions(self, scene: Scene) -> dict[str, float]:
         """By how much its cells and steps make the shear viscosity too high, relatively."""
-        from gaspart.engines.dsmc.defaults import cells_for, predicted_error, step_for
-        from gaspart.engines.dsmc.rates import rates
+        from gaspart.engines.dsmc.defaults import cells_for, predicted_error, rates, step_for
 
         found = rates(scene, self.model == "enskog")
         cells, step = cells_for(self, scene, found), step_for(self, scene, found)
@@ -127,8 +125,7 @@ class DSMC(Engine):
 
     def cells_along(self, scene: Scene) -> int:
         """The cells along the axis with the most."""
-        from gaspart.engines.dsmc.defaults import cells_for
-        from gaspart.engines.dsmc.rates import rates
+        from gaspart.engines.dsmc.defaults import cells_for, rates
 
         return max(cells_for(self, scene, rates(scene, self.model == "enskog")))
 
@@ -136,7 +133,7 @@ class DSMC(Engine):
         """The bias of its cells and steps, by the literature, and of the collisions that the Enskog model
         loses."""
         from gaspart.engines.dsmc import defaults
-        from gaspart.engines.dsmc.rates import rates
+        from gaspart.engines.dsmc.defaults import rates
 
         found = rates(scene, self.model == "enskog")
         cells, step = defaults.cells_for(self, scene, found), defaults.step_for(self, scene, found)
@@ -194,7 +191,7 @@ class DSMC(Engine):
 
     def variant(self, scene: Scene) -> str:
         """The model, and whether threads share the work."""
-        from gaspart.engines.dsmc.pace import may_speed_up
+        from gaspart.engines.dsmc.defaults import may_speed_up
 
         paced = "-paced" if may_speed_up(scene) else ""
         return self.model + paced + ("-threads" if self.threads > 1 else "")

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
-from gaspart.engines.features.impulses import impulses_part
-from gaspart.engines.features.pair_impulses import pair_impulses_part
 from gaspart.engines.features.part import Part, TallyPart
-from gaspart.engines.features.stress import stress_part
+from gaspart.engines.features.tallies import impulses_part, pair_impulses_part, stress_part
+from gaspart.errors import SimulationError
 from gaspart.kernels import model as kernels
-from gaspart.kernels.physics.running_sum import net, values
+from gaspart.kernels.event.pair_contact import CollapseWatch
+from gaspart.kernels.model import Model
+from gaspart.kernels.physics.sums import net, values
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
@@ -100,3 +102,164 @@ class EventTally:
     def _given(self) -> float:
         """The energy that scheduled events have given since the last reset."""
         return sum(part.given for part in self._parts)
+
+
+# Epochs of the event-driven engine's clocks, which restart from zero so that they lose no precision.
+
+
+_LENGTH = 10  # an epoch of the clocks is some 2^10 times of flight over a diameter
+_AT_REST = 2.0**960  # the epoch of a scene in which nothing moves
+_RESOLVED = 2.0**-52  # of speeds
+_OTHER = 2.0**10  # by which speeds must have changed for epochs of another length
+QUIET = 64
+"""Epochs without an event after which epochs are doubled."""
+
+
+class Epochs:
+    """How long the epochs of a scene are.
+
+    The speed for times of flight is the rms speed, with the largest gain by gravity and faces. masses (N,),
+    infinite for fixed particles; gained: the square of the largest speed that the scene itself gives a
+    particle.
+    """
+
+    def __init__(self, scene: Scene, masses: np.ndarray, gained: float) -> None:
+        self._gained = gained if len(masses) else 0.0
+        self._diameter = 2 * scene.smallest_radius
+        self._across = max(scene.container.lengths)
+        self._moving = np.isfinite(masses)
+        self._masses = masses[self._moving]
+
+    def speed(self, velocities: np.ndarray) -> float:
+        """The speed for times of flight, with velocities (N, d)."""
+        square = float((velocities**2).sum(axis=1).mean()) if len(velocities) else 0.0
+        return math.sqrt(square + self._gained)
+
+    def _shared(self, velocities: np.ndarray, stored: float) -> float:
+        """The rms speed of particles that share their energy equally: the few heavy or spinning ones of a gas
+        at rest give it to the others within an epoch. stored: their energy besides that of flight."""
+        if not len(self._masses):
+            return 0.0
+        squares = (velocities[self._moving] ** 2).sum(axis=1)
+        energy = 0.5 * float((self._masses * squares).sum()) + stored  # not @: BLAS differs by machine
+        return math.sqrt(2.0 * energy / len(self._masses) * float((1.0 / self._masses).mean()))
+
+    def base(self, velocities: np.ndarray, stored: float, present: float = 0.0) -> float:
+        """The length of an epoch of particles with velocities (N, d) and a `stored` energy besides; a
+        `present` one is kept as by `length`."""
+        length = self.length(self.speed(velocities), present)
+        return min(length, self.length(self._shared(velocities, stored), length))
+
+    def flights(self, velocities: np.ndarray, length: float) -> float:
+        """How many flights through the container particles with velocities (N, d) make in an epoch of this
+        length, relative to one another; 0 if rounding hides that they do. Particles that move together do not
+        meet, but do not miss one another either."""
+        relative = self.speed(velocities - velocities.mean(axis=0))
+        return relative * length / self._across if relative > _RESOLVED * self.speed(velocities) else 0.0
+
+    def length(self, speed: float, present: float = 0.0) -> float:
+        """The time after which clocks start again from zero: a power of two, so that it scales with the
+        units.
+
+        A `present` length is kept until speeds have changed by a factor of 2^10: a cooling gas needs longer
+        epochs, since the work of an epoch does not depend on its length.
+        """
+        length = _power_of_two(self._diameter / speed, _LENGTH) if speed > 0.0 else _AT_REST
+        return present if present / _OTHER < length < present * _OTHER else length
+
+    def quiet(self, speed: float, length: float, number: int) -> float:
+        """The length of an epoch after a `number` of them without an event: twice the last one, until it is
+        a time of flight through the container. The clocks are then as precise as the positions."""
+        most = _power_of_two(self._across / speed, 0) if speed > 0.0 else length
+        doublings = min(max(number - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(length)[1]))
+        return math.ldexp(length, doublings)
+
+
+def _power_of_two(time: float, more: int) -> float:
+    """The next power of two above a time, times 2^more; at most `_AT_REST`."""
+    _, exponent = math.frexp(time)
+    return min(math.ldexp(1.0, exponent + more), _AT_REST) if time < _AT_REST else _AT_REST
+
+
+# Detection of runs that stall: particles that collide without end at one time, or never.
+
+
+MANY = 1 << 18
+"""Number of events in which time must advance, by more than a clock resolves for each."""
+# A run without an end is given up after so many epochs without an event, and as many flights through the
+# container; or, where particles move so evenly together that these take longer, after more epochs.
+_QUIET, _FLIGHTS, _QUIET_TOGETHER = QUIET + 2000, 1000, 1 << 17
+# More contacts of one particle than these, within so much of an epoch, are taken for a collapse. Where the
+# restitution is constant, intervals between contacts shrink geometrically until rounding lets the particles
+# part, so few of them can be seen. Slow contacts of viscoelastic particles are nearly elastic.
+_MOST, _INTERVAL = 1000, 2.0**-44
+_INELASTIC_MOST, _INELASTIC_INTERVAL = 12, 2.0**-34
+_MOST_OF_STACK = MANY >> 3  # contacts of an elastic particle at one time that are taken for a stack at rest
+# Elastic particles do not collapse: between two surfaces that meet at an angle a, one of them has pi/a
+# contacts at one time. Gravity lets them touch for ever in a stack.
+_UNLIMITED = np.iinfo(np.int64).max
+_REST = "a stack at rest"
+_COLLAPSE = "an inelastic collapse, or a stack at rest, which a contact_duration allows"
+
+
+def check_progress(time: float, spent: float, epoch: float) -> None:
+    """Raise SimulationError if `MANY` events, up to `time`, have `spent` less than clocks of such an `epoch`
+    can resolve: their order would be rounding only."""
+    if spent < MANY * _RESOLVED * epoch:
+        raise SimulationError(
+            f"at time {time:g} there were {MANY} events within a time of {spent:g}: "
+            "particles have no room to move"
+        )
+
+
+def check_clocks(start: float, epoch: float) -> None:
+    """Raise SimulationError if an `epoch` is so short that the time `start` does not resolve it."""
+    if start + epoch == start:
+        raise SimulationError(
+            f"at time {start:g} particles are so fast that {epoch:g} of time holds a thousand flights over a "
+            "diameter: less than such a time resolves"
+        )
+
+
+def check_events(time: float, quiet: int, flights: float) -> None:
+    """Raise SimulationError after too many `quiet` epochs in a row, up to `time`, without an event. flights:
+    those through the container in each of them, see `Epochs.flights`."""
+    if quiet <= _QUIET or (0.0 < quiet * flights < _FLIGHTS and quiet <= _QUIET_TOGETHER):
+        return
+    why = "particles move together" if 0.0 < quiet * flights < _FLIGHTS else "particles miss one another"
+    raise SimulationError(f"no event up to time {time:g} in {quiet} epochs of the clocks: {why}")
+
+
+class CollapsePart(Part):
+    """Detection of a collapse of `count` particles. watch: what the kernels count; None where none is
+    possible."""
+
+    def __init__(self, model: Model, count: int) -> None:
+        law = model.law
+        most, self._interval = _MOST, _INTERVAL
+        if law and law.normal < 1.0 and law.viscous is None and not law.duration:
+            most, self._interval = _INELASTIC_MOST, _INELASTIC_INTERVAL
+        elif law is None or (law.normal == 1.0 and abs(law.tangential) == 1.0 and law.vibrations is None):
+            most = _MOST_OF_STACK if model.gravity else _UNLIMITED
+        self.watch: CollapseWatch | None = None
+        if not (law or model.gravity):
+            super().__init__({})
+            return
+        since, contacts = np.full(count, -np.inf), np.zeros(count, dtype=np.int64)
+        super().__init__({"contacts_since": since, "contacts": contacts}, times=(since,))
+        self.watch = CollapseWatch(since, contacts, 0.0, most)
+
+    def begin_epoch(self, length: float, start: float, model: Model) -> Model:
+        """Set the time in which so many contacts are a collapse."""
+        self.watch = self.watch and self.watch._replace(interval=self._interval * length)
+        return model
+
+    def error(self, time: float) -> SimulationError:
+        """The error of a scene in which a particle has had too many contacts, up to `time`."""
+        watch = self.watch
+        assert watch is not None  # or the kernels would have seen none
+        return SimulationError(
+            f"at time {time:g} particle {watch.contacts.argmax()} has had "
+            f"{watch.most} contacts within a time of {watch.interval:g}: "
+            f"{_REST if watch.most == _MOST_OF_STACK else _COLLAPSE}; the state is that of the present time"
+        )

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import math
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+from gaspart.engines.features.faces import face_energy
 from gaspart.engines.features.part import Part
-from gaspart.kernels.model import ContactLaw
+from gaspart.kernels.model import NONE, ContactDuration, ContactLaw, Gravity, no_support
+from gaspart.kernels.physics import sums as running_sum
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
 from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
+
+if TYPE_CHECKING:
+    from gaspart.kernels.model import Model, Particles, Tally
+
 
 _BISECTIONS = 100  # until neighbouring numbers enclose the damping of viscoelastic particles
 
@@ -38,7 +47,7 @@ def _viscous(scene: Scene) -> float | None:
     rule = scene.restitution
     if rule is None or rule.reference_speed is None:
         return None
-    from gaspart.kernels.physics.viscoelastic import fifth_root, restitution_of
+    from gaspart.kernels.physics.contact import fifth_root, restitution_of
 
     first = (scene.species or scene.particles)[0]
     least, most = 0.0, 1.0
@@ -74,3 +83,251 @@ class LawPart(Part):
         state.spins = (spins[:, 2] if state.dimension == 2 else spins).copy()
         if state.vibrations is not None and "vibrations" in self.arrays:
             state.vibrations += np.maximum(self.arrays["vibrations"], 0.0)
+
+
+# Masses of the particles in the kernels' unit; power-of-two bounds of momenta and energies, for fixed-point
+# sums.
+
+
+def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
+    """(unit, array): equal masses are not part of the kernel's model, and their sums scaled by `unit`."""
+    if len(masses) == 0:
+        return 1.0, None
+    return (float(masses[0]), None) if (masses == masses[0]).all() else (1.0, masses)
+
+
+def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, float]:
+    """The momentum and the energy that few particles will exceed, each a power of two in units of
+    `unit_mass`: sums that several threads make are in parts of these."""
+    moving = np.isfinite(state.masses)
+    if not moving.any():
+        return 1.0, 1.0
+    masses = state.masses[moving] / unit_mass
+    given = face_energy(scene) + state.vibrational_energy
+    energies = (state.kinetic_energies[moving] + given) / unit_mass
+    if scene.gravity is not None:
+        energies += masses * sum(
+            abs(g) * length for g, length in zip(scene.gravity, state.lengths, strict=True)
+        )
+    momentum = float(np.sqrt(2.0 * masses * energies).max())
+    energy = float(energies.max())
+    return 2.0 ** math.frexp(momentum or 1.0)[1], 2.0 ** math.frexp(energy or 1.0)[1]
+
+
+# Jams of a scene under gravity: particles that are held until a contact moves them (`kernels.event.jams`).
+#
+# All follows from what is taken for rest: a movement of less than 2^-8 of the smallest diameter d. Gravity
+# g, tilted by an angle a of tangent 2^-2, moves no particle of a jam as far in the time sqrt(d/g) of a
+# fall, nor does a contact that gives it less than a speed v: up a slope of this angle it comes v^2/(2 g
+# sin a) far. A jam is what has one particle at least that is pressed: its contacts follow one another
+# faster, in the mean of a fall, than those of two particles that gravity alone presses together.
+
+
+FURTHEST = 2.0**-8  # of the smallest diameter: what moves less rests
+_TILT = 2.0**-2
+_PLANES = 24  # that a particle touches, of which more are not regarded
+
+
+def slowest_that_moves(scene: Scene) -> float:
+    """The speed that frees a particle from a jam; infinite without gravity."""
+    gravity = math.hypot(*(scene.gravity or ()))
+    if gravity == 0.0:
+        return math.inf
+    return math.sqrt(4.0 * gravity * math.sin(math.atan(_TILT)) * FURTHEST * scene.smallest_radius)
+
+
+def _tilted(gravity: tuple[float, ...]) -> np.ndarray:
+    """(2, 3) or (4, 3) accelerations, tilted to all sides; whatever supports all of them supports gravity."""
+    whole = np.zeros(3)
+    whole[: len(gravity)] = gravity
+    across = [np.array([-whole[1], whole[0], 0.0])]
+    if len(gravity) == 3:
+        one = np.cross(whole, np.eye(3)[np.argmin(np.abs(whole))])
+        across = [one, np.cross(whole, one)]
+    sides = [_TILT * math.hypot(*whole) / math.hypot(*vector) * vector for vector in across]
+    return np.array([whole + sign * side for side in sides for sign in (-1.0, 1.0)])
+
+
+class Jams:
+    """Looks for jams in a scene after every `window` of time. axis: of its gravity, not periodic; reach: the
+    largest gap of particles that touch."""
+
+    def __init__(self, scene: Scene, axis: int, reach: float, window: float) -> None:
+        from gaspart.kernels.event.jams import Limits
+        from gaspart.kernels.physics.contact import SHORTEST
+
+        gravity = scene.gravity or ()
+        self._axis, self._most = axis, window / (SHORTEST * scene.contact_duration)
+        support = no_support(1, 0.0)._replace(normal=np.zeros((1, _PLANES, 3)))
+        least = 2.0 * FURTHEST * math.hypot(*gravity)
+        self._limits = Limits(_tilted(gravity), least, reach, support)
+        self._plain = self._limits._replace(pulls=self._limits.pulls[:2].mean(axis=0, keepdims=True))
+
+    def hold(
+        self,
+        particles: Particles,
+        places: np.ndarray,
+        stays: np.ndarray,
+        model: Model,
+        tally: Tally,
+        time: float,
+    ) -> bool:
+        """Hold those of the particles at these places (N, d) that belong to a jam at this time. stays (N,):
+        which have not left their places. Returns whether events must be predicted anew."""
+        from gaspart.kernels.event.jams import (
+            HELD,
+            PRESSED,
+            STAYS,
+            Line,
+            free_unstable,
+            jam,
+            join,
+            keep_stable,
+        )
+
+        law, flights = model.law, particles.flights
+        assert law is not None and law.duration is not None  # as `rest.rest_watch` requires
+        duration, moves = law.duration, law.duration.inverse_mass > 0.0
+        marks = np.empty((3, len(flights)), dtype=bool)
+        marks[HELD], marks[STAYS] = stays & moves, stays | ~moves
+        marks[PRESSED] = duration.contacts > self._most
+        duration.contacts[:] = 0
+        if not (marks[HELD] & marks[PRESSED]).any() and duration.island.max() < len(flights):
+            return False
+        order = np.flatnonzero(marks[STAYS])
+        order = order[np.argsort(places[order, self._axis], kind="stable")]
+        line = Line(order, places, self._axis)
+        keep_stable(flights, line, self._limits, model, marks)
+        kept = marks[:2] | (stays & (duration.island >= len(flights)))
+        if (kept != marks[:2]).any():  # what a jam has held before remains unless gravity itself moves it
+            marks[:2] = kept
+            keep_stable(flights, line, self._plain, model, marks)
+        freed = free_unstable(flights, time, marks, model)
+        order = order[marks[HELD][order]]
+        parent = np.empty(len(flights), dtype=np.int64)
+        join(flights, order, places, self._axis, self._limits.reach, model.space, parent)
+        return jam(flights, order, time, marks, parent, model, tally) or freed
+
+
+# Contacts that last: those within a time of an earlier one of the same particle are elastic.
+
+
+_ARRAYS = ("latest", "met", "island", "contacts", "elastic", "kept")
+
+
+def contact_duration(scene: Scene, law: ContactLaw) -> ContactDuration | None:
+    """The kernels' rule under this `law`, before the first contact; None if every contact dissipates."""
+    if not scene.contact_duration > 0.0:
+        return None
+    never = np.full(scene.count, -np.inf)
+    return ContactDuration(
+        length=scene.contact_duration,
+        latest=never,
+        met=never.copy(),
+        island=np.full(scene.count, NONE),
+        contacts=np.zeros(scene.count, dtype=np.int64),
+        inverse_mass=law.inverse_mass.copy(),
+        moving=slowest_that_moves(scene),
+        elastic=np.zeros(1, dtype=np.int64),
+        kept=np.zeros((1, 2)),
+    )
+
+
+class DurationPart(Part):
+    """Contacts that last, and under `gravity` islands at rest, which it does not move, and jams, which
+    contacts do not move either."""
+
+    def __init__(self, law: ContactLaw, duration: ContactDuration, gravity: Gravity | None) -> None:
+        arrays = {f"contact_{key}": getattr(duration, key) for key in _ARRAYS}
+        super().__init__(arrays, times=(duration.latest, duration.met))
+        self._duration = duration
+        if gravity:
+            self.arrays["gravity_fixed"] = gravity.fixed
+            self.arrays["inverse_mass"] = law.inverse_mass
+
+    def reset(self, clock: float) -> None:
+        """Begin to count from zero."""
+        self._duration.elastic[:], self._duration.kept[:] = 0, 0.0
+
+    def counts(self, clock: float) -> dict[str, float]:
+        """The elastic contacts, and the energy that they have not dissipated."""
+        kept = running_sum.net(self._duration.kept)
+        return {"elastic_contacts": int(self._duration.elastic[0]), "retained_energy": kept}
+
+
+# Scenes under gravity that come to rest.
+#
+# With a contact duration, a pile that has settled goes on with tiny elastic contacts for ever. A scene is
+# taken for being at rest, and nothing happens in it any more, if for the time sqrt(d/g) of a fall each
+# particle has stayed within 2^-8 of the smallest diameter d, and then lies on a wall or has contacts that
+# last. The same holds for a part of it, particles with such contacts and what lies or moves within 2^-8 d
+# of them, until another particle meets one of them. The kinetic energy of flight is then counted as
+# dissipated; spins, on which elastic contacts do not act, are kept.
+
+
+class RestWatch(Part):
+    """Looks at regular times, which do not depend on where a run is split, whether all particles rest: their
+    places (N, d) at the last look, the time of the next one on the clocks of the epoch, and whether they do.
+    """
+
+    def __init__(self, scene: Scene, state: State) -> None:
+        diameter, gravity = 2.0 * scene.smallest_radius, scene.gravity or ()
+        self._window = math.sqrt(diameter / math.hypot(*gravity))
+        self._most = FURTHEST * diameter
+        self._axis = int(np.argmax(np.abs(gravity)))
+        self._jams = Jams(scene, self._axis, self._most, self._window)
+        self._before = state.positions.copy()
+        self._next = np.array([self._window])
+        self._rests = np.zeros(1, dtype=bool)
+        arrays = {"before": self._before, "next": self._next, "rests": self._rests}
+        arrays = {f"scheduled_{key}": array for key, array in arrays.items()}
+        super().__init__(arrays, times=(self._next,), scheduled=self._next)
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether all particles rest."""
+        return bool(self._rests[0])
+
+    def set_clock(self, clock: float) -> None:
+        """Look for the first time after the time of a fall from now on."""
+        self._next[0] = clock + self._window
+
+    def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
+        """Look which particles rest, and stop them. Returns whether events must be predicted anew: not if all
+        rest."""
+        from gaspart.kernels.event.jams import MOVES, RESTS, find_resting, stop_all
+
+        flights, places, time = particles.flights, self._before, self.next
+        self._next += self._window
+        marks = np.empty((3, len(flights)), dtype=bool)
+        find_resting(flights, places, time, self._most, model, marks)
+        if marks[RESTS].all():
+            stop_all(flights, time, model, tally)
+            self._rests[0] = True
+            return False
+        found = self._hold(particles, marks, model, tally, time)
+        return self._jams.hold(particles, places, ~marks[MOVES], model, tally, time) or found
+
+    def _hold(self, particles: Particles, marks: np.ndarray, model: Model, tally: Tally, time: float) -> bool:
+        """Hold islands. Returns whether there are any new ones."""
+        from gaspart.kernels.event.jams import RESTS, TOUCHES, hold, join
+        from gaspart.kernels.model import NONE
+
+        flights, places, law = particles.flights, self._before, model.law
+        assert law is not None and law.duration is not None  # as `rest_watch` requires
+        awake = (law.duration.island == NONE) & (law.inverse_mass > 0.0)
+        if not (marks[RESTS] & marks[TOUCHES] & awake).any():
+            return False
+        near = np.flatnonzero(marks.any(axis=0) & awake)  # not what slides slowly and touches nothing
+        order = near[np.argsort(places[near, self._axis], kind="stable")]
+        parent = np.empty(len(flights), dtype=np.int64)
+        join(flights, order, places, self._axis, self._most, model.space, parent)
+        return hold(flights, order, time, marks, parent, model, tally)
+
+
+def rest_watch(scene: Scene, state: State) -> RestWatch | None:
+    """The watch of a scene in which all particles may come to rest: contacts that last, gravity that
+    drives no flow, and no face or wall that gives energy."""
+    falls = scene.gravity is not None and not scene.driven_axes
+    still = not (scene.faces or scene.face_temperatures)
+    return RestWatch(scene, state) if scene.contact_duration > 0.0 and falls and still else None

@@ -6,7 +6,11 @@ import numpy as np
 
 from gaspart.engines.features.faces import face_energy
 from gaspart.engines.features.part import Part
+from gaspart.errors import SceneError
+from gaspart.kernels import model as kernels
 from gaspart.kernels.model import InteriorWalls, MovingWall, WarmWalls
+from gaspart.kernels.obstacles.moving import advance_wall
+from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
 from gaspart.state.boxes import Boxes
 from gaspart.state.interior_walls import wall_rows, walls_near
@@ -43,3 +47,47 @@ class WarmWallsPart(Part):
     def __init__(self, scene: Scene, warm: WarmWalls, lightest: float) -> None:
         super().__init__({"wall_draws": warm.draws})
         self.gained = face_energy(scene) / lightest
+
+
+# A wall across the container that moves, between two gases.
+
+
+def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.MovingWall | None:
+    """The wall that moves, as it does in a state, in units of `unit_mass`; None if there is none. Raises
+    SceneError without particles on both its sides, which keep it inside the container."""
+    wall = scene.moving_wall
+    if wall is None or state.piston is None:
+        return None
+    place, velocity = state.piston
+    side = np.where(state.positions[:, wall.axis] > place, 1.0, -1.0)
+    if len(np.unique(side)) < 2:
+        raise SceneError(f"{MOVING_WALL}.mass", wall.mass, "a wall that moves needs particles on both sides")
+    return kernels.MovingWall(wall.axis, wall.mass / unit_mass, side, np.array([place, velocity, 0.0]))
+
+
+class MovingWallPart(Part):
+    """The motion of the wall, with its energy, in units of `unit_mass`."""
+
+    def __init__(self, wall: kernels.MovingWall, unit_mass: float) -> None:
+        super().__init__({"piston": wall.motion})
+        self._motion, self._mass = wall.motion, wall.mass * unit_mass
+
+    @property
+    def stored(self) -> float:
+        """The energy of the wall."""
+        return 0.5 * self._mass * float(self._motion[kernels.PISTON_VELOCITY]) ** 2
+
+    def set_clock(self, clock: float) -> None:
+        """Let the present motion be that at this time."""
+        self._motion[kernels.PISTON_CLOCK] = clock
+
+    def end_epoch(self, length: float, start: float) -> None:
+        """Move it to the end of the epoch, and let that be time 0 of its clock."""
+        advance_wall(self._motion, length)
+        self.set_clock(0.0)
+
+    def write(self, state: State, clock: float) -> None:
+        """Write where it is along its axis, and its velocity."""
+        motion = self._motion.copy()
+        advance_wall(motion, clock)
+        state.piston = motion[[kernels.PISTON_PLACE, kernels.PISTON_VELOCITY]]

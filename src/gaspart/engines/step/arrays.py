@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.engines.features.faces import FacesPart, special_faces
-from gaspart.engines.features.gravity import gravity_of
-from gaspart.engines.features.law import LawPart, contact_law
-from gaspart.engines.features.masses import scaled_masses
-from gaspart.engines.features.part import Part, TallyPart
+from gaspart.engines.features.faces import FacesPart, face_energy, special_faces
+from gaspart.engines.features.law import LawPart, contact_law, scaled_masses
+from gaspart.engines.features.part import Part, TallyPart, gravity_of
+from gaspart.engines.features.tallies import rows_of
 from gaspart.kernels.model import Model, Space, empty_tally, flight_dtype
+from gaspart.kernels.physics.sums import whole_parts
 from gaspart.kernels.step import model as layout
 from gaspart.kernels.step.boundaries import Rules
-from gaspart.kernels.step.model import StepModel, StepParticles, StepTally
-from gaspart.kernels.step.simd import roomy
+from gaspart.kernels.step.box_search import StepBoxes
+from gaspart.kernels.step.model import Cells, Search, StepModel, StepParticles, StepTally
+from gaspart.kernels.step.neighbour_list import roomy
+from gaspart.scene.geometry import ball_volume
+from gaspart.scene.impulses import row_count
 from gaspart.scene.scene import Scene
+from gaspart.state.boxes import cube_side, make_boxes
+from gaspart.state.optional_tallies import ImpulseTally, OptionalTally
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
@@ -147,3 +152,173 @@ def parts_for(scene: Scene, rules: Rules | None) -> list[Part]:
 def needs_rules(scene: Scene) -> bool:
     """Whether faces or contacts of a scene change more than momenta."""
     return bool(scene.faces) or scene.rough or scene.vibrates
+
+
+# Tallies of the time-stepped engine that not every run has. Threads add to them, exactly.
+
+
+class ImpulsesPart(TallyPart):
+    """The momentum that particles carry through planes across an axis: that below each plane at the last
+    reset, `momenta`, and all impulses since then, less that below it at present.
+
+    particles: those of the kernels; unit_mass, largest: the unit of their masses, and the bound of a momentum
+    in it. The kernel is the entries of a `StepTally`, by name.
+    """
+
+    kernel: dict[str, Any]
+
+    def __init__(
+        self,
+        asked: OptionalTally,
+        particles: StepParticles,
+        model: StepModel,
+        scene: Scene,
+        threads: int,
+        units: tuple[float, float],
+    ) -> None:
+        assert isinstance(asked, ImpulseTally)
+        self._particles, (self._unit_mass, self._largest) = particles, units
+        self._axis, self._rows = "xyz".index(asked.axis), rows_of(scene)
+        self._per_length = asked.bins / scene.container.lengths[self._axis]
+        rows = row_count(scene)
+        momenta = np.zeros((rows, asked.bins + 1))
+        sums = np.zeros((threads, *momenta.shape, 2), np.int64)
+        kernel = {
+            "impulses": sums,
+            "axis": self._axis,
+            "pull": 0.0 if model.gravity is None else float(model.gravity[self._axis]),
+            "per_length": self._per_length,
+            "turns": 1.0 / asked.bins if scene.container.periodic[self._axis] else 0.0,
+            "row": self._rows if rows > 1 else None,
+        }
+        super().__init__("impulses", kernel, {"momenta": momenta}, {"impulses": sums})
+        self.reset(0.0)
+
+    def _momenta(self) -> np.ndarray:
+        """(rows, bins + 1) the momenta of all particles now, as impulses are summed; in their own order, of
+        which rounding is to depend on nothing else."""
+        particles = self._particles
+        order = np.argsort(particles.index)
+        places = particles.positions[self._axis][order].astype(float) * self._per_length
+        momenta = particles.masses.astype(float) * particles.velocities[self._axis][order]
+        found = np.zeros_like(self.arrays["momenta"])
+        bins = np.clip(places.astype(np.int64), 0, found.shape[1] - 2)
+        upper = momenta * (places - bins)
+        np.add.at(found, (self._rows, bins), momenta - upper)
+        np.add.at(found, (self._rows, bins + 1), upper)
+        return found
+
+    def reset(self, clock: float) -> None:
+        """Begin to count from zero."""
+        super().reset(clock)
+        self.arrays["momenta"][...] = self._momenta()
+
+    def read(self, clock: float) -> np.ndarray:
+        """(species, bins) the momentum that has flown until now."""
+        impulses = whole_parts(self.sums["impulses"].sum(axis=0), self._largest).sum(axis=-1)
+        below = np.cumsum(impulses + (self.arrays["momenta"] - self._momenta()), axis=1)
+        return np.asarray(self._unit_mass * below[:, :-1])
+
+    def counts(self, clock: float) -> dict[str, Any]:
+        """The same, by the field of `Tally`."""
+        return {"momentum_flux_sum": self.read(clock)}
+
+
+PARTS = {"impulses": ImpulsesPart}
+"""Classes of the parts of optional tallies, by name."""
+
+
+def tally_parts(
+    asked: Iterable[OptionalTally],
+    particles: StepParticles,
+    model: StepModel,
+    scene: Scene,
+    threads: int,
+    units: tuple[float, float],
+) -> list[TallyPart]:
+    """The parts of optional tallies. particles: in their slots at time 0; units: see `ImpulsesPart`."""
+    return [PARTS[tally.name](tally, particles, model, scene, threads, units) for tally in asked]
+
+
+# The search of the time-stepped engine: boxes, or the cells and the skin of a neighbour list.
+
+
+_CELLS_PER_PARTICLE = 6.0
+_REBUILD, _TEST, _PAIR = 25.0, 2.0, 6.0  # ns per particle, candidate and pair listed: their ratios matter
+_LEAST = 1.6  # times the distance by which the fastest two approach in a step, at least
+
+
+def search_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray) -> Search:
+    """The boxes, or the cells and room for the pairs of a neighbour list, for particles of these radii."""
+    pairs = np.empty((engine.threads, state.count // engine.threads + 16), np.uint64)
+    if engine.boxes_per_side is None:
+        return Search(None, cells_for(engine, scene, state, radii), pairs)
+    reach = 2.0 * radii.max(initial=0.0)
+    grid = make_boxes(scene, engine.boxes_per_side, images=False, narrowest=reach)
+    real = np.dtype(engine.precision).type
+    boxes = StepBoxes(
+        grid.per_side, grid.widths.astype(real), grid.strides, grid.neighbour,
+        at=np.zeros((state.count, 3), dtype=np.int64),
+        head=np.empty(grid.count, dtype=np.int32),
+        following=np.empty(state.count, dtype=np.int32),
+        near=engine.near_boxes,
+        reach=real(reach * (1.0 + 1e-5)),
+    )  # fmt: skip
+    return Search(boxes, None, pairs)
+
+
+def cells_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray) -> Cells:
+    """The cells of the neighbour list."""
+    real = np.dtype(engine.precision).type
+    lengths, periodic = scene.container.lengths, scene.container.periodic
+    contact = 2.0 * radii.max(initial=0.0)
+    skin = engine.skin or _skin(engine, scene, state, contact)
+    width = max((contact + skin) * (1.0 + 1e-4), _width(scene, state.count))
+    sides = [max(1, int(length / width)) for length in lengths]
+    # of two cells each would be the other's neighbour twice; one cell does too, by nearest images
+    sides = [1 if p and side < 3 else side for side, p in zip(sides, periodic, strict=True)]
+    rest = [1] * (3 - scene.dimension)
+    per_side = np.array(sides + rest, dtype=np.int64)
+    inverse = per_side / np.array([*lengths, *rest])
+    rows = int(per_side[0]) + 3
+    strides = np.array([1, rows, rows * (per_side[1] + 2)], dtype=np.int64)
+    layers = int(strides[2]) * (int(per_side[2]) + 2 if scene.dimension == 3 else 1)
+    return Cells(
+        per_side,
+        inverse.astype(real),
+        strides,
+        wraps=np.array(
+            [p and side > 1 for side, p in zip(sides, periodic, strict=True)] + [False] * len(rest)
+        ),
+        ends=np.empty(layers, np.uint32),
+        cell=np.zeros(state.count, np.uint32),
+        order=np.empty(len(radii), np.uint32),
+        skin=real(skin),
+        origin=np.empty((scene.dimension, state.count), real),
+        held=np.zeros(state.count if engine.threads > 1 else 0, bool),
+        listed=np.zeros(engine.threads, int),
+    )
+
+
+def _width(scene: Scene, count: int) -> float:
+    return cube_side(scene.container.lengths, _CELLS_PER_PARTICLE * count)
+
+
+def _skin(engine: TimeStepped, scene: Scene, state: State, contact: float) -> float:
+    """The skin that costs least: a thin one is used up soon, a thick one lists many pairs."""
+    dimension, density = scene.dimension, state.count / scene.container.volume
+    squares = (state.velocities**2).sum(axis=1)
+    fastest = np.sqrt(squares.max(initial=0.0))
+    if state.count > 1:  # in the end, whatever the speeds are now
+        square = max(squares.mean(), face_energy(scene) / float(state.masses.min())) / dimension
+        fastest = max(fastest, np.sqrt(square * (2.0 * np.log(state.count) + 2.0)))
+    gravity = 0.0 if scene.gravity is None else float(np.abs(scene.gravity).max())
+    way = 2.0 * (fastest * engine.time_step + gravity * engine.time_step**2)
+    skins = contact * np.geomspace(0.02, 30.0, 60)
+    steps = np.maximum(skins / way, 1.0) if way > 0.0 else np.full(60, np.inf)
+    pairs = 0.5 * ball_volume(dimension) * density * (contact + skins) ** dimension
+    stretches = 4.5 if dimension == 2 else 13.5  # cells in which partners are looked for
+    tests = stretches * density * np.maximum(contact + skins, _width(scene, state.count)) ** dimension
+    cost = (_REBUILD + _TEST * tests) / steps + _PAIR * pairs
+    cost[skins < _LEAST * way] = np.inf  # contacts would use it up in one step
+    return float(skins[np.argmin(cost)]) if np.isfinite(cost).any() else _LEAST * way

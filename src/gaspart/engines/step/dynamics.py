@@ -8,9 +8,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.engines.features.masses import largest_terms
+from gaspart.engines.dynamics import SteppedDynamics
+from gaspart.engines.features.law import largest_terms
 from gaspart.engines.features.per_area import ThreadedPerAreaPart, inverse_areas
-from gaspart.engines.step.arrays import empty_particles, masses_of, model_for, parts_for, step_tally
+from gaspart.engines.step.arrays import (
+    empty_particles,
+    masses_of,
+    model_for,
+    parts_for,
+    search_for,
+    step_tally,
+    tally_parts,
+)
 from gaspart.engines.step.limits import (
     check_late,
     check_precision,
@@ -18,11 +27,8 @@ from gaspart.engines.step.limits import (
     check_step,
     oversized_particles,
 )
-from gaspart.engines.step.search import search_for
-from gaspart.engines.step.tallies import tally_parts
-from gaspart.engines.stepped import SteppedDynamics
-from gaspart.kernels.physics import running_sum
-from gaspart.kernels.step import loop
+from gaspart.kernels.physics import sums as running_sum
+from gaspart.kernels.step import box_search as loop
 from gaspart.kernels.step import model as layout
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally

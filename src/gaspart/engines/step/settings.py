@@ -13,7 +13,7 @@ from gaspart.scene.faces import FACE_KINDS
 from gaspart.scene.gas import plain_gas
 
 if TYPE_CHECKING:
-    from gaspart.engines.asked import Asked, Candidate
+    from gaspart.engines.engine import Asked, Candidate
     from gaspart.engines.step.dynamics import StepDynamics
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
@@ -108,7 +108,7 @@ class TimeStepped(Engine):
 
     def candidate(self, asked: Asked) -> Candidate:
         """With the longest step that is accurate enough."""
-        from gaspart.engines.step.accuracy import candidate
+        from gaspart.engines.step.limits import candidate
 
         return candidate(self, asked)
 

@@ -21,9 +21,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from gaspart.files import scratch_beside
-from gaspart.kernels.compile.cache import report_unwritable
-from gaspart.kernels.compile.loading import load_numba
-from gaspart.kernels.compile.shipped import shipped_content, shipped_key
+from gaspart.kernels.compile.cache import load_numba, report_unwritable, shipped_content, shipped_key
 from gaspart.system import is_own
 
 caching: Any = load_numba().core.caching

@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from gaspart.kernels.compile.loading import load_numba
+from gaspart.kernels.compile.cache import load_numba
 
 numba: Any = load_numba()
 types: Any = numba.types

@@ -15,8 +15,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, ClassVar
 
+from gaspart.kernels.compile.cache import load_numba
 from gaspart.kernels.compile.files import KernelCache, KernelContents
-from gaspart.kernels.compile.loading import load_numba
 from gaspart.kernels.compile.narrowing import narrowed
 
 numba: Any = load_numba()

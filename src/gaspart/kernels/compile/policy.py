@@ -15,8 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from gaspart.interruption import uninterrupted
-from gaspart.kernels.compile.cache import report_unwritable, usable_cache
-from gaspart.kernels.compile.loading import load_numba
+from gaspart.kernels.compile.cache import load_numba, report_unwritable, usable_cache
 from gaspart.kernels.compile.sources import file_digests
 
 numba = load_numba()

@@ -21,25 +21,30 @@ from typing import NamedTuple
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
-from gaspart.kernels.dsmc.contact import (
+from gaspart.kernels.dsmc.boltzmann import (
+    add_contact,
     collide_loaded_pair,
     collide_smooth,
+    finish_cell,
     in_plane,
     load_particle,
+    note_pair,
     store_particle,
     unit_vector,
 )
-from gaspart.kernels.dsmc.draws import below, fraction, waiting_time, words_of
 from gaspart.kernels.dsmc.model import (
     COLLISIONS,
     EXCEEDED,
     TRIALS,
+    below,
+    fraction,
     kind_in,
     position_row,
     velocity_row,
+    waiting_time,
+    words_of,
 )
-from gaspart.kernels.dsmc.stress import add_contact, finish_cell, note_pair
-from gaspart.kernels.physics.exact_sum import add_exact
+from gaspart.kernels.physics.sums import add_exact
 
 FILLED, SURFACE = range(2)
 KIND_BLOCK = 255  # of a trial's random words: the partner's kind

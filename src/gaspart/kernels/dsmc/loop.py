@@ -14,7 +14,7 @@ from gaspart.kernels.compile.policy import (
     inner_helper,
     inner_parallel_kernel,
 )
-from gaspart.kernels.dsmc.boltzmann import collide_cells
+from gaspart.kernels.dsmc.boltzmann import add_flights, collide_cells
 from gaspart.kernels.dsmc.cells import (
     find_starts,
     gather_numbers,
@@ -24,10 +24,8 @@ from gaspart.kernels.dsmc.cells import (
     swap_row,
 )
 from gaspart.kernels.dsmc.enskog import collide_slab, find_bounds, find_near_speeds, look_at_cells
-from gaspart.kernels.dsmc.model import ThreadContext, open_space
+from gaspart.kernels.dsmc.model import ThreadContext, open_space, still_fits
 from gaspart.kernels.dsmc.motion import move
-from gaspart.kernels.dsmc.pace import still_fits
-from gaspart.kernels.dsmc.stress import add_flights
 from gaspart.kernels.model import Space
 from gaspart.kernels.step.model import part_of
 

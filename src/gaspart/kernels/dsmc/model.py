@@ -6,12 +6,17 @@ do not depend on the order of adding. The structures hold arrays and plain numbe
 passes nothing else to threads.
 """
 
+from __future__ import annotations
+
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compile.policy import inner_helper
+from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.model import Ramp, Space
+from gaspart.kernels.physics.rng import LN2, LOG_SERIES, normal_pair
+from gaspart.kernels.physics.sums import add
 
 COLLISIONS, TRIALS, EXCEEDED, UNFINISHED, FAR = range(5)
 PADDED = 8  # counts of a thread, a cache line
@@ -157,3 +162,189 @@ def open_space(lengths):
     if len(lengths) == 3:
         return Space(lengths, (False, False, False), 0.0)
     return Space(lengths, (False, False), 0.0)
+
+
+# Random numbers of the collisions: a function of a key, the step, the cell and the trial, and of nothing
+# else.
+
+
+_M0, _M1 = np.uint64(0xD2511F53), np.uint64(0xCD9E8D57)
+_W0, _W1 = np.uint64(0x9E3779B9), np.uint64(0xBB67AE85)
+_LOW, _HALF, _ROUNDS = np.uint64(0xFFFFFFFF), np.uint64(32), 10
+_BLOCK_BITS = np.uint64(8)  # of the counter's last word; what is above counts steps
+_TABLE_BITS = 7
+_WORD = 2.0**-32
+
+
+def _natural_log(x: float) -> float:
+    """ln x of a number near 1, by +, -, x and / alone."""
+    s = (x - 1.0) / (x + 1.0)
+    total = 0.0
+    for coefficient in reversed(LOG_SERIES):
+        total = total * s * s + coefficient
+    return 2.0 * s * total
+
+
+_CENTRES = [1.0 + (n + 0.5) / 2**_TABLE_BITS for n in range(2**_TABLE_BITS)]
+_INVERSES = np.array([1.0 / x for x in _CENTRES])
+_LOGS = np.array([_natural_log(x / 1.5) + _natural_log(1.2) + _natural_log(1.25) for x in _CENTRES])
+"""Logarithms of numbers from 1 to 2, and inverses, at the centres of 128 equal parts."""
+
+
+@inner_helper
+def words_of(key, step, cell, trial, block):
+    """Four random words of 32 bits, each in 64: Philox4x32-10 (Salmon, Moraes, Dror & Shaw, SC11 (2011)).
+
+    key: (2,) words of 32 bits; step below 2^53, cell and trial below 2^32, block below 2^8: the counter.
+    """
+    number = np.uint64(step)
+    c0, c1, c2 = np.uint64(trial), np.uint64(cell), number & _LOW
+    c3 = ((number >> _HALF) << _BLOCK_BITS) | np.uint64(block)
+    k0, k1 = np.uint64(key[0]), np.uint64(key[1])
+    for _ in range(_ROUNDS):
+        one, other = _M0 * c0, _M1 * c2
+        c0, c1 = (other >> _HALF) ^ c1 ^ k0, other & _LOW
+        c2, c3 = (one >> _HALF) ^ c3 ^ k1, one & _LOW
+        k0 = (k0 + _W0) & _LOW
+        k1 = (k1 + _W1) & _LOW
+    return c0, c1, c2, c3
+
+
+@inner_helper
+def fraction(word):
+    """A number above 0 and below 1, from a word of 32 bits."""
+    return (np.float64(word) + 0.5) * _WORD
+
+
+@inner_helper
+def below(word, count):
+    """A whole number from 0 to count - 1, from a word of 32 bits; the chances differ by count / 2^32."""
+    return np.int64((word * np.uint64(count)) >> _HALF)
+
+
+@inner_helper
+def waiting_time(word):
+    """An exponential random number of mean 1, from a word of 32 bits: -ln of `fraction`, to 1e-12.
+
+    The word's leading bits choose an entry of a table, and a series does the rest.
+    """
+    bits = np.float64(np.float64(word) + 0.5).view(np.int64)
+    exponent = (bits >> 52) - 1023
+    entry = (bits >> (52 - _TABLE_BITS)) & ((1 << _TABLE_BITS) - 1)
+    mantissa = np.int64((bits & ((1 << 52) - 1)) | (1023 << 52)).view(np.float64)
+    r = mantissa * _INVERSES[entry] - 1.0
+    series = r * (1.0 - r * (0.5 - r * (1.0 / 3.0 - r * (0.25 - r * 0.2))))
+    return (32 - exponent) * LN2 - (_LOGS[entry] + series)
+
+
+# How fast the particles are, and what length of a step fits that.
+#
+# A step can be divided into 2^level parts. A level fits if the mean speed is within its limits: not so high
+# that particles fly too far in a part, nor so low that the kicks of a part would change the speeds too
+# much.
+
+
+class Pace(NamedTuple):
+    """low, high (levels,): the limits of the mean speed of each level; level: the present one; drifts (d,):
+    along which axes only the motion about the mean counts; fastest (1,): the highest mean speed found."""
+
+    low: np.ndarray
+    high: np.ndarray
+    level: int
+    drifts: tuple[bool, ...]
+    fastest: np.ndarray
+
+
+@inner_helper
+def drift_along(particles, axis, drifts):
+    """The mean velocity along an axis, if it does not count."""
+    total = 0.0
+    if drifts[axis]:
+        v = particles.data[velocity_row(particles, axis)]
+        for n in range(len(v)):
+            total += v[n]
+        total /= len(v)
+    return total
+
+
+@inner_helper
+def mean_speed(particles, drifts):
+    """That of all particles, 0 of none."""
+    d, count = len(particles.images), particles.data.shape[1]
+    u = particles.data[velocity_row(particles, 0)]
+    v = particles.data[velocity_row(particles, 1)]
+    w = particles.data[velocity_row(particles, d - 1)]
+    flat = 0.0 if d == 2 else 1.0
+    mean_u, mean_v = drift_along(particles, 0, drifts), drift_along(particles, 1, drifts)
+    mean_w = drift_along(particles, d - 1, drifts)
+    total = 0.0
+    for n in range(count):
+        x, y, z = u[n] - mean_u, v[n] - mean_v, flat * (w[n] - mean_w)
+        total += sqrt(x * x + y * y + z * z)
+    return total / max(count, 1)
+
+
+@kernel
+def fitting_level(particles, pace):
+    """The first level that fits the particles; their number if none does."""
+    speed = mean_speed(particles, pace.drifts)
+    pace.fastest[0] = max(pace.fastest[0], speed)
+    for level in range(len(pace.low)):
+        if pace.low[level] <= speed <= pace.high[level]:
+            return level
+    return len(pace.low)
+
+
+@inner_helper
+def still_fits(particles, pace):
+    """Whether the present level does."""
+    if pace is None:
+        return True
+    return fitting_level(particles, pace) == pace.level
+
+
+# Random kicks of all particles at once: the stochastic thermostat of a driven granular gas.
+
+
+@inner_helper
+def _energy(particles, slot, mass):
+    square = 0.0
+    for k in range(len(particles.images)):
+        v = particles.data[velocity_row(particles, k), slot]
+        square += v * v
+    return 0.5 * mass * square
+
+
+@inner_helper
+def _kick(particles, slot, width, counter, mass, momentum):
+    """Kick one particle, and add to `momentum` (3,) what it takes. counter: the key and the number of the
+    kick."""
+    key, number = counter
+    i = number_at(particles, slot)
+    one, other, block = normal_pair(key, i, number, 1)
+    changes = one, other, 0.0
+    if len(particles.images) == 3:
+        third, _, _ = normal_pair(key, i, number, block)
+        changes = one, other, third
+    for k in range(len(particles.images)):
+        particles.data[velocity_row(particles, k), slot] += width * changes[k]
+    scale = mass * width
+    x, y, z = momentum
+    return x + scale * changes[0], y + scale * changes[1], z + scale * changes[2]
+
+
+@kernel
+def kick_all(particles, workspace, width, counter, given):
+    """Kick all particles, with a width of `width` for mass 1, without changing the total momentum. counter:
+    see `_kick`; given (1, 2): the energy that they have been given, see `running_sum.add`."""
+    momentum, total = (0.0, 0.0, 0.0), 0.0
+    for slot in range(particles.data.shape[1]):
+        mass = workspace.mass[kind_in(particles, slot, workspace)]
+        add(given, 0, -_energy(particles, slot, mass))
+        momentum = _kick(particles, slot, width / sqrt(mass), counter, mass, momentum)
+        total += mass
+    for slot in range(particles.data.shape[1]):
+        mass = workspace.mass[kind_in(particles, slot, workspace)]
+        for k in range(len(particles.images)):
+            particles.data[velocity_row(particles, k), slot] -= momentum[k] / total
+        add(given, 0, _energy(particles, slot, mass))

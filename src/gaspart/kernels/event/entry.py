@@ -10,14 +10,13 @@ from math import inf
 from numpy import int64, uint64
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
-from gaspart.kernels.event.box_lists import insert, member
+from gaspart.kernels.event.boxes import insert, member
 from gaspart.kernels.event.prediction import NOT_CROSSED, predict_after, without_contacts
 from gaspart.kernels.event.queue import count_event
 from gaspart.kernels.model import NONE
-from gaspart.kernels.obstacles.open_face import lowest_vacant, occupy
-from gaspart.kernels.physics.mass import mass_of
-from gaspart.kernels.physics.rng import flux_speed, log_of, normal_pair, random_words, uniform
-from gaspart.kernels.physics.running_sum import add
+from gaspart.kernels.obstacles.face import lowest_vacant, occupy
+from gaspart.kernels.physics.rng import flux_speed, log_of, mass_of, normal_pair, random_words, uniform
+from gaspart.kernels.physics.sums import add
 
 _PLACE, _VELOCITY = 0, 1  # which random words of an attempt
 

@@ -8,7 +8,7 @@ those of `loop`; here every event predicts its particles anew.
 from math import inf, sqrt
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
-from gaspart.kernels.event.box_lists import member, move, sort_in
+from gaspart.kernels.event.boxes import member, move, sort_in
 from gaspart.kernels.event.queue import (
     EVENT_COUNT,
     count_event,
@@ -22,7 +22,7 @@ from gaspart.kernels.model import COLLISIONS, NONE, VIRIAL
 from gaspart.kernels.physics.collision import gap_along
 from gaspart.kernels.physics.contact import time_to_growing_contact, time_to_plane
 from gaspart.kernels.physics.flight import advance, encounter
-from gaspart.kernels.physics.running_sum import add
+from gaspart.kernels.physics.sums import add
 
 _PART = 2.0**-30  # of the rate of growth: particles part at least so fast
 

@@ -1,14 +1,27 @@
 """Impulses by the place where a particle receives them, along one axis (`kernels.physics.planes`): what makes
-densities accurate."""
+densities accurate.
+"""
 
+from __future__ import annotations
+
+from functools import reduce
+from math import floor, sqrt
 from typing import NamedTuple
 
 import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+from numpy import int64, uint64
 
-from gaspart.kernels.compile.policy import inner_helper, kernel
-from gaspart.kernels.physics.flight import acceleration_of
-from gaspart.kernels.physics.mass import mass_of
-from gaspart.kernels.physics.planes import bin_at, row_of
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
+from gaspart.kernels.event.boxes import member
+from gaspart.kernels.event.simd import PLACES, list_box, load_row, load_rows
+from gaspart.kernels.memory import WIDTH, Lanes, fields
+from gaspart.kernels.model import COLLISIONS
+from gaspart.kernels.physics.collision import gap_along
+from gaspart.kernels.physics.flight import acceleration_of, bin_at, row_of
+from gaspart.kernels.physics.rng import mass_of
 
 
 class Impulses(NamedTuple):
@@ -70,3 +83,250 @@ def add_momenta(flights, sign, model, impulses):
             place = flights[i].position[impulses.axis] * impulses.per_length
             momentum = sign * mass_of(i, model.masses, model.law) * velocity
             add_at(impulses.sums, row_of(i, impulses.row), place, momentum)
+
+
+# Eight pairs at once: how far apart they are, and how much of a vector lies along that, in vector
+# instructions.
+
+
+_DOUBLE, _WORD = ir.DoubleType(), ir.IntType(64)
+
+
+def nearest(gap: Lanes, length: ir.Value) -> Lanes:
+    """Differences along a periodic axis by the nearest image, as in `physics.periodic`."""
+    side = gap.all(length)
+    lower = (gap + side).where(gap + gap < gap.all(0.0) - side, gap)
+    return (gap - side).where(gap + gap > side, lower)
+
+
+@intrinsic
+def separate(typingctx, flights, i, first, listed, vector, space, found):
+    """Of particle i, at the time of its clock, and each of the eight that are listed from number `first` on:
+    found[0] the distance r, by the nearest image in a periodic space, and found[1] r.v / |r|^d with a vector
+    v (d,) and r from the other to i; NaN at a distance of 0."""
+
+    def generate(context, builder, signature, arguments):
+        flights, i, first, listed, vector, space, found = arguments
+        lengths = fields(builder, signature.args[5], space)["lengths"]
+
+        def data(n, array):
+            return context.make_array(signature.args[n])(context, builder, array).data
+
+        rows = builder.bitcast(data(0, flights), _DOUBLE.as_pointer())
+        near, vector, found = data(3, listed), data(4, vector), data(6, found)
+        indices = []
+        for n in range(WIDTH):
+            number = builder.load(builder.gep(near, [builder.add(first, _WORD(n))]))
+            indices.append(builder.zext(number, _WORD))
+        one, other, d = load_row(builder, rows, i), load_rows(builder, rows, indices), len(lengths)
+        late = one[2 * d] - other[2 * d]
+        products = []
+        for k, length in enumerate(lengths):
+            gap = nearest(one[k] - (other[k] + other[d + k] * late), length)
+            products.append((gap * gap, gap * builder.load(builder.gep(vector, [_WORD(k)]))))
+        square, product = (reduce(Lanes.__add__, terms) for terms in zip(*products, strict=True))
+        distance = square.sqrt()
+        for n, lanes in enumerate((distance, product / (square * distance if d == 3 else square))):
+            place = builder.gep(found, [_WORD(n * WIDTH)])
+            builder.store(lanes.value, builder.bitcast(place, lanes.value.type.as_pointer()), align=8)
+        return context.get_dummy_value()
+
+    word = types.uint64
+    return types.none(flights, word, word, listed, vector, space, found), generate
+
+
+# Impulses by the distance of a pair of particles: what makes the radial distribution function accurate.
+#
+# An impulse dp on a particle, at r from another one, changes the relative momentum (p - p') / 2 of the
+# pair, and gives dp.r / (2 r^d) to all distances above r (docs/design-notes.md). At a contact this is so
+# of the two that meet, and of each of them with all others. Of the shells, the mean over that of the pair
+# itself has the part 1 - f, with f the part of its volume below r, and all higher ones have all: the shell
+# is given 1 - f, the next one f, and the mean over a shell is the sum of all up to it.
+#
+# The others of a pair are found in an order that depends on the search, so whole numbers are summed.
+
+
+MEETING, OTHERS = range(2)
+_SLACK = 1.0 + 1e-9  # by which the search reaches farther, so that rounding hides no pair
+
+
+class PairImpulses(NamedTuple):
+    """sums (2, shells + 1), those of the pairs that meet and of the others, in units of 1 / `per_unit` of the
+    kernels' units; impulse (d,), room for that of a contact; furthest: the largest distance; per_length:
+    shells in a unit of length; per_volume (shells,): one over the volume of each in that of the first;
+    share: of contacts at which the others count; listed, room for the numbers of all particles; found (2, 8),
+    for what `separate` finds."""
+
+    sums: np.ndarray
+    impulse: np.ndarray
+    furthest: float
+    per_length: float
+    per_volume: np.ndarray
+    per_unit: float
+    share: float
+    listed: np.ndarray
+    found: np.ndarray
+
+
+@inner_helper
+def note_velocity(flights, i, pairs):
+    """Keep the velocity of a particle that is about to collide."""
+    if pairs is not None:
+        for k in range(len(pairs.impulse)):
+            pairs.impulse[k] = flights[i].velocity[k]
+
+
+@inner_helper
+def tally_pairs(particles, i, j, queue, boxes, model, tally, pairs):
+    """Add what a contact gives to pairs: that of particles i and j, i with the velocity that `note_velocity`
+    has kept."""
+    if pairs is not None:
+        mass = mass_of(i, model.masses, model.law)
+        _add_contact(particles.flights, i, j, mass, model.space, pairs)
+        number = tally.counts[COLLISIONS]
+        if floor(number * pairs.share) > floor((number - 1) * pairs.share):
+            _add_others(particles.flights, i, j, 0.5, queue, boxes, model.space, pairs)
+            _add_others(particles.flights, j, i, -0.5, queue, boxes, model.space, pairs)
+
+
+@inner_helper
+def _add_at(row, distance, product, pairs):
+    """Add dp.r / r^d = `product` of a pair at a distance."""
+    place = distance * pairs.per_length
+    shell = uint64(place)
+    low = float(shell)
+    if len(pairs.impulse) == 3:
+        part = (place * place * place - low * low * low) * pairs.per_volume[shell]
+    else:
+        part = (place * place - low * low) * pairs.per_volume[shell]
+    whole = product * pairs.per_unit
+    upper = int64(np.rint(whole * part))
+    pairs.sums[row, shell] += int64(np.rint(whole)) - upper
+    pairs.sums[row, shell + uint64(1)] += upper
+
+
+@inner_helper
+def _add_contact(flights, i, j, mass, space, pairs):
+    """Turn the velocity that was kept into the impulse, and add what the contact gives to its own pair."""
+    square = product = 0.0
+    for k in range(len(space.lengths)):
+        pairs.impulse[k] = mass * (flights[i].velocity[k] - pairs.impulse[k])
+        gap = gap_along(flights, j, i, k, space)
+        square += gap * gap
+        product += gap * pairs.impulse[k]
+    distance = sqrt(square)
+    if distance < pairs.furthest:
+        power = square if len(space.lengths) == 2 else square * distance
+        _add_at(MEETING, distance, product / power, pairs)
+
+
+@inner_helper
+def _add_listed(flights, i, j, count, factor, space, pairs):
+    """Add what `factor` times the impulse gives to the pairs of particle i with those that are listed, unless
+    that is i itself, or j, which it has met."""
+    for n in range(uint64(WIDTH)):
+        pairs.listed[count + n] = i
+    for first in range(uint64(0), count, uint64(WIDTH)):
+        separate(flights, i, first, pairs.listed, pairs.impulse, space, pairs.found)
+        for n in range(uint64(WIDTH)):
+            distance = pairs.found[0, n]
+            if 0.0 < distance < pairs.furthest and pairs.listed[first + n] != j:
+                _add_at(OTHERS, distance, factor * pairs.found[1, n], pairs)
+
+
+@inner_kernel
+def _add_others(flights, i, j, factor, queue, boxes, space, pairs):
+    """The same for all others."""
+    i, j = uint64(i), uint64(j)
+    if queue is None:
+        count = uint64(len(flights))
+        for other in range(count):
+            pairs.listed[other] = other
+    else:
+        count = _list_near(flights, i, boxes, space, pairs, boxes.lists)
+    _add_listed(flights, i, j, count, factor, space, pairs)
+
+
+@inner_helper
+def _grid(boxes, axis, lists):
+    """How many cells there are along an axis, and one over their width."""
+    if lists is None:
+        return boxes.per_side[axis], 1.0 / boxes.widths[axis]
+    return lists.per_side[axis], lists.per_length[axis]
+
+
+@inner_helper
+def _list_cell(cell, count, boxes, pairs, lists):
+    """List the particles of a cell, after `count` others: how many there are then."""
+    other = uint64(0)
+    if lists is None:
+        filled = uint64(boxes.filled[cell])
+        list_box(pairs.listed, count, boxes.places, cell, uint64(0))
+        for n in range(uint64(PLACES), filled):
+            other = uint64(member(boxes, cell, n, other))
+            pairs.listed[count + n] = other
+    else:
+        filled = uint64(lists.filled[cell])
+        page = cell * uint64(lists.per_cell)
+        for n in range(filled):
+            pairs.listed[count + n] = lists.pages[page + n // uint64(WIDTH)].members[n % uint64(WIDTH)]
+    return count + filled
+
+
+@inner_helper
+def _reach(furthest, lists):
+    """How far the cell of a particle within a distance may be: one in a neighbour list has moved by a
+    margin."""
+    if lists is None:
+        return furthest * _SLACK
+    return furthest * _SLACK + lists.margin
+
+
+@inner_helper
+def _span(x, reach, count, per_length):
+    """The cells along an axis within a distance of x, first and end; they go on beyond the container."""
+    low, end = int64(floor((x - reach) * per_length)), int64(floor((x + reach) * per_length)) + 1
+    if end - low >= count:
+        return int64(0), int64(count)
+    return low, end
+
+
+@inner_helper
+def _gap_square(x, cell, span, count, per_length):
+    """The square of the distance of x from a cell along an axis; 0 if all cells are within reach."""
+    if span[1] - span[0] >= count:
+        return 0.0
+    gap = max(cell - x * per_length, x * per_length - (cell + 1), 0.0) / per_length
+    return gap * gap
+
+
+@inner_helper
+def _wrapped(cell, count):
+    """A cell along a periodic axis, within the container."""
+    if cell < 0:
+        return cell + count
+    return cell - count if cell >= count else cell
+
+
+@inner_helper
+def _list_near(flights, i, boxes, space, pairs, lists):
+    """List all particles in the cells that may hold some within reach of particle i: how many there are."""
+    count = uint64(0)
+    place, d = flights[i].position, len(space.lengths)
+    x, y, z = place[0], place[1], place[2] if d == 3 else 0.0
+    reach = _reach(pairs.furthest, lists)
+    count_x, per_x = _grid(boxes, 0, lists)
+    count_y, per_y = _grid(boxes, 1, lists)
+    count_z, per_z = _grid(boxes, 2, lists)
+    span_z = _span(z, reach, count_z, per_z)
+    for cz in range(span_z[0], span_z[1]):
+        left_z = reach * reach - _gap_square(z, cz, span_z, count_z, per_z)
+        span_y = _span(y, sqrt(max(left_z, 0.0)), count_y, per_y)
+        for cy in range(span_y[0], span_y[1]):
+            left = left_z - _gap_square(y, cy, span_y, count_y, per_y)
+            row = (_wrapped(cz, count_z) * count_y + _wrapped(cy, count_y)) * count_x
+            low, end = _span(x, sqrt(max(left, 0.0)), count_x, per_x)
+            for cx in range(low, end):
+                cell = uint64(row + _wrapped(cx, count_x))
+                count = _list_cell(cell, count, boxes, pairs, lists)
+    return count

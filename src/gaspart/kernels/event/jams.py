@@ -14,19 +14,152 @@ with a particle that moves always dissipates, and
 - makes the other one belong to the jam, if the two meet so often that it is squeezed.
 """
 
+from __future__ import annotations
+
 from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
-from gaspart.kernels.event.islands import gap_between, root_of
-from gaspart.kernels.event.scene_at_rest import stop
-from gaspart.kernels.model import NONE, Support
-from gaspart.kernels.obstacles.distance import to_wall
+from gaspart.kernels.model import LOSS, NONE, Support
+from gaspart.kernels.obstacles.interior_wall import to_wall
 from gaspart.kernels.obstacles.support import leave_of
-from gaspart.kernels.physics.contact_duration import SHORTEST
-from gaspart.kernels.physics.periodic import nearest
+from gaspart.kernels.physics.contact import SHORTEST
+from gaspart.kernels.physics.flight import acceleration_of, advance, flown, mark_resting, nearest
+from gaspart.kernels.physics.sums import add
+
+# Which particles of a scene under gravity have come to rest.
+
+
+TOUCHES, MOVES, RESTS = range(3)  # what `find_resting` marks
+_PAUSE = 4.0  # contact durations: the longest time without a contact of a particle that others support
+
+
+@inner_helper
+def _lies(flights, i, space, gravity):
+    """Whether a particle is at rest on faces or interior walls, or fixed."""
+    found = True
+    for k in range(len(space.lengths)):
+        found &= flights[i].velocity[k] == 0.0 and acceleration_of(flights, i, k, space, gravity) == 0.0
+    return found
+
+
+@kernel
+def find_resting(flights, before, time, most, model, marks):
+    """Mark (3, N) which particles touch, by contacts that last; which move: they are further than `most` from
+    their places `before` (N, d), which become the places now; and which rest: those that do not move, and
+    touch or lie on a wall."""
+    space, gravity, duration = model.space, model.gravity, model.law.duration
+    for i in range(len(flights)):
+        marks[TOUCHES, i] = time - duration.latest[i] < _PAUSE * duration.length
+        square = 0.0
+        for k in range(len(space.lengths)):
+            pull = acceleration_of(flights, i, k, space, gravity)
+            late = time - flights[i].clock
+            x = flown(flights[i].position[k], flights[i].velocity[k], pull, late)
+            square += (x - before[i, k]) * (x - before[i, k])
+            before[i, k] = x
+        marks[MOVES, i] = square > most * most
+        stays = marks[TOUCHES, i] or _lies(flights, i, space, gravity)
+        marks[RESTS, i] = stays and not marks[MOVES, i]
+
+
+@inner_kernel
+def stop(flights, i, time, model, tally):
+    """Advance a particle to `time` and take its velocity, whose energy is counted as lost."""
+    advance(flights, i, time, model.space, model.gravity)
+    square = 0.0
+    for k in range(len(model.space.lengths)):
+        square += flights[i].velocity[k] * flights[i].velocity[k]
+        flights[i].velocity[k] = 0.0
+    if square > 0.0:
+        add(tally.sums, LOSS, 0.5 * square / model.law.inverse_mass[i])
+
+
+@kernel
+def stop_all(flights, time, model, tally):
+    """Stop every particle."""
+    for i in range(len(flights)):
+        stop(flights, i, time, model, tally)
+
+
+# Islands: particles that lean on one another and are at rest, while others move elsewhere.
+#
+# With a contact duration a pile that has settled goes on with tiny elastic contacts for ever. An island
+# has no events: gravity does not act on it until another particle meets one of it.
+
+
+@inner_helper
+def root_of(parent, i):
+    """The root of a particle's tree, with shorter ways to it for the next search."""
+    while parent[i] != i:
+        parent[i] = parent[parent[i]]
+        i = parent[i]
+    return i
+
+
+@inner_kernel
+def gap_between(flights, places, i, j, space):
+    """Between the surfaces of two particles at their places (N, d)."""
+    square = 0.0
+    for k in range(len(space.lengths)):
+        part = nearest(places[j, k] - places[i, k], space.lengths[k], space.periodic[k])
+        square += part * part
+    return sqrt(square) - flights[i].radius - flights[j].radius
+
+
+@kernel
+def join(flights, order, places, axis, reach, space, parent):
+    """Join particles whose gaps are at most `reach` in trees with the parents (N,). order (M,): these
+    particles, by their coordinate along an axis that is not periodic."""
+    largest = 0.0
+    for i in order:
+        parent[i] = i
+        largest = max(largest, flights[i].radius)
+    for first in range(len(order)):
+        i = order[first]
+        furthest = places[i, axis] + flights[i].radius + largest + reach
+        for second in range(first + 1, len(order)):
+            j = order[second]
+            if places[j, axis] > furthest:
+                break
+            if gap_between(flights, places, i, j, space) <= reach:
+                parent[root_of(parent, j)] = root_of(parent, i)
+
+
+@kernel
+def hold(flights, order, time, marks, parent, model, tally):
+    """Hold those of these particles that belong to a tree of which all rest, and some touch others: `marks`
+    (3, N), see `scene_at_rest.find_resting`, which become those of the trees. Returns whether there are any.
+    """
+    touches, rests = marks[TOUCHES], marks[RESTS]
+    island, found = model.law.duration.island, False
+    for i in order:
+        root = root_of(parent, i)
+        touches[root] |= touches[i]
+        rests[root] &= rests[i]
+    for i in order:
+        root = root_of(parent, i)
+        if rests[root] and touches[root]:
+            stop(flights, i, time, model, tally)
+            island[i] = root
+            model.gravity.fixed[i] = True
+            found = True
+    return found
+
+
+@inner_kernel
+def wake_island(flights, number, time, boxes, model, gravity, law):
+    """Let gravity act again on the particles of an island, and contacts move them."""
+    if gravity is not None:
+        for i in range(len(flights)):
+            if law.duration.island[i] == number:
+                gravity.fixed[i] = False
+                law.inverse_mass[i] = law.duration.inverse_mass[i]
+                flights[i].clock = time
+                mark_resting(flights, i, model.space, gravity, boxes.resting)
+
 
 STAYS, HELD, PRESSED = range(3)  # marks (3, N): has not moved or is fixed; may be held; has many contacts
 _FAR = 8.0  # the speed of a contact that frees a jam, over that which frees a particle; heights are 64 times

@@ -17,14 +17,12 @@ from numpy import int64
 
 from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.event.all_pairs import first_of_all
-from gaspart.kernels.event.box_lists import move, withdraw
+from gaspart.kernels.event.boxes import move, withdraw
 from gaspart.kernels.event.entry import admit_before, next_attempt
-from gaspart.kernels.event.impulses import speed_on_arrival, tally_impulse
-from gaspart.kernels.event.islands import wake_island
-from gaspart.kernels.event.monitors import collapse_detected, is_full, record_event
+from gaspart.kernels.event.impulses import note_velocity, speed_on_arrival, tally_impulse, tally_pairs
+from gaspart.kernels.event.jams import wake_island
 from gaspart.kernels.event.neighbour_lists import is_room_lacking, renew
-from gaspart.kernels.event.pair_contact import collide
-from gaspart.kernels.event.pair_impulses import note_velocity, tally_pairs
+from gaspart.kernels.event.pair_contact import collapse_detected, collide, is_full, record_event
 from gaspart.kernels.event.prediction import (
     NOT_CROSSED,
     predict_after,
@@ -34,13 +32,12 @@ from gaspart.kernels.event.prediction import (
 )
 from gaspart.kernels.event.prefetch import CACHED, CACHED_LISTS, crossing_of, prefetch, prefetch_lists
 from gaspart.kernels.event.queue import count_event, is_outdated, soonest, time_of
-from gaspart.kernels.event.sheared_search import follow
-from gaspart.kernels.event.sheared_stress import end_flight
+from gaspart.kernels.event.sheared import follow
+from gaspart.kernels.event.stress import end_flight
 from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, OUTDATED, WALLS, WELL_EDGES, Model
 from gaspart.kernels.obstacles.face import meet_face
 from gaspart.kernels.obstacles.interior_wall import meet_wall
-from gaspart.kernels.obstacles.sticky import part_if_held
-from gaspart.kernels.obstacles.well import meet_edge
+from gaspart.kernels.obstacles.thermal import meet_edge, part_if_held
 
 # Why a run ended: the time, the number of events, the record, a collapse, a full neighbour list, the number
 # of crossings, more particles inside than there are numbers.

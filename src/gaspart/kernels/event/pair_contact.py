@@ -1,16 +1,127 @@
 """The contact of two particles in the event-driven engine."""
 
-from gaspart.kernels.compile.policy import inner_helper
+from __future__ import annotations
+
+from math import inf, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.event.impulses import speed_before, tally_impulse
 from gaspart.kernels.event.jams import free_if_moved, join_jam, squeezed
-from gaspart.kernels.event.pressed_contact import least_parting, part, release_pair
-from gaspart.kernels.event.sheared_contact import fold, unfold
-from gaspart.kernels.event.sheared_stress import end_flight, tally_contact
-from gaspart.kernels.event.stress import note_pair
-from gaspart.kernels.model import COLLISIONS, FIXED_COLLISIONS, VIRIAL
-from gaspart.kernels.physics.collision import exchange_momentum, gap_along, meets_fixed
-from gaspart.kernels.physics.flight import advance
-from gaspart.kernels.physics.running_sum import add
+from gaspart.kernels.event.sheared import fold, unfold
+from gaspart.kernels.event.stress import end_flight, note_pair, tally_contact
+from gaspart.kernels.model import COLLISIONS, FIXED_COLLISIONS, LOSS, VIRIAL
+from gaspart.kernels.obstacles.support import longest_rest, release, rest_in_wedge
+from gaspart.kernels.obstacles.thermal import mass_of
+from gaspart.kernels.physics.collision import exchange_momentum, gap_along, meets_fixed, push
+from gaspart.kernels.physics.contact import SHORTEST, meet_often
+from gaspart.kernels.physics.flight import acceleration_of, advance
+from gaspart.kernels.physics.rng import normal_pair
+from gaspart.kernels.physics.sums import add
+
+# Contacts of two particles that gravity presses together, as in a stack at rest.
+#
+# The lower one rests on a floor, on a wall, or is fixed, so that the upper one falls relative to it and
+# would meet it infinitely often. Or both are in a row that others press: the slower they are, the more
+# often they meet, as their momentum times this rate is the force. With a contact duration they part at
+# least so fast that gravity lets them meet again after a small part of it; this energy, far below that of
+# a fall through a diameter, is counted as a negative loss.
+
+
+@inner_helper
+def least_parting(flights, i, j, space, gravity, law):
+    """The least speed at which two particles that touch, and have been advanced to the present time, part; 0
+    if nothing presses them together."""
+    if gravity is not None:
+        if law is not None:
+            return _pressed_parting(flights, i, j, space, gravity, law.duration)
+    return 0.0
+
+
+@inner_helper
+def _pressed_parting(flights, i, j, space, gravity, duration):
+    if duration is not None:
+        square = along = whole = 0.0
+        for k in range(len(space.lengths)):
+            gap = gap_along(flights, i, j, k, space)
+            pull = acceleration_of(flights, j, k, space, gravity)
+            pull -= acceleration_of(flights, i, k, space, gravity)
+            square += gap * gap
+            along += gap * pull
+            whole += gravity.acceleration[k] * gravity.acceleration[k]
+        pressing = max(0.0, -along / sqrt(square))
+        if meet_often(flights, i, j, duration):
+            pressing = max(pressing, sqrt(whole))
+        return pressing * 0.5 * SHORTEST * duration.length
+    return 0.0
+
+
+@inner_kernel
+def direction(flights, i, j, space):
+    """(3,) the unit vector from a particle to another one."""
+    x, y = gap_along(flights, i, j, 0, space), gap_along(flights, i, j, 1, space)
+    z = gap_along(flights, i, j, 2, space)
+    distance = sqrt(x * x + y * y + z * z)
+    return x / distance, y / distance, z / distance
+
+
+@inner_helper
+def part(flights, i, j, least, model, tally, law):
+    """Let two particles that have collided part at least so fast."""
+    if law is not None:
+        _part_pressed(flights, i, j, least, model.space, tally, law, law.duration)
+
+
+@inner_kernel
+def _part_pressed(flights, i, j, least, space, tally, law, duration):
+    if duration is None or least == 0.0:
+        return
+    normal = direction(flights, i, j, space)
+    speed = 0.0
+    for k in range(len(space.lengths)):
+        speed += normal[k] * (flights[j].velocity[k] - flights[i].velocity[k])
+    if speed < least:
+        mobility = law.inverse_mass[i] + law.inverse_mass[j]
+        impulse = (least - speed) / mobility
+        push(flights, i, -impulse * law.inverse_mass[i], normal, space)
+        push(flights, j, impulse * law.inverse_mass[j], normal, space)
+        add(tally.sums, LOSS, -0.5 * (least * least - speed * speed) / mobility)
+
+
+@inner_helper
+def release_pair(flights, i, j, model, tally, gravity, law):
+    """Let gravity act in full on two particles that have collided, unless one rests below a fixed one."""
+    if gravity is not None:
+        _release_from(flights, i, j, model, tally, gravity, law)
+        _release_from(flights, j, i, model, tally, gravity, law)
+
+
+@inner_helper
+def _release_from(flights, i, j, model, tally, gravity, law):
+    """The same of the first of two particles."""
+    if not _rests_below(flights, i, j, model.space, tally, gravity, law):
+        release(flights, i, model.space, gravity.support)
+
+
+@inner_helper
+def _rests_below(flights, i, j, space, tally, gravity, law):
+    """Let the first of two particles rest in the wedge between what it rests on and a fixed second one.
+    Returns whether it does."""
+    if law is not None:
+        if law.inverse_mass[j] == 0.0:
+            return _rests_below_fixed(flights, i, j, space, tally, gravity, law, law.duration)
+    return False
+
+
+@inner_kernel
+def _rests_below_fixed(flights, i, j, space, tally, gravity, law, duration):
+    if duration is None:
+        return False
+    normal = direction(flights, i, j, space)
+    particle = 1.0 / law.inverse_mass[i], longest_rest(flights, i, gravity, law)
+    return rest_in_wedge(flights, i, normal, particle, space, tally, gravity, gravity.support)
 
 
 @inner_helper
@@ -46,3 +157,140 @@ def collide(flights, i, j, time, model, tally):
     tally.worst[0] = max(tally.worst[0], abs(rr / (sigma * sigma) - 1.0))
     tally.counts[COLLISIONS] += 1
     tally.counts[FIXED_COLLISIONS] += meets_fixed(i, j, model.law)
+
+
+# Random kicks of all particles at once: the stochastic thermostat of a driven granular gas.
+
+
+@inner_helper
+def _energy(flights, i, mass, space):
+    square = 0.0
+    for k in range(len(space.lengths)):
+        square += flights[i].velocity[k] * flights[i].velocity[k]
+    return 0.5 * mass * square
+
+
+@inner_helper
+def _kick(flights, i, width, key, number, space):
+    """Add normal random numbers of this width to the velocity components."""
+    one, other, block = normal_pair(key, i, number, 1)
+    flights[i].velocity[0] += width * one
+    flights[i].velocity[1] += width * other
+    if len(space.lengths) == 3:
+        one, _, _ = normal_pair(key, i, number, block)
+        flights[i].velocity[2] += width * one
+
+
+@kernel
+def kick_all(flights, time, width, counter, model, given):
+    """Advance all particles to `time` and kick them, with a width of `width` for mass 1, without changing the
+    total momentum. counter: the (2,) words of the key, and the number of the kick. given (1, 2): the energy
+    that they have been given, see `running_sum.add`."""
+    (key, number), space = counter, model.space
+    total = px = py = pz = 0.0
+    last = len(space.lengths) - 1
+    for i in range(len(flights)):
+        advance(flights, i, time, space, model.gravity)
+        mass = mass_of(i, model.masses, model.law)
+        if mass < inf:
+            add(given, 0, -_energy(flights, i, mass, space))
+            velocity = flights[i].velocity
+            px, py = px - mass * velocity[0], py - mass * velocity[1]
+            pz -= mass * velocity[last]
+            _kick(flights, i, width / sqrt(mass), key, number, space)
+            px, py = px + mass * velocity[0], py + mass * velocity[1]
+            pz += mass * velocity[last]
+            total += mass
+    mean = px / total, py / total, pz / total
+    for i in range(len(flights)):
+        mass = mass_of(i, model.masses, model.law)
+        if mass < inf:
+            for k in range(len(space.lengths)):
+                flights[i].velocity[k] -= mean[k]
+            add(given, 0, _energy(flights, i, mass, space))
+
+
+# What observes events while they happen: the record of events, and the detection of a collapse.
+
+
+class Record(NamedTuple):
+    """Room for events: filled (1,), time (M,), particles (M, 2), their indices, positions and velocities
+    (M, 2, d), spins (M, 2, 3), which only a `ContactLaw` fills in."""
+
+    filled: np.ndarray
+    time: np.ndarray
+    particles: np.ndarray
+    positions: np.ndarray
+    velocities: np.ndarray
+    spins: np.ndarray
+
+
+class CollapseWatch(NamedTuple):
+    """For each particle, how many contacts (N,) it has had since (N,) within `interval`, at most `most`."""
+
+    since: np.ndarray
+    contacts: np.ndarray
+    interval: float
+    most: int
+
+
+class Monitors(NamedTuple):
+    """record, collapse: a `Record` and a `CollapseWatch`, or None."""
+
+    record: Record | None
+    collapse: CollapseWatch | None
+
+
+@inner_helper
+def is_full(record):
+    """Whether the record has no room for another event."""
+    if record is None:
+        return False
+    return record.filled[0] == len(record.time)
+
+
+@inner_helper
+def record_spins(record, n, i, j, law):
+    """Record the spins after event number n."""
+    if law is not None:
+        for k in range(3):
+            record.spins[n, 0, k] = law.spins[i, k]
+            record.spins[n, 1, k] = law.spins[j, k] if j >= 0 else np.nan
+
+
+@inner_helper
+def record_event(flights, i, j, time, model, record):
+    """Record an event; j is the partner, or -1 - face for a wall."""
+    if record is not None:
+        n = record.filled[0]
+        record.time[n] = time
+        record.particles[n, 0] = i
+        record.particles[n, 1] = j
+        for k in range(len(model.space.lengths)):
+            record.positions[n, 0, k] = flights[i].position[k]
+            record.velocities[n, 0, k] = flights[i].velocity[k]
+            record.positions[n, 1, k] = flights[j].position[k] if j >= 0 else np.nan
+            record.velocities[n, 1, k] = flights[j].velocity[k] if j >= 0 else np.nan
+        record_spins(record, n, i, j, model.law)
+        record.filled[0] = n + 1
+
+
+@inner_kernel
+def has_collapsed(collapse, i, time):
+    """Count a contact of a particle. True if it has had too many of them in too short a time."""
+    if time - collapse.since[i] > collapse.interval:
+        collapse.since[i] = time
+        collapse.contacts[i] = 0
+    collapse.contacts[i] += 1
+    return collapse.contacts[i] > collapse.most
+
+
+@inner_helper
+def collapse_detected(i, j, time, faces, collapse):
+    """Whether an event was one contact too many, of particles i and j, or of i with an interior wall; hits of
+    the container's `faces` do not count."""
+    if collapse is None:
+        return False
+    if j >= 0 or j < -faces:
+        return has_collapsed(collapse, i, time) or (j >= 0 and has_collapsed(collapse, j, time))
+    return False

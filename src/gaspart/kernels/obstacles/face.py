@@ -1,7 +1,10 @@
 """The faces of the container, and of the boxes in it: when a particle comes to one, and what happens
-there."""
+there.
+"""
 
-from math import inf
+from __future__ import annotations
+
+from math import inf, nan
 
 from numpy import int64
 
@@ -17,23 +20,81 @@ from gaspart.kernels.model import (
     THERMAL_NORMAL,
     VIBRATING,
 )
-from gaspart.kernels.obstacles.hard import bounce
-from gaspart.kernels.obstacles.open_face import collide_open
-from gaspart.kernels.obstacles.piston import collide_piston, find_piston, is_piston
-from gaspart.kernels.obstacles.resting import come_to_rest
-from gaspart.kernels.obstacles.short_bounce import longest_rest, rest_on_floor
-from gaspart.kernels.obstacles.sticky import collide_sticky
-from gaspart.kernels.obstacles.support import release, release_after
-from gaspart.kernels.obstacles.thermal import collide_thermal
-from gaspart.kernels.obstacles.vibrating import collide_moving, find_vibrating, moves
-from gaspart.kernels.obstacles.well import time_to_edge
+from gaspart.kernels.obstacles.moving import (
+    bounce,
+    collide_moving,
+    collide_piston,
+    find_piston,
+    find_vibrating,
+    is_piston,
+    moves,
+)
+from gaspart.kernels.obstacles.support import (
+    come_to_rest,
+    longest_rest,
+    release,
+    release_after,
+    rest_on_floor,
+)
+from gaspart.kernels.obstacles.thermal import collide_sticky, collide_thermal, time_to_edge
 from gaspart.kernels.physics.ballistic import time_against, time_along
 from gaspart.kernels.physics.contact import time_to_plane
 from gaspart.kernels.physics.flight import acceleration_of, advance, face_plane
 from gaspart.kernels.physics.lees_edwards import shift_image
-from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.per_area import add_per_area, spin_before, velocity_before
-from gaspart.kernels.physics.running_sum import add
+from gaspart.kernels.physics.rng import mass_of
+from gaspart.kernels.physics.sums import add
+
+# Open faces: a particle that comes to one leaves the container, and its number is vacant.
+#
+# A particle that enters takes the lowest vacant number: vacant numbers are counted in blocks, so that the
+# search for it is short, and its result depends on nothing but which particles are inside.
+
+
+NUMBERS = 256
+"""Numbers of particles in a block of `Open.vacant`."""
+
+
+@inner_kernel
+def leave(flights, i, face, model, tally, law, opened):
+    """Take a particle away, with its energy, and the momentum that it carries through the face."""
+    axis, square = face // 2, 0.0
+    mass = mass_of(i, model.masses, law)
+    add(tally.wall_impulse, face, mass * abs(flights[i].velocity[axis]))
+    for k in range(len(model.space.lengths)):
+        square += flights[i].velocity[k] * flights[i].velocity[k]
+        flights[i].position[k] = nan
+        flights[i].velocity[k] = 0.0
+    add(tally.wall_energy, face, 0.5 * mass * square)
+    opened.present[i] = 0
+    opened.vacant[i // NUMBERS] += 1
+
+
+@inner_helper
+def collide_open(flights, i, face, model, tally, law, opened):
+    """Let a particle leave, where a face may be open."""
+    if opened is not None:
+        leave(flights, i, face, model, tally, law, opened)
+
+
+@inner_kernel
+def lowest_vacant(opened):
+    """Return the lowest number that no particle inside has, or NONE."""
+    for block in range(len(opened.vacant)):
+        if opened.vacant[block] > 0:
+            for i in range(block * NUMBERS, min((block + 1) * NUMBERS, len(opened.present))):
+                if not opened.present[i]:
+                    return i
+    return NONE
+
+
+@inner_kernel
+def occupy(opened, i, face):
+    """Count a particle that has entered through a face as present."""
+    opened.present[i] = 1
+    opened.vacant[i // NUMBERS] -= 1
+    opened.entries[face] += 1
+
 
 RULES = {
     "hard": HARD,

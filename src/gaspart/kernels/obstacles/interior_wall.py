@@ -1,23 +1,222 @@
 """Interior walls, hit from both sides: segments with solid ends, and plates with solid rims."""
 
-from math import sqrt
+from __future__ import annotations
+
+from math import inf, sqrt
+
+import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
-from gaspart.kernels.event.box_lists import box_of
+from gaspart.kernels.event.boxes import box_of
 from gaspart.kernels.model import NONE, WALLS
-from gaspart.kernels.obstacles.distance import to_wall
-from gaspart.kernels.obstacles.moving_wall import collide_moving_wall, find_moving
-from gaspart.kernels.obstacles.plate import time_to_plate
-from gaspart.kernels.obstacles.resting import come_to_rest, leave
-from gaspart.kernels.obstacles.segment import time_to_segment
-from gaspart.kernels.obstacles.short_bounce import longest_rest
-from gaspart.kernels.obstacles.support import is_resting_on, release
-from gaspart.kernels.obstacles.warm_wall import leave_warm
+from gaspart.kernels.obstacles.moving import collide_moving_wall, find_moving
+from gaspart.kernels.obstacles.support import (
+    come_to_rest,
+    is_resting_on,
+    leave,
+    longest_rest,
+    release,
+    rests_on,
+    time_to_leave,
+)
+from gaspart.kernels.obstacles.thermal import leave_warm
+from gaspart.kernels.physics.ballistic import (
+    flown,
+    time_of_summit,
+    time_to_contact_pulled,
+    time_to_far_side,
+    time_to_side,
+)
 from gaspart.kernels.physics.collision import collide_wall_by_law, least_speed, push, velocity_of
-from gaspart.kernels.physics.contact import normal_change
-from gaspart.kernels.physics.flight import advance
-from gaspart.kernels.physics.mass import mass_of
-from gaspart.kernels.physics.running_sum import add
+from gaspart.kernels.physics.contact import normal_change, time_to_contact
+from gaspart.kernels.physics.flight import acceleration_of, advance
+from gaspart.kernels.physics.rng import mass_of
+from gaspart.kernels.physics.sums import add
+
+# When a sphere touches a plate, an interior wall of three dimensions: on a side, an edge or a corner.
+#
+# Everything is computed in the plate's own axes: along its two edges, and across it.
+
+
+@inner_helper
+def _components(row, x, y, z):
+    """(3,) a vector in the plate's axes: along its two edges, and across the plate."""
+    a, b = row.along, row.across
+    nx, ny, nz = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+    return x * a[0] + y * a[1] + z * a[2], x * b[0] + y * b[1] + z * b[2], nx * x + ny * y + nz * z
+
+
+@inner_kernel
+def time_to_point(r, v, g, radius):
+    """Time until a sphere touches a point: r, v, g (3,), its separation, velocity and acceleration from
+    there; or a line, with the components along it 0."""
+    rr = r[0] * r[0] + r[1] * r[1] + r[2] * r[2]
+    rv = r[0] * v[0] + r[1] * v[1] + r[2] * v[2]
+    vv = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
+    gg = g[0] * g[0] + g[1] * g[1] + g[2] * g[2]
+    if gg > 0.0:
+        ra = r[0] * g[0] + r[1] * g[1] + r[2] * g[2]
+        va = v[0] * g[0] + v[1] * g[1] + v[2] * g[2]
+        return time_to_contact_pulled(rr - radius * radius, rv, vv, ra, va, gg)
+    return time_to_contact(rr, rv, vv, radius * radius)
+
+
+@inner_kernel
+def time_to_edge(r, v, g, length, radius):
+    """Time until a sphere touches an edge: of r, v, g (3,) the first two components are across the line, the
+    third along it from its start.
+
+    A falling sphere may come to the line beside the edge, leave it, and come back to it at the edge.
+    """
+    x, z, y = r
+    vx, vz, vy = v
+    gx, gz, gy = g
+    start = 0.0
+    for _ in range(2):
+        place = (flown(x, vx, gx, start), 0.0, flown(z, vz, gz, start))
+        time = time_to_point(place, (vx + gx * start, 0.0, vz + gz * start), (gx, 0.0, gz), radius)
+        if time == inf:
+            return inf
+        time += start
+        if 0.0 <= flown(y, vy, gy, time) <= length:
+            return time
+        gg = gx * gx + gz * gz
+        if gg == 0.0:
+            return inf
+        start = time_of_summit(x * vx + z * vz, vx * vx + vz * vz, x * gx + z * gz, vx * gx + vz * gz, gg)
+        if not time < start < inf:
+            return inf
+    return inf
+
+
+@inner_kernel
+def time_to_plate(flights, i, rows, m, space, gravity):
+    """When a sphere touches a plate; inf if it does not."""
+    radius, row = flights[i].radius, rows[m]
+    position, velocity = flights[i].position, flights[i].velocity
+    dx, dy, dz = position[0] - row.corner[0], position[1] - row.corner[1], position[2] - row.corner[2]
+    gx = gy = gz = 0.0
+    if gravity is not None:
+        gx = acceleration_of(flights, i, 0, space, gravity)
+        gy = acceleration_of(flights, i, 1, space, gravity)
+        gz = acceleration_of(flights, i, 2, space, gravity)
+    x, y, z = _components(row, dx, dy, dz)
+    u, v, w = _components(row, velocity[0], velocity[1], velocity[2])
+    a, b, c = _components(row, gx, gy, gz)
+    length, width = row.length, row.width
+    if rests_on(i, m, gravity):
+        return flights[i].clock + min(time_to_leave(x, u, a, length), time_to_leave(y, v, b, width))
+    side = 1.0 if z >= 0.0 else -1.0
+    best = inf
+    for far in range(2):
+        if far == 0:
+            time = time_to_side(abs(z) - radius, -side * w, -side * c)
+        else:
+            time = time_to_far_side(-abs(z) - radius, side * w, side * c)
+        if time < best and 0.0 <= flown(x, u, a, time) <= length and 0.0 <= flown(y, v, b, time) <= width:
+            best = time
+    for upper in range(2):
+        far_x, far_y = x - upper * length, y - upper * width
+        best = min(best, time_to_edge((far_x, z, y), (u, w, v), (a, c, b), width, radius))
+        best = min(best, time_to_edge((far_y, z, x), (v, w, u), (b, c, a), length, radius))
+        for other in range(2):
+            corner_y = y - other * width
+            best = min(best, time_to_point((far_x, corner_y, z), (u, v, w), (a, b, c), radius))
+    return flights[i].clock + best
+
+
+# Interior walls of two dimensions: segments with solid ends, hit from both sides.
+
+
+@inner_kernel
+def time_to_segment(flights, i, rows, m, space, gravity):
+    """When a disc touches a segment, on a side (Spencer 2022, Eqs. 3-12) or at an end; inf if it does not."""
+    radius = flights[i].radius
+    ux, uy, length = rows[m].direction[0], rows[m].direction[1], rows[m].length
+    dx = flights[i].position[0] - rows[m].start[0]
+    dy = flights[i].position[1] - rows[m].start[1]
+    vx, vy = flights[i].velocity[0], flights[i].velocity[1]
+    gx = gy = 0.0
+    if gravity is not None:
+        gx = acceleration_of(flights, i, 0, space, gravity)
+        gy = acceleration_of(flights, i, 1, space, gravity)
+    along, speed, pull = ux * dx + uy * dy, ux * vx + uy * vy, ux * gx + uy * gy
+    if rests_on(i, m, gravity):
+        return flights[i].clock + time_to_leave(along, speed, pull, length)
+    height = ux * dy - uy * dx
+    side = 1.0 if height >= 0.0 else -1.0
+    closing, drawn = -side * (ux * vy - uy * vx), -side * (ux * gy - uy * gx)
+    best = inf
+    for far in range(2):
+        if far == 0:
+            time = time_to_side(abs(height) - radius, closing, drawn)
+        else:
+            time = time_to_far_side(-abs(height) - radius, -closing, -drawn)
+        if time < best:
+            s = along + (speed + 0.5 * pull * time) * time
+            if 0.0 <= s <= length:
+                best = time
+    square = gx * gx + gy * gy
+    for end in range(2):
+        rx = (ux * length if end else 0.0) - dx
+        ry = (uy * length if end else 0.0) - dy
+        rr = rx * rx + ry * ry
+        rv = -(rx * vx + ry * vy)
+        vv = vx * vx + vy * vy
+        if square > 0.0:
+            gap = rr - radius * radius
+            time = time_to_contact_pulled(gap, rv, vv, -(rx * gx + ry * gy), vx * gx + vy * gy, square)
+        else:
+            time = time_to_contact(rr, rv, vv, radius * radius)
+        best = min(best, time)
+    return flights[i].clock + best
+
+
+# From a point to the nearest point of an interior wall of the rows below.
+
+
+SEGMENT = np.dtype([("start", "f8", 2), ("direction", "f8", 2), ("length", "f8")])
+"""A row of a segment: its start, the unit vector along it, its length."""
+PLATE = np.dtype(
+    [("corner", "f8", 3), ("along", "f8", 3), ("length", "f8"), ("across", "f8", 3), ("width", "f8")]
+)
+"""A row of a plate: a corner, and the unit vectors along its two edges with their lengths."""
+
+
+@inner_helper
+def to_segment(rows, m, point):
+    """(3,) the vector from a point (2,) to the nearest point of a segment, its ends included."""
+    ux, uy = rows[m].direction[0], rows[m].direction[1]
+    dx, dy = point[0] - rows[m].start[0], point[1] - rows[m].start[1]
+    s = min(max(ux * dx + uy * dy, 0.0), rows[m].length)
+    return s * ux - dx, s * uy - dy, 0.0
+
+
+@inner_helper
+def _dot(a, x, y, z):
+    return x * a[0] + y * a[1] + z * a[2]
+
+
+@inner_helper
+def to_plate(rows, m, point):
+    """(3,) the vector from a point (3,) to the nearest point of a plate, its rim included."""
+    along, across, corner = rows[m].along, rows[m].across, rows[m].corner
+    dx, dy, dz = point[0] - corner[0], point[1] - corner[1], point[2] - corner[2]
+    s = min(max(_dot(along, dx, dy, dz), 0.0), rows[m].length)
+    t = min(max(_dot(across, dx, dy, dz), 0.0), rows[m].width)
+    return (
+        s * along[0] + t * across[0] - dx,
+        s * along[1] + t * across[1] - dy,
+        s * along[2] + t * across[2] - dz,
+    )
+
+
+@inner_helper
+def to_wall(rows, m, point, lengths):
+    """(3,) the same for the kind of wall that stands in a container with sides `lengths` (d,)."""
+    if len(lengths) == 2:
+        return to_segment(rows, m, point)
+    return to_plate(rows, m, point)
 
 
 @inner_helper

@@ -3,13 +3,18 @@
 Of gravity there remains what no wall supports: its projection on the directions that lead into none of them.
 """
 
-from math import sqrt
+from __future__ import annotations
+
+from math import inf, sqrt
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
-from gaspart.kernels.model import NONE
+from gaspart.kernels.model import LOSS, NONE
+from gaspart.kernels.physics.ballistic import time_to_side
+from gaspart.kernels.physics.collision import velocity_of
+from gaspart.kernels.physics.contact import SHORTEST, is_alone
 from gaspart.kernels.physics.flight import face_plane
+from gaspart.kernels.physics.sums import add
 
-_INTO = 2.0**-40  # of gravity: what leads less into a wall runs along it
 _PARALLEL = 2.0**-40  # squared sine of an angle between planes that are taken for one
 
 
@@ -175,3 +180,212 @@ def release_after(flights, i, space, gravity):
     """The same where there may be no gravity."""
     if gravity is not None:
         release(flights, i, space, gravity.support)
+
+
+# Particles that slide along a wall into an acute wedge, under an overhanging wall or fixed particle.
+#
+# This throws the particle down; it comes to rest below, and is under it again at once, at less of its
+# speed: for ever, in no time. It comes to rest between both; what remains is its velocity along both.
+
+
+_INTO = 2.0**-40  # of its speed: what leads less into a plane runs along it
+
+
+@inner_helper
+def count_planes(support, i):
+    """How many planes of interior walls a particle rests on."""
+    if support is None:
+        return 0
+    return support.number[i]
+
+
+@inner_helper
+def plane_normal(support, i, n):
+    """(3,) the unit vector from one of these planes to the particle."""
+    if support is None:
+        return 0.0, 0.0, 0.0
+    return support.normal[i, n, 0], support.normal[i, n, 1], support.normal[i, n, 2]
+
+
+@inner_helper
+def fastest_at_rest(gravity, longest, support):
+    """The speed across a horizontal wall below which a bounce is taken for rest."""
+    square = 0.0
+    for k in range(len(gravity.acceleration)):
+        square += gravity.acceleration[k] * gravity.acceleration[k]
+    strength = sqrt(square)
+    speed = strength * longest
+    if support is not None:
+        speed = max(speed, sqrt(2.0 * strength * support.height))
+    return speed
+
+
+@inner_kernel
+def come_to_rest_again(flights, i, longest, space, gravity, support):
+    """What a particle that has just bounced keeps of its velocity, when it comes to rest again on that on
+    which it rested: (velocity (3,), the number of planes that it led into, the normal (3,) of the last one).
+    The number is 0 if there are none, or if its speed lets it bounce there as well."""
+    w, normal, number = velocity_of(flights, i, space), (0.0, 0.0, 0.0), 0
+    planes, fastest = count_planes(support, i), fastest_at_rest(gravity, longest, support)
+    for n in range(planes if planes > 0 else 3):
+        if planes > 0:
+            p = plane_normal(support, i, n)
+        elif lies_on_floor(flights, i, n, space, gravity, longest):
+            side = -1.0 if gravity.acceleration[n] > 0.0 else 1.0
+            p = side if n == 0 else 0.0, side if n == 1 else 0.0, side if n == 2 else 0.0
+        else:
+            continue
+        into = -dot(p, w)
+        if into >= fastest:
+            return w, 0, normal
+        if into > _INTO * sqrt(dot(w, w)):
+            w = w[0] + into * p[0], w[1] + into * p[1], w[2] + into * p[2]
+            normal, number = p, number + 1
+    return w, number, normal
+
+
+@inner_kernel
+def rest_in_wedge(flights, i, normal, particle, space, tally, gravity, support):
+    """After a bounce on something in the direction of a unit vector (3,): let a particle rest between this
+    and what it rested on, if it would meet it again at once. particle: its mass, and the longest bounce taken
+    for rest. Returns whether it rests."""
+    mass, longest = particle
+    v = velocity_of(flights, i, space)
+    w, number, p = come_to_rest_again(flights, i, longest, space, gravity, support)
+    if number == 0 or dot(normal, w) <= _INTO * sqrt(dot(v, v)):
+        return False
+    part = 0.0
+    x, y, z = (
+        p[1] * normal[2] - p[2] * normal[1],
+        p[2] * normal[0] - p[0] * normal[2],
+        p[0] * normal[1] - p[1] * normal[0],
+    )
+    if number == 1 and len(space.lengths) == 3:
+        part = (v[0] * x + v[1] * y + v[2] * z) / (x * x + y * y + z * z)
+    lost = dot(v, v)
+    for k in range(len(space.lengths)):
+        flights[i].velocity[k] = part * (x if k == 0 else y if k == 1 else z)
+        lost -= flights[i].velocity[k] * flights[i].velocity[k]
+    add(tally.sums, LOSS, 0.5 * mass * lost)
+    return True
+
+
+# Particles that come to rest on walls, or leave them, under gravity.
+#
+# A bounce too low for positions, or too short for clocks, to resolve is taken for rest: the velocity
+# across the wall becomes zero. The particle is released by the next contact that moves it, and where it
+# leaves the wall.
+
+
+_HOP = (
+    2.0**20
+)  # times `shortest_bounce`: the shortest bounce where a particle cannot rest, as at the end of a wall
+
+
+@inner_kernel
+def come_to_rest(flights, i, normal, place, mass, space, tally, gravity):
+    """After a bounce on a wall in the direction of a unit vector (3,): let the particle rest there if the
+    bounce cannot be resolved, or else make it as long as can be. place: the row of the wall, whether it
+    is touched at an end, where only what is balanced can rest, and the longest bounce taken for rest."""
+    row, at_end, longest = place
+    support = gravity.support
+    press = pressing(flights, i, normal, space, gravity, longest)
+    v = velocity_of(flights, i, space)
+    speed = -dot(normal, v)
+    highest = 2.0 * press * support.height
+    if not (press > 0.0 and (speed * speed <= highest or speed < press * longest)):
+        if not rest_in_wedge(flights, i, normal, (mass, longest), space, tally, gravity, support):
+            release(flights, i, space, support)
+        return
+    if support.number[i] == 0:
+        add_floors(flights, i, space, gravity, longest)
+    add_plane(flights, i, normal, row, space, support)
+    dimension = len(space.lengths)
+    find_pull(gravity, i, dimension)
+    last = support.number[i] - 1
+    wx, wy, wz = within(support, i, (last, last - 1 if last > 0 else -1), v, dimension)
+    if last == 2:
+        wx = wy = wz = 0.0
+    lost = (v[0] - wx) * (v[0] - wx) + (v[1] - wy) * (v[1] - wy) + (v[2] - wz) * (v[2] - wz)
+    pull = support.pull[i]
+    moves = wx != 0.0 or wy != 0.0 or wz != 0.0 or pull[0] != 0.0 or pull[1] != 0.0 or pull[2] != 0.0
+    if lost <= 4.0 * max(highest, speed * speed) and not (at_end and moves):
+        lost = dot(v, v) - (wx * wx + wy * wy + wz * wz)
+    else:
+        release(flights, i, space, support)
+        more = max(0.0, press * gravity.shortest_bounce * _HOP - speed)
+        wx, wy, wz = v[0] - more * normal[0], v[1] - more * normal[1], v[2] - more * normal[2]
+        lost = -more * (2.0 * speed + more)
+    flights[i].velocity[0], flights[i].velocity[1] = wx, wy
+    if dimension == 3:
+        flights[i].velocity[2] = wz
+    add(tally.sums, LOSS, 0.5 * mass * lost)
+
+
+@inner_helper
+def time_to_leave(at, speed, pull, length):
+    """Time until a coordinate along a wall is outside of [0, length]; inf if it never is."""
+    time = inf
+    if at <= length:
+        time = time_to_side(length - at, speed, pull)
+    if at >= 0.0:
+        time = min(time, time_to_side(at, -speed, -pull))
+    return time
+
+
+@inner_helper
+def leave(flights, i, edge, at, length, space):
+    """Move a particle that is at the end of a wall beyond it, in the direction of a unit vector (3,) along
+    which its coordinate is `at`, by more than that is rounded by."""
+    beyond = length
+    for k in range(len(space.lengths)):
+        beyond += abs(flights[i].position[k])
+    beyond *= 2.0**-46
+    more = 0.0
+    if at > 0.5 * length and at < length + beyond and at > length - beyond:
+        more = length + beyond - at
+    if at < 0.5 * length and at > -beyond and at < beyond:
+        more = -beyond - at
+    for k in range(len(space.lengths)):
+        flights[i].position[k] += more * edge[k]
+
+
+# Bounces that are shorter than the duration of a contact: the particle comes to rest.
+#
+# The contact of a single particle with a floor then never ends. A particle that others press against it
+# rests only after much shorter bounces: otherwise it would take the energy of contacts that are elastic.
+
+
+@inner_helper
+def longest_rest(flights, i, gravity, law):
+    """Of a particle at a wall, the longest bounce, as half its time, that is taken for rest."""
+    if law is not None:
+        return _longest_rest(flights, i, gravity, law.duration)
+    return gravity.shortest_bounce
+
+
+@inner_helper
+def _longest_rest(flights, i, gravity, duration):
+    if duration is not None:
+        part = 1.0 if is_alone(flights, i, duration) else SHORTEST
+        return max(gravity.shortest_bounce, 0.5 * part * duration.length)
+    return gravity.shortest_bounce
+
+
+@inner_helper
+def rest_on_floor(flights, i, face, tally, gravity, law):
+    """Let a particle that has bounced on a face which is a floor rest there, if the bounce is so short."""
+    if law is not None:
+        _rest_on_floor(flights, i, face, tally, gravity, law, law.duration)
+
+
+@inner_helper
+def _rest_on_floor(flights, i, face, tally, gravity, law, duration):
+    if duration is not None:
+        axis = face // 2
+        pull = gravity.acceleration[axis]
+        toward = pull if face % 2 else -pull
+        speed = flights[i].velocity[axis]
+        if toward > 0.0 and abs(speed) < toward * _longest_rest(flights, i, gravity, duration):
+            add(tally.sums, LOSS, 0.5 * speed * speed / law.inverse_mass[i])
+            flights[i].velocity[axis] = 0.0

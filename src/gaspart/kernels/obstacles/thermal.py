@@ -1,12 +1,25 @@
 """Thermal walls: a particle leaves them with a velocity drawn from their temperature."""
 
-from math import sqrt
+from __future__ import annotations
+
+from math import inf, sqrt
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
-from gaspart.kernels.model import NONE, THERMAL
-from gaspart.kernels.physics.mass import mass_of
-from gaspart.kernels.physics.rng import flux_speed, normal_pair, random_words, uniform
-from gaspart.kernels.physics.running_sum import add
+from gaspart.kernels.model import NONE, STICKY, THERMAL, WELL_EDGES
+from gaspart.kernels.obstacles.support import dot, release_after
+from gaspart.kernels.physics.collision import (
+    LEAST,
+    fastest_component,
+    gap_along,
+    least_speed,
+    push,
+    velocity_of,
+)
+from gaspart.kernels.physics.contact import time_to_contact
+from gaspart.kernels.physics.flight import advance, face_plane
+from gaspart.kernels.physics.per_area import add_per_area, spin_before, velocity_before
+from gaspart.kernels.physics.rng import flux_speed, mass_of, normal_pair, random_words, uniform
+from gaspart.kernels.physics.sums import add
 
 
 @inner_helper
@@ -107,3 +120,238 @@ def draw_spin(i, wall, level, key, counter, dimension, tally, law):
             before = law.spins[i, k]
             add(tally.wall_energy, wall, 0.5 * inertia * (before * before - spin * spin))
             law.spins[i, k] = spin
+
+
+# Interior walls at a temperature: a particle leaves them with a velocity drawn from it, on its side.
+
+
+@inner_helper
+def leave_warm(flights, i, wall, normal, model, tally, law, warm):
+    """Give a particle the velocity of one that leaves an interior wall, in the direction of the unit vector
+    `normal` (3,), if that is at a temperature. Returns the momentum given to the wall along that direction,
+    or -1 if it is hard."""
+    if warm is None:
+        return -1.0
+    return _leave_warm(flights, i, wall, normal, model, tally, law, warm)
+
+
+@inner_kernel
+def _leave_warm(flights, i, wall, normal, model, tally, law, warm):
+    level, space = warm.level[wall], model.space
+    if not level > 0.0:
+        return -1.0
+    release_after(flights, i, space, model.gravity)
+    mass, number, d = mass_of(i, model.masses, law), warm.draws[i], len(space.lengths)
+    warm.draws[i] = number + 1
+    width, before = sqrt(level / mass), velocity_of(flights, i, space)
+    away = width * flux_speed(warm.key, i, number)
+    one, other, block = normal_pair(warm.key, i, number, 1)
+    first, second = tangents(normal, d)
+    for k in range(d):
+        flights[i].velocity[k] = width * one * first[k] - away * normal[k]
+        if d == 3:
+            flights[i].velocity[k] += width * other * second[k]
+    more = max(0.0, least_speed(flights, i, space) - away)
+    push(flights, i, -more, normal, space)
+    after = velocity_of(flights, i, space)
+    row = 2 * d + wall
+    draw_spin(i, row, level, warm.key, (number, block), d, tally, law)
+    add(tally.wall_energy, row, 0.5 * mass * (dot(before, before) - dot(after, after)))
+    return mass * max(0.0, dot(normal, before) + away + more)
+
+
+@inner_helper
+def tangents(normal, dimension):
+    """Two unit vectors (3,) at right angles to one another and to the unit vector `normal` (3,); in 2D the
+    first is in the plane."""
+    x, y, z = normal
+    if dimension == 2:
+        return (-y, x, 0.0), (0.0, 0.0, 1.0)
+    if abs(x) <= abs(y) and abs(x) <= abs(z):
+        size = sqrt(y * y + z * z)
+        first = 0.0, -z / size, y / size
+    elif abs(y) <= abs(z):
+        size = sqrt(x * x + z * z)
+        first = z / size, 0.0, -x / size
+    else:
+        size = sqrt(x * x + y * y)
+        first = -y / size, x / size, 0.0
+    a, b, c = first
+    return first, (y * c - z * b, z * a - x * c, x * b - y * a)
+
+
+# Sticky walls: slow particles stay, their normal energy becomes that of a vibration.
+#
+# A particle that is hit while it sticks loses at once the velocity across its faces that the contact gives
+# it. What has hit it keeps of its approach what rounding makes of zero, and must not come back for that.
+
+
+@inner_helper
+def is_absorbed(energy, face, mass, faces):
+    """Whether a particle with this normal energy sticks to a face."""
+    return energy < 0.5 * faces.level[face] * faces.level[face] / mass
+
+
+@inner_kernel
+def collide_sticky(flights, i, face, model, tally, law, faces):
+    """Judge a particle at a sticky face by all the normal energy that it has, in flight and in its
+    vibration."""
+    axis = face // 2
+    side = 1.0 if face % 2 else -1.0
+    mass = mass_of(i, model.masses, law)
+    before = side * flights[i].velocity[axis]
+    held = faces.held[i, axis]
+    energy = held + 0.5 * mass * before * before
+    if is_absorbed(energy, face, mass, faces):
+        faces.held[i, axis] = energy
+        faces.place[i, axis] = 1 if face % 2 else -1
+        after = 0.0
+    else:
+        faces.held[i, axis] = 0.0
+        faces.place[i, axis] = 0
+        after = -abs(before) if held == 0.0 else -sqrt(2.0 * energy / mass)
+    flights[i].velocity[axis] = side * after
+    add(tally.wall_impulse, face, mass * (before - after))
+
+
+@inner_helper
+def is_held(flights, i, axis, masses, law, faces, sticky):
+    """Whether a particle sticks to a face across an axis, which absorbs its velocity there."""
+    place = faces.place[i, axis]
+    face = 2 * axis + (1 if place > 0 else 0)
+    if place == 0 or not sticky[face]:
+        return False
+    mass = mass_of(i, masses, law)
+    energy = faces.held[i, axis] + 0.5 * mass * flights[i].velocity[axis] * flights[i].velocity[axis]
+    return is_absorbed(energy, face, mass, faces)
+
+
+@inner_helper
+def mobility_of(i, masses, law):
+    """What an impulse changes of a particle's velocity: nothing if it is fixed."""
+    if law is not None:
+        return law.inverse_mass[i]
+    return 1.0 / mass_of(i, masses, law)
+
+
+@inner_helper
+def lose_rounding(flights, i, axis, least, space, sticky):
+    """Take a velocity from a particle at a sticky face with which it would come to it, if that is at most
+    `least`: what is left where it has given all its velocity to another particle is no contact."""
+    v = flights[i].velocity[axis]
+    upper = v > 0.0
+    if v != 0.0 and abs(v) <= least and sticky[2 * axis + (1 if upper else 0)]:
+        if flights[i].position[axis] == face_plane(flights, i, axis, upper, space):
+            flights[i].velocity[axis] = 0.0
+
+
+@inner_kernel
+def _part_held(flights, i, j, space, masses, law, faces, sticky):
+    least = LEAST * max(fastest_component(flights, i, space), fastest_component(flights, j, space))
+    rr = rv = vv = mobility = 0.0
+    for k in range(len(space.lengths)):
+        lose_rounding(flights, i, k, least, space, sticky)
+        lose_rounding(flights, j, k, least, space, sticky)
+        gap = gap_along(flights, i, j, k, space)
+        speed = 0.0
+        for particle, sign in ((i, -1.0), (j, 1.0)):
+            if not is_held(flights, particle, k, masses, law, faces, sticky):
+                speed += sign * flights[particle].velocity[k]
+                mobility += gap * gap * mobility_of(particle, masses, law)
+        rr += gap * gap
+        rv += gap * speed
+        vv += speed * speed
+    sigma = flights[i].radius + flights[j].radius
+    least *= sqrt(rr)
+    if mobility == 0.0 or rv <= -least or time_to_contact(rr, rv, vv, sigma * sigma) > 0.0:
+        return
+    impulse = (least - rv) / mobility
+    for k in range(len(space.lengths)):
+        push = impulse * gap_along(flights, i, j, k, space)
+        for particle, sign in ((i, -1.0), (j, 1.0)):
+            if not is_held(flights, particle, k, masses, law, faces, sticky):
+                flights[particle].velocity[k] += sign * push * mobility_of(particle, masses, law)
+
+
+@inner_helper
+def _part_if_held(flights, i, j, model, faces, sticky):
+    if sticky is not None:
+        _part_held(flights, i, j, model.space, model.masses, model.law, faces, sticky)
+
+
+@inner_helper
+def part_if_held(flights, i, j, model, faces):
+    """Let two particles that have collided part, if one of them sticks to a face and would be met again, at a
+    speed that is rounding only; and let no such speed lead to a face."""
+    if faces is not None:
+        _part_if_held(flights, i, j, model, faces, faces.sticky)
+
+
+# Wells at the container's faces: a step of the potential at a distance from the wall.
+
+
+@inner_helper
+def edge_plane(flights, i, face, space, faces):
+    """Where the centre of a particle crosses the edge of a face's well."""
+    upper = face % 2 == 1
+    width = faces.width[face]
+    return face_plane(flights, i, face // 2, upper, space) + (-width if upper else width)
+
+
+@inner_kernel
+def time_to_edge(flights, i, axis, space, faces):
+    """When a particle that moves along an axis comes to the edge of a well there, or, stuck to a face, is to
+    be judged again because a contact has moved it: (time, face code)."""
+    v = flights[i].velocity[axis]
+    clock = flights[i].clock
+    place = faces.place[i, axis]
+    upper = place > 0 or (place == 0 and v > 0.0)
+    face = 2 * axis + (1 if upper else 0)
+    if faces.kind[face] == STICKY and place != 0:
+        return clock, face
+    if faces.depth[face] > 0.0 and (place == 0 or (v > 0.0) != upper):
+        way = edge_plane(flights, i, face, space, faces) - flights[i].position[axis]
+        return clock + way / v, WELL_EDGES + face
+    return inf, NONE
+
+
+@inner_helper
+def cross_edge(flights, i, face, model, tally, law, faces):
+    """Let a particle into a well, or out of it if it is fast enough. The wall takes the momentum of the
+    step."""
+    axis = face // 2
+    flights[i].position[axis] = edge_plane(flights, i, face, model.space, faces)
+    side = 1.0 if face % 2 else -1.0
+    mass = mass_of(i, model.masses, law)
+    step = 2.0 * faces.depth[face] / mass
+    before = side * flights[i].velocity[axis]
+    if before > 0.0:
+        after = sqrt(before * before + step)
+        faces.place[i, axis] = 1 if face % 2 else -1
+    elif before * before > step:
+        after = -sqrt(before * before - step)
+        faces.place[i, axis] = 0
+    else:
+        after = -before
+    flights[i].velocity[axis] = side * after
+    add(tally.wall_impulse, face, mass * (before - after))
+
+
+@inner_kernel
+def collide_edge(flights, i, face, model, tally, law, faces):
+    """`cross_edge` as a function of its own. Returns the number of the face."""
+    cross_edge(flights, i, face, model, tally, law, faces)
+    return face
+
+
+@inner_helper
+def meet_edge(flights, i, face, time, model, tally, faces):
+    """Advance a particle to the edge of a well, and let it in or out. Returns the number of the face."""
+    if faces is not None:
+        advance(flights, i, time, model.space, model.gravity)
+        velocity = velocity_before(flights, i, tally.per_area)
+        before = velocity, spin_before(i, model.law, tally.per_area)
+        met = collide_edge(flights, i, face - WELL_EDGES, model, tally, model.law, faces)
+        add_per_area(flights, i, met, before, model, tally.per_area)
+        return met
+    return face

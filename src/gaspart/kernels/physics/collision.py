@@ -11,13 +11,15 @@ from gaspart.kernels.model import LOSS
 from gaspart.kernels.physics.contact import (
     exchange,
     exchange_equal,
+    keep,
     normal_change,
+    normal_restitution,
+    restitution_at_wall,
+    restitution_of_pair,
     tangential_impulse,
 )
-from gaspart.kernels.physics.contact_duration import keep, restitution_at_wall, restitution_of_pair
-from gaspart.kernels.physics.periodic import nearest
-from gaspart.kernels.physics.running_sum import add
-from gaspart.kernels.physics.viscoelastic import normal_restitution
+from gaspart.kernels.physics.flight import nearest
+from gaspart.kernels.physics.sums import add
 
 LEAST = (
     2.0**-48

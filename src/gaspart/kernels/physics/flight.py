@@ -4,6 +4,10 @@
 None, the machine code knows none.
 """
 
+from __future__ import annotations
+
+import numpy as np
+
 from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.physics.ballistic import flown, time_to_contact_pulled
 from gaspart.kernels.physics.contact import time_to_contact
@@ -129,3 +133,49 @@ def time_of_contact(flights, i, j, offset, space, gravity):
         if aa > 0.0:
             return start + time_to_contact_pulled(rr - ss, rv, vv, ra, va, aa)
     return start + time_to_contact(rr, rv, vv, ss)
+
+
+# Along one axis of the container: the box that holds a coordinate, the nearest image of a difference.
+
+
+@inner_helper
+def box_coordinate(x, width, per_side):
+    """Which box along an axis holds coordinate x; the outermost one for x outside."""
+    c = int(x / width)
+    return min(max(c, 0), per_side - 1)
+
+
+@inner_helper
+def nearest(gap, length, periodic):
+    """A difference of two coordinates of the container, by the nearest image on a periodic axis."""
+    if periodic:
+        if gap + gap > length:
+            return gap - length
+        if gap + gap < -length:
+            return gap + length
+    return gap
+
+
+# Planes across an axis, those of equal bins: which of them an impulse acts below.
+#
+# An impulse dp on a particle at z changes the momentum below every plane above z. Of the planes of one bin
+# that is the part 1 - f, where f is how far up in the bin the particle is: the bin is given dp (1 - f),
+# the next one dp f, and the mean over the planes of a bin is the sum of all up to it
+# (docs/design-notes.md). Impulses of any origin count, of contacts, walls and edges of wells: all that
+# changes a velocity between two flights.
+
+
+@inner_helper
+def row_of(i, row):
+    """The row of sums that a particle adds to, of `row` (N,), or None if there is one."""
+    if row is None:
+        return 0
+    return np.int64(row[i])
+
+
+@inner_helper
+def bin_at(place, bins):
+    """In which of so many bins a place is, counted in bins, and how far up in it. What is outside counts as
+    in the last bin on that side, by the same line."""
+    bin_ = min(max(np.int64(place), 0), bins - 1)
+    return bin_, place - bin_

@@ -15,18 +15,23 @@ from gaspart.kernels.compile.policy import (
     inner_parallel_kernel,
 )
 from gaspart.kernels.model import Space
-from gaspart.kernels.step.cells import (
+from gaspart.kernels.step.model import (
+    DISPLACEMENT,
+    FASTEST,
+    PAIR_TESTS,
+    REBUILDS,
+    Found,
+    StepModel,
     copy,
     copy_periodic_rows,
     divide_cells,
     locate_part,
     order_part,
+    part_of,
     permute,
 )
-from gaspart.kernels.step.model import DISPLACEMENT, FASTEST, PAIR_TESTS, REBUILDS, Found, StepModel, part_of
 from gaspart.kernels.step.motion import displacement_part, fastest_part, move, move_by_rules
-from gaspart.kernels.step.neighbour_list import is_complete, list_part, search_pairs
-from gaspart.kernels.step.simd import WIDTH
+from gaspart.kernels.step.neighbour_list import WIDTH, is_complete, list_part, search_pairs
 
 _BLOCK = 1024  # pairs that are tested before those that touch are looked at
 

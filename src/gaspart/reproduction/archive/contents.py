@@ -3,17 +3,233 @@
 from __future__ import annotations
 
 import os
+import posixpath
 import re
 from collections.abc import Iterator
+from contextlib import chdir
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.archive.finished import Finished
+from gaspart.files import resolved
 from gaspart.reproduction.archive.limits import name_fault
-from gaspart.reproduction.archive.scenes import scene_files
 from gaspart.reproduction.claims import table
-from gaspart.reproduction.claims.captions import filled
+from gaspart.reproduction.claims.table import filled
+from gaspart.reproduction.config import check, merged_with_default
 from gaspart.reproduction.families.registry import caption
+from gaspart.reproduction.points.point import TRAJECTORIES, Point
+from gaspart.reproduction.points.points import figure_points
+from gaspart.trajectory.recipe import read_recipe
+from gaspart.yaml_text import read_yaml
+
+# The scene files that a config names.
+
+
+def scene_files(config: Any) -> list[str]:
+    """Paths of the scene files of all experiments of a merged config, each once, without "./" and the like.
+
+    They are the values of `scene` in a point and in a grid; anything else under that key is left to the
+    validation of configs.
+    """
+    found: dict[str, None] = {}
+    blocks = [config.get("experiments") if isinstance(config, dict) else None]
+    while blocks:
+        block = blocks.pop()
+        if isinstance(block, dict):
+            named = block.get("scene")
+            for name in named if isinstance(named, list) else [named]:
+                if isinstance(name, str):
+                    found[posixpath.normpath(name)] = None
+            blocks += block.values()
+        elif isinstance(block, list):
+            blocks += block
+    return list(found)
+
+
+# A finished run of the workflow: its folder, its config, and the results that it must have.
+
+
+_BASE = Path("config/config.yaml")
+_WORKFLOWS = ("Snakefile", "workflow/Snakefile")
+_RULES = Path("workflow/rules/common.smk")
+_WHOLE = {"experiments", "figures"}
+"""Keys of a config that is laid over no other."""
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A finished run. Paths in it are relative to `root`, the folder in which the workflow ran."""
+
+    root: Path
+    results: str
+    """`results`, or `results/<run>`; below the prefix of a module, if it has one."""
+    config: dict[str, Any]
+    """The merged config."""
+    points: list[Point]
+    """The points of which figures and films are made."""
+    configs: list[str]
+    """The files of the config that are in `root`."""
+
+    @property
+    def workflow(self) -> str:
+        """The path of the Snakefile."""
+        return next(name for name in _WORKFLOWS if (self.root / name).is_file())
+
+    @property
+    def is_copy(self) -> bool:
+        """Whether `root` is a copy of the project, not a folder with a workflow that uses it as a module."""
+        return (self.root / _RULES).is_file()
+
+    @property
+    def figures(self) -> list[str]:
+        """The names of the figures."""
+        return list(self.config["figures"])
+
+    @property
+    def report(self) -> str:
+        """The path of the report."""
+        return f"{self.results}/report.html"
+
+    def outputs(self) -> Iterator[str]:
+        """Return the results that go into every archive as they are: figures, tables, measurements, films.
+
+        Figures for a column of a journal are not among them: they are a third of all.
+        """
+        folder = self.results
+        yield f"{folder}/tables/claims.csv"
+        for figure in self.figures:
+            yield from (f"{folder}/figures/{figure}.{kind}" for kind in ("png", "svg"))
+            yield from (f"{folder}/claims/{figure}.csv", f"{folder}/measurements/{figure}.nc")
+        for film, block in self.config.get("animations", {}).items():
+            if block:
+                yield from (f"{folder}/animations/{film}.{kind}" for kind in ("mp4", "jpg"))
+        yield from (point.path for point in self.points if point.job != TRAJECTORIES)
+
+    def trajectories(self) -> Iterator[tuple[Point, int, str]]:
+        """Point, replica and path of each trajectory."""
+        for point in self.points:
+            if point.job == TRAJECTORIES:
+                yield from ((point, k, path) for k, path in enumerate(point.replica_paths))
+
+
+def find_finished(results: str | Path, config: str | Path | None = None) -> Finished:
+    """Find the run whose results are in a folder, `results` or `results/<run>`.
+
+    config: its config; by default the only one in the folders `config` and above with the name of this run.
+    The workflow may also be a module of another one, in a folder with its Snakefile and config. If the module
+    has a prefix, the results lie in a folder below.
+
+    Raises SceneError for a folder without results, results that are not complete, and trajectories that
+    were made with other settings than those of the config.
+    """
+    folder = resolved(results)
+    if not (folder / "tables/claims.csv").is_file():
+        rule = "holds no results of a finished run: tables/claims.csv is missing"
+        raise SceneError("results", str(results), rule)
+    named = folder.name != "results"
+    place = folder.parents[1] if named else folder.parent
+    root = _project_of(place)
+    if (named and folder.parent.name != "results") or root is None:
+        rule = "must be the folder results of a project, or that of a run in it, results/<run>"
+        raise SceneError("results", str(results), rule)
+    name = folder.name if named else None
+    file = _config_of(root, name) if config is None else Path(config)
+    merged, files = merged_with_default(file, root / _BASE)
+    if merged.get("run") != name:
+        raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
+    prefix = place.relative_to(root)
+    inside = [str(one.relative_to(root)) for one in files if one.is_relative_to(root)]
+    with chdir(root):  # from which scene files are read
+        points = _used(merged, check(merged, files))
+        points = [replace(point, root=str(prefix / point.root)) for point in points]
+        found = Finished(root, str(folder.relative_to(root)), merged, points, inside)
+        _check_places(found, file)
+        _check_complete(found, results)
+        _check_settings(found)
+    return found
+
+
+def _project_of(folder: Path) -> Path | None:
+    """Return the nearest folder with a workflow, from `folder` upwards; None if there is none."""
+    return next(
+        (
+            place
+            for place in (folder, *folder.parents)
+            if any((place / name).is_file() for name in _WORKFLOWS)
+        ),
+        None,
+    )
+
+
+def _used(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:
+    """The points of which figures and films are made, each once: no rule of `all` makes the others."""
+    points = [point for figure in config["figures"] for point in figure_points(config, figure, planned)]
+    films = [block for block in config.get("animations", {}).values() if block]
+    points += [next(iter(planned[block["experiment"]].values())) for block in films]
+    return list({point.path: point for point in points}.values())
+
+
+def _config_of(root: Path, name: str | None) -> Path:
+    """The config of a run of this name, None for that without a name. Raises SceneError unless it is one."""
+    if name is None and (root / _BASE).is_file():
+        return root / _BASE
+    files = [*sorted((root / "config").glob("*.y*ml")), *sorted(root.glob("*.y*ml"))]
+    having = [file for file in files if _is_config_of(file, name)]
+    if len(having) != 1:
+        rule = f"is the run of {len(having)} configs in {root / 'config'} and {root}: name its config"
+        raise SceneError("run", name, f"{rule} (--config FILE)")
+    return having[0]
+
+
+def _is_config_of(file: Path, name: str | None) -> bool:
+    """Whether a file is a config with this key `run`, or a whole one without it."""
+    try:
+        content = read_yaml(file)
+    except SceneError:
+        return False
+    if not isinstance(content, dict) or (name is None and not content.keys() >= _WHOLE):
+        return False
+    return content.get("run") == name
+
+
+def _check_places(run: Finished, file: Path) -> None:
+    """Refuse points that lie outside of the project's folder: their paths would have no place in an archive.
+    Raises SceneError."""
+    place = Path(run.config.get("points", "results/points"))
+    if place.is_absolute() or ".." in place.parts:
+        raise SceneError("points", str(place), "must be in the project's folder for an archive", str(file))
+
+
+def _check_complete(run: Finished, results: str | Path) -> None:
+    """Raise SceneError if a result is missing."""
+    needed = [run.report, *run.outputs(), *(path for _, _, path in run.trajectories())]
+    missing = [path for path in needed if not (run.root / path).is_file()]
+    if missing:
+        rule = f"is not complete: {missing[0]}{_others(len(missing))}; run the workflow to its end"
+        raise SceneError("results", str(results), rule)
+
+
+def _others(count: int) -> str:
+    return " is missing" if count == 1 else f" and {count - 1} other files are missing"
+
+
+def _check_settings(run: Finished) -> None:
+    """Raise SceneError for a trajectory whose scene, engine, seed or times are not those of the config."""
+    for point, replica, path in run.trajectories():
+        recipe, wanted = read_recipe(run.root / path), point.arguments
+        finest = recipe.correlations.interval if recipe.correlations else recipe.sample_interval
+        same = (
+            recipe.scene == point.scene
+            and recipe.seed == wanted["seeds"][replica]
+            and recipe.engine == wanted["engine"].resolved(recipe.scene, finest)
+            and recipe.sample_interval == wanted["sample_interval"]
+            and recipe.duration == wanted["duration"]
+        )
+        if not same:
+            rule = "was made with other settings than those of the config; run the workflow again"
+            raise SceneError("trajectory", path, rule)
+
 
 CITATION = "CITATION.cff"
 LOCKED = "environment.txt"

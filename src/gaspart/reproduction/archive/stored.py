@@ -9,20 +9,26 @@ from __future__ import annotations
 import io
 import json
 import os
+import random
 import shutil
 import stat
 import struct
+import warnings
 import zipfile
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import IO, Any
 
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.reproduction.archive.digests import digest
+from gaspart.inspection.verdict import Check
+from gaspart.kernels.compile.cache import load_numba
+from gaspart.reproduction.archive import tables
+from gaspart.reproduction.archive.contents import scene_files
 from gaspart.reproduction.archive.limits import (
     MOST_BYTES,
     MOST_FILES,
@@ -30,9 +36,17 @@ from gaspart.reproduction.archive.limits import (
     check_names,
     check_places,
     check_size,
+    digest,
+    digest_of_numbers,
+    joint_digest,
 )
 from gaspart.reproduction.archive.tables import RUN, rows_of
 from gaspart.reproduction.archive.writing import MANIFEST
+from gaspart.reproduction.config import checked
+from gaspart.reproduction.jobs.simulate import recipes, record
+from gaspart.reproduction.points.point import TRAJECTORIES, Point
+from gaspart.trajectory import provenance
+from gaspart.yaml_text import parse_yaml, write_yaml
 
 DAMAGE = (
     *(zipfile.BadZipFile, zlib.error, struct.error, EOFError),
@@ -222,3 +236,185 @@ def _below(folder: Path, beginning: str) -> Iterable[tuple[str, os.stat_result]]
                 yield from _below(folder / entry.name, f"{name}/")
             else:
                 yield name, entry.stat(follow_symlinks=False)
+
+
+# Points of an archive simulated again: the same bits, or not.
+
+
+def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
+    """So many points of an archive that have trajectories, drawn at random, or all if there are fewer.
+
+    They are planned anew from the archive's config and scenes, which are written to `folder`. Raises
+    SceneError for a config that cannot be planned.
+    """
+    _write_config(stored, folder)
+    with checked(folder / "config/config.yaml") as (_, planned):
+        points = {(one.experiment, one.name): one for each in planned.values() for one in each.values()}
+    rows = stored.rows(tables.POINTS, tables.PointFile._fields)
+    listed = list(
+        dict.fromkeys((row["experiment"], row["point"]) for row in rows if row["job"] == TRAJECTORIES)
+    )
+    drawn = random.sample(listed, min(count, len(listed)))
+    missing = [f"{experiment}/{name}" for experiment, name in drawn if (experiment, name) not in points]
+    if missing:
+        raise SceneError("archive", str(stored.path), f"has a point that its config has not: {missing[0]}")
+    return [points[one] for one in drawn]
+
+
+def _write_config(stored: Stored, folder: Path) -> None:
+    """Write the config and the scene files that it names. Raises SceneError for one that is not in the
+    archive: a config of a stranger must not have files of this machine read."""
+    config = parse_yaml(stored.text(tables.CONFIG), tables.CONFIG)
+    for name in scene_files(config):
+        if name not in stored.names:
+            raise stored.refused(f"has a config with a scene that is not in the archive: {name}")
+        target = folder / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        stored.copy(name, target)
+    (folder / "config").mkdir(exist_ok=True)
+    write_yaml(folder / "config/config.yaml", config)
+
+
+def rerun(stored: Stored, point: Point, folder: Path) -> Check:
+    """Simulate all replicas of a point, and compare the bits of their numbers with the archive's digests."""
+    load_numba(ours=True)
+    rows = stored.rows(tables.POINTS, tables.PointFile._fields)
+    known = {
+        row["replica"]: row["numbers_sha256"]
+        for row in rows
+        if (row["experiment"], row["point"]) == (point.experiment, point.name)
+    }
+    other = []
+    for replica, recipe in enumerate(recipes(**point.arguments)):
+        made = folder / "again.nc"
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of coarse settings, which the config has on purpose
+            record(recipe, made, True)
+        if digest_of_numbers(made) != known.get(str(replica)):
+            other.append(str(replica))
+        made.unlink()
+    name = f"{point.experiment}/{point.name}"
+    if not other:
+        return Check("rerun", True, f"{name}: the same bits in {_counted(point.replicas)}")
+    return Check("rerun", False, f"{name}: other bits in replica {', '.join(other)}{_differing(stored)}")
+
+
+def _counted(count: int) -> str:
+    return "1 trajectory" if count == 1 else f"{count} trajectories"
+
+
+def _differing(stored: Stored) -> str:
+    """How this program differs from that of the archive."""
+    run = stored.summary()
+    then = {"gaspart": run["gaspart"], "revision": run["revision"]}
+    now = {"gaspart": provenance.versions()["gaspart_version"], "revision": provenance.git_revision()}
+    differing = [
+        f"{key} {then[key] or 'none'}, here {now[key] or 'none'}" for key in then if then[key] != now[key]
+    ]
+    return f" (archive: {'; '.join(differing)})" if differing else ""
+
+
+# Verification of an archive: digests of its files, data of its claims, and points simulated again.
+
+
+_JUDGED = ("figure", "claim", "verdict")
+_NAMED = 3
+"""How many files a message names."""
+
+
+def verify(path: str | Path, points: int = 0) -> Iterator[Check]:
+    """Recompute the digests of an archive, a zip file or an unpacked one, and simulate points again.
+
+    points: how many of the points that have trajectories, drawn at random. Gives a check for the archive as
+    a whole, its files, its claims, and each of these points. If files are damaged, nothing that follows from
+    them is checked.
+
+    Raises SceneError for what is no archive, and as simulations do.
+    """
+    with opened_archive(path) as stored:
+        stated = stored.manifest()
+        files = _files(stored, stated)
+        yield files
+        if not files.passed:
+            return
+        yield from _tables(stored, stated)
+        if points:
+            with TemporaryDirectory(prefix="gaspart-") as folder:
+                for point in chosen(stored, Path(folder), points):
+                    yield rerun(stored, point, Path(folder))
+
+
+def _files(stored: Stored, stated: Mapping[str, str]) -> Check:
+    """Whether the files are those of the manifest, with their digests."""
+    missing = sorted(stated.keys() - stored.names)
+    unknown = sorted(stored.names - stated.keys() - {MANIFEST})
+    changed = [name for name in sorted(stated.keys() & stored.names) if stored.digest(name) != stated[name]]
+    found = {"missing": missing, "changed or damaged": changed, "not of the archive": unknown}
+    faults = [f"{what}: {_shown(names)}" for what, names in found.items() if names]
+    return Check("files", not faults, "; ".join(faults) or f"{len(stated)} have the digests of {MANIFEST}")
+
+
+def _shown(names: list[str]) -> str:
+    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+    return ", ".join(names[:_NAMED]) + more
+
+
+def _tables(stored: Stored, stated: Mapping[str, str]) -> Iterator[Check]:
+    """The checks of what the tables state. Raises SceneError for tables that `gaspart archive` cannot have
+    written, though they have their digests."""
+    try:
+        yield _stated(stored)
+        yield _claims(stored, stated)
+        yield _points(stored)
+    except SceneError as error:
+        rule = f"has tables that cannot be read, though they have their digests: it {error.rule}"
+        raise stored.refused(rule) from None
+    except KeyError as error:
+        raise stored.refused(f"has claims made of a file that it does not list: {error.args[0]}") from None
+
+
+def _stated(stored: Stored) -> Check:
+    """Which run it is; no fault can be in it."""
+    run = stored.summary()
+    revision = f", revision {run['revision']}" if run["revision"] else ""
+    return Check("run", True, f"{run['title']}; gaspart {run['gaspart']}{revision}; {run['archived'][:10]}")
+
+
+def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
+    """Whether each claim of the results is listed, with the digests of the data that are in the archive."""
+    run, points = stored.summary(), stored.rows(tables.POINTS, tables.PointFile._fields)
+    listed = stored.rows(tables.CLAIMS, tables.ClaimData._fields)
+    judged = stored.rows(f"{run['results']}/tables/claims.csv", _JUDGED)
+    named = [tuple(row[key] for key in _JUDGED) for row in listed]
+    if named != [tuple(row[key] for key in _JUDGED) for row in judged]:
+        return Check("claims", False, f"{tables.CLAIMS} and the results list different claims")
+    known = dict(stated) | {row["path"]: row["sha256"] for row in points}
+    wrong = []
+    inputs = {data: _inputs(stored, data) for data in dict.fromkeys(row["data"] for row in listed)}
+    joint = {data: joint_digest(paths, known) for data, paths in inputs.items()}
+    for row in listed:
+        if row["data_sha256"] != stated.get(row["data"]) or row["inputs_sha256"] != joint[row["data"]]:
+            wrong.append(row["figure"])
+    if wrong:
+        return Check("claims", False, f"made of other data: those of {_shown(sorted({*wrong}))}")
+    return Check("claims", True, f"{len(listed)}, made of {len(joint)} measurements with these digests")
+
+
+def _inputs(stored: Stored, name: str) -> list[str]:
+    """The points, or tables of claims, of which a measurement in an archive is made."""
+    with TemporaryDirectory(prefix="gaspart-") as folder:
+        copy = Path(folder, "measurement.nc")
+        stored.copy(name, copy)
+        try:
+            return tables.inputs_of(copy)
+        except (OSError, RuntimeError, AttributeError, ValueError) as error:
+            raise stored.refused(f"has a measurement that cannot be read, {name}: {error}") from None
+
+
+def _points(stored: Stored) -> Check:
+    """Whether the points in the archive have the digests that its table states."""
+    listed = stored.rows(tables.POINTS, tables.PointFile._fields)
+    rows = [row for row in listed if row["path"] in stored.names]
+    wrong = [row["path"] for row in rows if stored.digest(row["path"]) != row["sha256"]]
+    text = f"other digests than in {tables.POINTS}: {_shown(wrong)}" if wrong else f"{len(rows)} files"
+    return Check("points", not wrong, text)

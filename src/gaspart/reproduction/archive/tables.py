@@ -13,9 +13,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from gaspart.reproduction import job_time
-from gaspart.reproduction.archive.digests import digest_of_file, digest_of_numbers, joint_digest
-from gaspart.reproduction.archive.finished import Finished
-from gaspart.reproduction.archive.limits import MOST_ROWS
+from gaspart.reproduction.archive.contents import Finished
+from gaspart.reproduction.archive.limits import MOST_ROWS, digest_of_file, digest_of_numbers, joint_digest
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.system import memory

@@ -13,11 +13,9 @@ from typing import IO
 from gaspart.errors import SceneError, optional
 from gaspart.files import FileKind, output_path, writing
 from gaspart.reproduction.archive import contents, tables
-from gaspart.reproduction.archive.citation import read_citation
-from gaspart.reproduction.archive.digests import digest
-from gaspart.reproduction.archive.finished import Finished, find_finished
-from gaspart.reproduction.archive.limits import check_names, name_fault
-from gaspart.reproduction.archive.metadata import METADATA, Described, metadata
+from gaspart.reproduction.archive.contents import Finished, find_finished
+from gaspart.reproduction.archive.limits import check_names, digest, name_fault
+from gaspart.reproduction.archive.metadata import METADATA, Described, metadata, read_citation
 from gaspart.yaml_text import dump_yaml
 
 MANIFEST = "manifest-sha256.txt"

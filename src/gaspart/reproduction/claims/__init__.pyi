@@ -1,9 +1,9 @@
 from gaspart.analysis.estimate import Estimate as Estimate
-from gaspart.reproduction.claims.claim import CLAIM_KINDS as CLAIM_KINDS
-from gaspart.reproduction.claims.claim import UNVERIFIED as UNVERIFIED
-from gaspart.reproduction.claims.claim import Claim as Claim
+from gaspart.reproduction.claims.judging import CLAIM_KINDS as CLAIM_KINDS
 from gaspart.reproduction.claims.judging import FAMILY_LEVEL as FAMILY_LEVEL
+from gaspart.reproduction.claims.judging import UNVERIFIED as UNVERIFIED
 from gaspart.reproduction.claims.judging import VERDICTS as VERDICTS
+from gaspart.reproduction.claims.judging import Claim as Claim
 from gaspart.reproduction.claims.judging import family_test as family_test
 from gaspart.reproduction.claims.judging import holm as holm
 from gaspart.reproduction.claims.judging import judge as judge

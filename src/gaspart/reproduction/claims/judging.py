@@ -4,8 +4,201 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
-from gaspart.reproduction.claims.claim import POWER, Claim
+from gaspart.analysis.estimate import Estimate, Number, as_estimate
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+# The form of a claim: an estimate, what is expected of it, and the deviation between them.
+
+
+CLAIM_KINDS = ("test", "identity", "reproduction", "family")
+"""test: could be false; identity: true by construction, checks the code; reproduction: a source's report;
+family: whether the deviations of a figure's value claims scatter as their uncertainties state."""
+POWER = 2.0
+"""Standard deviations between the expected value and the alternative that a conclusive claim must resolve."""
+NEGLIGIBLE = 0.1
+"""Part of the measurement's uncertainty below which an allowance does not change a deviation (0.5 %)."""
+UNVERIFIED = "the reference is quoted from memory and has not been verified"
+"""Why a claim has no verdict: see `Claim.no_verdict`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """One measured number and what is expected of it, in the unit that the claim's text gives.
+
+    claim: the statement in words; expected: a plain number is exact, the uncertainty of an Estimate is the
+    allowance for that of the theory or the literature, whose origin is `allowance_source`, and which must
+    not be derived from the data; source: of the expected value; required: the largest uncertainty of the
+    measurement at which the claim means anything; fails_if: what would make it fail; kind: of CLAIM_KINDS.
+    bounds: the lowest and the highest allowed number, for a statement of bounds instead of a value (see
+    `at_least`, `at_most`, `within`). exact_deviation: for numbers that are not Gaussian, their deviation as a
+    Gaussian one (see `chi_square`). alternative: the value of a competing theory, which a claim that agrees
+    must exclude. follows: whether the number follows, or nearly, from those of other claims, so that the
+    joint test does not count it again. no_verdict: why the number is reported only, such as UNVERIFIED.
+    why: of a reproduction, why the source errs if it is not reproduced.
+
+    Raises ValueError for an unknown kind, an empty text, source or fails_if, a negative required uncertainty,
+    and an allowance without a source.
+    """
+
+    claim: str
+    measured: Estimate
+    expected: Estimate | Number
+    required: Number
+    source: str
+    fails_if: str
+    kind: str = "test"
+    bounds: tuple[float, float] | None = None
+    exact_deviation: float | None = None
+    allowance_source: str = ""
+    alternative: Number | None = None
+    follows: bool = False
+    no_verdict: str = ""
+    why: str = ""
+
+    def __post_init__(self) -> None:
+        if self.kind not in CLAIM_KINDS:
+            raise ValueError(f"kind: {self.kind!r} (must be one of {', '.join(CLAIM_KINDS)})")
+        for name in ("claim", "source", "fails_if"):
+            if not getattr(self, name).strip():
+                raise ValueError(
+                    f"{name}: empty (a claim states what, its source, and what would make it fail)"
+                )
+        object.__setattr__(self, "expected", as_estimate(self.expected))
+        object.__setattr__(self, "required", float(self.required))
+        if self.required < 0.0:
+            raise ValueError(f"required: {self.required} (must not be negative)")
+        if self.expected.error > 0.0 and not self.allowance_source.strip():
+            raise ValueError(
+                f"allowance_source: empty (the allowance {self.expected.error:g} needs a source)"
+            )
+
+    @classmethod
+    def at_least(cls, *, claim: str, bound: Number, **others: Any) -> Claim:
+        """The measured number is `bound` or more. others: the remaining fields of the claim."""
+        text = f"{claim} (at least {bound:g})"
+        return cls(claim=text, expected=bound, bounds=(bound, math.inf), **others)
+
+    @classmethod
+    def at_most(cls, *, claim: str, bound: Number, **others: Any) -> Claim:
+        """The measured number is `bound` or less. others: the remaining fields of the claim."""
+        text = f"{claim} (at most {bound:g})"
+        return cls(claim=text, expected=bound, bounds=(-math.inf, bound), **others)
+
+    @classmethod
+    def within(cls, *, claim: str, expected: Number, half_width: Number, **others: Any) -> Claim:
+        """The measured number lies within `half_width` of `expected`. others: the remaining fields.
+
+        The required uncertainty defaults to half of half_width: the measurement's 95 % interval is then no
+        wider than the band.
+        """
+        low, high = expected - half_width, expected + half_width
+        text = f"{claim} (within {low:g} to {high:g})"
+        return cls(
+            claim=text, expected=expected, bounds=(low, high), **{"required": 0.5 * half_width} | others
+        )
+
+    @classmethod
+    def chi_square(
+        cls, *, chi_square: Number, degrees_of_freedom: int, error_freedom: Number = math.inf, **others: Any
+    ) -> Claim:
+        """Chi-square of many deviations at once; measured is chi-square per degree of freedom, expected 1.
+
+        The deviation is the Gaussian one of the same two-sided probability (a chi-square far too small is
+        a fault as well: error bars too large); the uncertainty sqrt(2 / dof) is the statistic's own scatter.
+        error_freedom: degrees of freedom of the uncertainty if all deviations have one in common, from the
+        scatter of a few samples; the statistic per degree of freedom then follows Fisher's distribution.
+        others: the remaining fields of the claim.
+        """
+        from scipy.special import chdtr, chdtrc, fdtr, fdtrc, ndtri
+
+        if math.isinf(error_freedom):
+            above, below = (tail(degrees_of_freedom, chi_square) for tail in (chdtrc, chdtr))
+        else:
+            each = chi_square / degrees_of_freedom
+            above, below = (tail(degrees_of_freedom, error_freedom, each) for tail in (fdtrc, fdtr))
+        deviation = -ndtri(above) if above < below else ndtri(below)
+        scatter = math.sqrt(2.0 / degrees_of_freedom)
+        measured = Estimate(chi_square / degrees_of_freedom, scatter)
+        return cls(
+            measured=measured, expected=1.0, required=scatter, exact_deviation=float(deviation), **others
+        )
+
+    @classmethod
+    def joint(cls, *, claim: str, deviations: ArrayLike, **others: Any) -> Claim:
+        """`chi_square` of independent deviations in standard deviations, an array of any shape."""
+        import numpy as np
+
+        deviations = np.asarray(deviations, dtype=float)
+        text = f"{claim} (chi-square per degree of freedom)"
+        total, freedom = float(np.sum(deviations**2)), deviations.size
+        return cls.chi_square(claim=text, chi_square=total, degrees_of_freedom=freedom, **others)
+
+    @property
+    def form(self) -> str:
+        """The kind of statement: "value", "bound" (or two), or "distribution", of many numbers at once."""
+        if self.exact_deviation is not None:
+            return "distribution"
+        return "value" if self.bounds is None else "bound"
+
+    @property
+    def deviation_sigma(self) -> float:
+        """Signed distance from what was stated, in standard deviations; 0 inside stated bounds.
+
+        (measured - expected) / sqrt(sum of the squares of both uncertainties); for bounds, expected is the
+        nearer bound. See `Estimate.deviation` for uncertainties that come from a few samples.
+        """
+        if self.exact_deviation is not None:
+            return self.exact_deviation
+        stated = self.expected.value
+        if self.bounds is not None:
+            stated = min(max(self.measured.value, self.bounds[0]), self.bounds[1])
+        return (self.measured - Estimate(stated, self.expected.error)).deviation
+
+    @property
+    def p_value(self) -> float:
+        """Two-sided Gaussian probability of a deviation at least this large."""
+        return math.erfc(abs(self.deviation_sigma) / math.sqrt(2.0))
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether the measured and the expected number and their uncertainties are finite."""
+        numbers = (self.measured.value, self.measured.error, self.expected.value, self.expected.error)
+        return all(map(math.isfinite, numbers))
+
+    @property
+    def has_power(self) -> bool:
+        """Whether the combined uncertainty would distinguish the alternative, if there is one."""
+        if self.alternative is None:
+            return True
+        spread = math.hypot(self.measured.error, self.expected.error)
+        return abs(float(self.alternative) - self.expected.value) >= POWER * spread
+
+    @property
+    def is_conclusive(self) -> bool:
+        """Whether agreement would mean something: the uncertainty is not above the required one, and the
+        alternative would be noticed."""
+        return self.is_finite and self.measured.error <= self.required and self.has_power
+
+    @property
+    def is_scattered(self) -> bool:
+        """Whether the deviation is a standard Gaussian one if the claim is true, and one of its own: a test
+        of a value, with a verdict, whose allowance is negligible beside the measurement's uncertainty."""
+        return (
+            not self.follows
+            and self.form == "value"
+            and self.kind == "test"
+            and not self.no_verdict
+            and self.is_finite
+            and self.measured.error > 0.0
+            and self.expected.error <= NEGLIGIBLE * self.measured.error
+        )
+
 
 VERDICTS = ("agrees", "disagrees", "inconclusive", "reproduced", "source in error", "no verdict")
 """Tests and identities have one of the first three; a reproduction is reproduced, its source is in error (if

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.keys import Kind, count
-from gaspart.reproduction.jobs.data import PointData
-from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY, SCAN_TIME_STEPS, SLACK, intervals
+from gaspart.reproduction.jobs.data import EQUILIBRATION_KEY, SCAN_TIME_STEPS, SLACK, PointData, intervals
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -155,7 +154,7 @@ def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int
     it."""
     import numpy as np
 
-    from gaspart.engines.event_log import EventLog
+    from gaspart.engines.dynamics import EventLog
 
     steps = max(1, min(steps, round(steps * _LISTED / max(2.0 * collisions, _LISTED))))
     if steps > _LISTED_STEPS:

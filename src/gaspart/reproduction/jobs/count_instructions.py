@@ -118,7 +118,7 @@ def count(scene: dict) -> None:
     """Print the number of instructions of each engine's main kernel for a scene."""
     import gaspart as gp
     from gaspart.kernels.event import loop as event_loop
-    from gaspart.kernels.step import loop as step_loop
+    from gaspart.kernels.step import box_search as step_loop
 
     kernels: dict[Any, Any] = {
         gp.EventDriven(): event_loop.run,

@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.engines import EventDriven
 from gaspart.keys import Kind, count
-from gaspart.reproduction.jobs.data import PointData
-from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY, SLACK, intervals
+from gaspart.reproduction.jobs.data import EQUILIBRATION_KEY, SLACK, PointData, intervals
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine

@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from gaspart.engines import engine_to_dict, reference_engine
 from gaspart.errors import SimulationError
 from gaspart.keys import COUNT, POSITIVE, TEXT, Kind, count, described, flag, listed
-from gaspart.reproduction.jobs.data import PointData
-from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY, SCAN_TIME_STEPS, SLACK, intervals
+from gaspart.reproduction.jobs.data import EQUILIBRATION_KEY, SCAN_TIME_STEPS, SLACK, PointData, intervals
 
 if TYPE_CHECKING:
     import numpy as np
@@ -228,7 +227,7 @@ def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: f
 
 def _timed(run: _Run, interval: float) -> tuple[tuple[float, float], dict]:
     """Processor time and time on the wall of one interval, in s, and what was counted in it."""
-    from gaspart.engines.event_log import EventLog
+    from gaspart.engines.dynamics import EventLog
     from gaspart.state.optional_tallies import StressTally
 
     scene, engine = run.scene, run.engine

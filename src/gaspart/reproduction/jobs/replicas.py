@@ -60,7 +60,7 @@ def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
     """The files that runs of other recipes have left in a folder. Raises SceneError for a file that
     gaspart did not write, and for a folder or link."""
     from gaspart.trajectory.checkpoint import CHECKPOINT
-    from gaspart.trajectory.partial import TRAJECTORY, UNFINISHED
+    from gaspart.trajectory.opening import TRAJECTORY, UNFINISHED
 
     kinds = {".nc.partial": UNFINISHED, ".checkpoint.npz": CHECKPOINT, ".failed.npz": CHECKPOINT}
     left = []

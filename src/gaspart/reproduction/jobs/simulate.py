@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaspart.keys import TEXT, Kind, choice, count, described, flag, positive
-from gaspart.reproduction.jobs.intervals import EQUILIBRATION_KEY
+from gaspart.reproduction.jobs.data import EQUILIBRATION_KEY
 from gaspart.reproduction.jobs.replicas import write_replicas
 
 if TYPE_CHECKING:

@@ -29,7 +29,7 @@ def require_observable(name: str, point: Point) -> None:
 
 def distinct(points: Iterable[Point]) -> list[Point]:
     """One of the points of each kind whose trajectories have the same observables."""
-    from gaspart.reproduction.points.variants import variant
+    from gaspart.reproduction.points.point import variant
 
     kinds: dict[tuple, Point] = {}
     for point in points:

@@ -92,7 +92,7 @@ def digest(*roots: str | Path, others: tuple[Path, ...] = ()) -> str:
 def kernel_digest(*roots: str | Path) -> str:
     """A short digest of the compiled modules in a closure that `warm` may compile: jobs that need equal ones
     share their stamps."""
-    needed = closure(*roots) & closure("gaspart.reproduction.points.variants")
+    needed = closure(*roots) & closure("gaspart.reproduction.points.point")
     return _digest_of([path for path in _in_order(needed) if path.is_relative_to(PACKAGE / "kernels")])
 
 

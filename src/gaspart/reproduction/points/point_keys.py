@@ -5,12 +5,16 @@ Those of a job are declared in its module in `reproduction.jobs`; `config_keys` 
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gaspart import engines
 from gaspart.analysis.observables import having
 from gaspart.keys import POSITIVE, TEXT, Kind, choice, count, described, flag, positive, schema_of
 from gaspart.scene.sizes import DISTRIBUTIONS
+
+if TYPE_CHECKING:
+    from gaspart.reproduction.points.point import Point
+
 
 PREFIX = "scene."
 """Start of a key that replaces a value of the scene file: ``scene.species.0.mass``."""
@@ -132,3 +136,32 @@ LENGTHS: dict[str, Kind] = {
 
 SCANS = ("scan_boxes_per_side", "scan_boxes_per_particle", "scan_time_steps", "scan_step_parts")
 """Keys of the jobs that run several engines in turn."""
+
+
+# The end of the runs of a point with `until`.
+#
+# It is made here, and not by the job, whose module must not depend on the analysis.
+
+
+def ending(point: Point) -> dict[str, Any]:
+    """The fields of `Recipe` that follow from `until`. Raises SceneError for what no run can reach."""
+    from gaspart.analysis.observables import OBSERVABLES
+    from gaspart.runs.ending import Accuracy, default_sample_interval, require_end, require_measurable
+    from gaspart.trajectory.until import Until
+
+    settings, times = point.settings, point.schedule
+    start = times.equilibration if "equilibration" in settings else None
+    accuracies = tuple(Accuracy.named(name, value, start) for name, value in settings["until"].items())
+    for asked in accuracies:
+        require_measurable(asked, point.scene, point.engine)
+        require_end(asked, point.scene, times.duration, given=False)
+    interval = times.sample_interval
+    if "samples" not in settings:
+        interval = default_sample_interval(point.scene, point.engine, None)
+    paths = any(OBSERVABLES[asked.observable].needs == "paths" for asked in accuracies)
+    return {
+        "duration": None,
+        "sample_interval": interval,
+        "until": Until(accuracies, times.duration),
+        "displacements": paths or settings.get("displacements", False),
+    }

@@ -16,9 +16,159 @@ from dataclasses import replace
 from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.points import config_keys, point_keys
+from gaspart.keys import TEXT, Kind, choice, count, described, flag, listed, nullable, positive, record
+from gaspart.reproduction.points import point_keys
+from gaspart.reproduction.points.jobs import JOBS
 from gaspart.reproduction.points.lengths import scaled
 from gaspart.reproduction.points.point import Point, name_of
+from gaspart.reproduction.points.point_keys import (
+    ENGINE,
+    ENGINE_KEYS,
+    EXTENTS,
+    GAS,
+    LENGTHS,
+    SCENE_FILE,
+)
+
+# The keys of a config, of an experiment and of all its points: kind, default and meaning of each.
+#
+# Validation, the JSON schema and the reference page follow from these tables. The settings of a figure are
+# declared in the `__init__.py` of its family.
+
+
+_WORD = r"[a-z][a-z0-9_]*$(?!\n)"  # $ matches before a final line break too
+_NAME = {"pattern": rf"^{_WORD}", "maxLength": 100}
+
+_TAKEN = (
+    *("animations", "benchmarks", "claims", "coverage", "docs", "figures", "kernels", "logs"),
+    *("measurements", "points", "tables"),
+)
+"""Folders of `results`, which are no names of a run."""
+
+
+def _of_any_engine() -> dict[str, Kind]:
+    """The keys of all engines; what one means is stated for each engine that has another meaning of it."""
+    merged: dict[str, Kind] = {}
+    for engine, keys in ENGINE_KEYS.items():
+        for name, kind in keys.items():
+            meaning = kind["description"]
+            known = merged.setdefault(name, kind.stating(default=None))["description"]
+            if meaning not in known:
+                merged[name] = described(merged[name], f"{known}; {engine}: {meaning}")
+    return merged
+
+
+def _of_any_job() -> dict[str, Kind]:
+    """The keys of all jobs, each with its meaning for every job that has it."""
+    kinds: dict[str, Kind] = {}
+    meanings: dict[str, dict[str, list[str]]] = {}  # of each key: meaning, jobs
+    for job, module in JOBS.items():
+        for name, kind in module.KEYS.items():
+            kinds.setdefault(name, kind)
+            meanings.setdefault(name, {}).setdefault(kind["description"], []).append(f"`{job}`")
+    return {name: described(kind, _in_words(meanings[name])) for name, kind in kinds.items()}
+
+
+def _in_words(meanings: Mapping[str, list[str]]) -> str:
+    return "; ".join(f"{', '.join(jobs)}: {meaning}" for meaning, jobs in meanings.items())
+
+
+RUN: dict[str, Kind] = {
+    **_of_any_job(),
+    "replicas": count("independent runs within the point's job", maximum=10_000, default=1),
+}
+
+POINT: dict[str, Kind] = {
+    name: kind if name == "dimension" else nullable(kind)
+    for name, kind in (EXTENTS | GAS | SCENE_FILE | ENGINE | _of_any_engine() | LENGTHS | RUN).items()
+}
+"""All keys of a point; null takes a key back."""
+
+WHOLE = frozenset(
+    name
+    for name, kind in POINT.items()
+    if kind.get("type") == ["integer", "null"] or all(isinstance(item, int) for item in kind.get("enum", "-"))
+)
+"""Keys of whole numbers, which may be written 1e3."""
+
+_BLOCK = {"type": "object"}  # each value is checked against its key's kind
+_JOBS = "; ".join(f"`{name}`: {module.RESULT}" for name, module in JOBS.items())
+EXPERIMENT: dict[str, Kind] = {
+    "job": choice(_JOBS, *JOBS, default="simulate"),
+    "point": record(POINT, "the settings that all points share", patternProperties={r"^scene[.]": {}}),
+    "grid": described(
+        {"anyOf": [_BLOCK, listed(_BLOCK)]},
+        "the settings that vary: a mapping from a key to the list of its values, of which the product is "
+        "taken, or a list of such mappings, one after the other; a single value counts as a list of one",
+        default=None,
+    ),
+}
+
+ANIMATION: dict[str, Kind] = {
+    "experiment": described(TEXT, "the experiment whose first point's first replica is filmed"),
+    "size": listed(
+        {"type": "integer", "minimum": 16}, "width and height in pixels", 2, 2, default=[1000, 750]
+    ),
+    "colour": choice("what the colour of a particle shows", "speed", "species", default="speed"),
+    "frames_per_second": positive("pictures per second", default=25.0),
+    "trail": count("number of a disc whose path is drawn", 0, default=None),
+    "clock": flag(
+        "write parameters, the meaning of the colours, time and scale above and below the pictures",
+        default=False,
+    ),
+    "figure": described(TEXT, "the figure beside which the report shows the film", default=None),
+}
+
+
+MULTIPLE: Kind = positive("", maximum=100)
+"""A multiple of the length of a point."""
+
+
+def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
+    """The top level of a config, given the entries of its figures, by name, and of those with other names."""
+    named = {"type": "object", "propertyNames": _NAME}
+    return {
+        "title": described({**TEXT, "minLength": 1}, "stands in the report and in each figure's data"),
+        "seed": count(
+            "with the names of experiment, point and replica it gives every random stream", minimum=0
+        ),
+        "points": described(
+            {**TEXT, "pattern": r"^results(/[A-Za-z0-9_.-]*[A-Za-z0-9_-])+$(?!\n)", "maxLength": 200},
+            "the folder of the simulations, which several runs may share",
+        ),
+        "run": nullable(
+            described(
+                {**TEXT, "pattern": rf"^(?!({'|'.join(_TAKEN)})$){_WORD}", "maxLength": 100},
+                "a name: figures, claims, tables, logs and report are then in `results/<run>`, instead of "
+                "`results`, where they replace those of no other run",
+                default=None,
+            )
+        ),
+        "experiments": described(
+            {**named, "minProperties": 1, "additionalProperties": record(EXPERIMENT)}, "what is simulated"
+        ),
+        "lengths": nullable(
+            described(
+                {
+                    "type": "object",
+                    "additionalProperties": {"type": ["object", "null"], "additionalProperties": MULTIPLE},
+                },
+                "multiples of the length of single points, by experiment and name of the point: so many "
+                "times the replicas, or for the rest the length of each run",
+                default=None,
+            )
+        ),
+        "figures": described(
+            {**named, "properties": figures, "additionalProperties": own},
+            "what is drawn, and the settings of its measurement; a figure with another name has a `kind`",
+        ),
+        "animations": described(
+            {**named, "additionalProperties": nullable(record(ANIMATION))},
+            "films; null takes one back",
+            default={},
+        ),
+    }
+
 
 MOST_POINTS = 100_000
 
@@ -53,7 +203,7 @@ def points(config: dict, experiment: str) -> list[Point]:
 
 
 def _plain(key: str, value: Any) -> Any:
-    whole = key in config_keys.WHOLE and isinstance(value, float) and value.is_integer()
+    whole = key in WHOLE and isinstance(value, float) and value.is_integer()
     return int(value) if whole else value
 
 
@@ -61,7 +211,7 @@ def _chosen(point: Point) -> Point:
     """With the engine that `engine: auto` stands for. Raises SceneError."""
     where = f"experiments.{point.experiment}"
     if point.settings.get("engine") == "auto":
-        from gaspart.reproduction.points.advised import chosen
+        from gaspart.reproduction.points.engine import chosen
 
         return replace(point, settings=chosen(point.settings, point.scene, where))
     for key in point_keys.ENGINE_KEYS["auto"]:

@@ -3,19 +3,164 @@
 from __future__ import annotations
 
 import base64
+import math
 import mimetypes
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gaspart.reproduction.claims import counts
-from gaspart.reproduction.claims.captions import filled
+from gaspart.reproduction.claims.table import filled
 from gaspart.reproduction.families.registry import chapter
-from gaspart.reproduction.report.caption import Caption, divided, html_of
-from gaspart.reproduction.report.strip import dots
+
+if TYPE_CHECKING:
+    from docutils import nodes
+
+
+# Claims on an axis of deviations: where each dot is, and how it looks.
+
+
+LIMIT = 5.0
+"""Standard deviations at the ends of the axis; what lies beyond is drawn at its end."""
+_BAND = 3.0
+_WIDTH = 0.24
+"""Standard deviations below which two dots would overlap."""
+_LEVELS = 4
+
+
+@dataclass(frozen=True)
+class Dot:
+    """row: of the claims table; place: percent of the axis; level: 0, 1, ... from below, so that dots do not
+    hide one another."""
+
+    row: dict[str, Any]
+    place: float
+    level: int
+
+
+def deviation(row: dict[str, Any]) -> float:
+    """Where a claim stands, in standard deviations: a value by its deviation; a measured number within two
+    bounds by its place between them, which are at -3 and 3; 0 if there is none."""
+    low, high, measured = row["lowest"], row["highest"], row["measured"]
+    if math.isfinite(low) and math.isfinite(high) and math.isfinite(measured) and high > low:
+        return _BAND * (2.0 * measured - low - high) / (high - low)
+    sigma = row["deviation_sigma"]
+    return sigma if not math.isnan(sigma) else 0.0
+
+
+def dots(rows: Iterable[dict[str, Any]]) -> list[Dot]:
+    """The dots of some claims, from the lowest deviation to the highest."""
+    last = [-math.inf] * _LEVELS
+    placed = []
+    for row in sorted(rows, key=deviation):
+        at = min(max(deviation(row), -LIMIT), LIMIT)
+        free = [level for level in range(_LEVELS) if at - last[level] >= _WIDTH]
+        level = free[0] if free else min(range(_LEVELS), key=last.__getitem__)
+        last[level] = at
+        placed.append(Dot(row, 50.0 * (1.0 + at / LIMIT), level))
+    return placed
+
+
+# The parts of a caption: its finding, how to read the figure, and what is folded below.
+#
+# A caption is reStructuredText. Its first words, in bold, are the finding. The rest of that paragraph and
+# the paragraph that begins with *What is seen.* state how to read the figure.
+
+
+_FINDING = re.compile(r"\*\*(?=[^\s*])(.+?)\*\*\s*", re.DOTALL)
+_SCHEME = re.compile(r"([a-z][a-z0-9+.-]*):")
+_SCHEMES = ("http", "https", "mailto", "doi")
+"""Beginnings that an address in a caption may have, unless it is within the report."""
+_SETTINGS = {
+    "file_insertion_enabled": False,
+    "raw_enabled": False,
+    "math_output": "MathML",
+    "warning_stream": False,  # faults are raised
+    "halt_level": 5,
+}
+_HTML: dict[str, Any] = {"writer": "html5", "settings_overrides": _SETTINGS}
+_SEEN = "*What is seen.*"
+
+
+@dataclass(frozen=True)
+class Caption:
+    """finding: inline HTML; plain: the same without marks, for places that hold text only; reading, details:
+    HTML, the latter perhaps empty."""
+
+    finding: str
+    plain: str
+    reading: str
+    details: str
+
+
+def divided(text: str) -> Caption:
+    """The parts of a caption.
+
+    Raises ValueError if it does not begin with words in bold, and as `html_of`.
+    """
+    paragraphs = re.split(r"\n\s*\n", text.strip())
+    finding = _FINDING.match(paragraphs[0])
+    if not finding:
+        raise ValueError("a caption begins with its finding, in bold")
+    opening = paragraphs[0][finding.end() :]
+    seen = [paragraph for paragraph in paragraphs[1:] if paragraph.startswith(_SEEN)]
+    others = [paragraph for paragraph in paragraphs[1:] if not paragraph.startswith(_SEEN)]
+    reading = [opening, *(paragraph.removeprefix(_SEEN).strip() for paragraph in seen)]
+    reading = [re.sub(r"^\(", r"\\(", paragraph) for paragraph in reading]  # "(a)" begins no list
+    title = html_of(finding[1]).removeprefix("<p>").removesuffix("</p>").rstrip(".")
+    return Caption(
+        finding=title,
+        plain=re.sub(r"<[^>]+>", "", title),
+        reading=html_of("\n\n".join(reading)),
+        details=html_of("\n\n".join(others)),
+    )
+
+
+def html_of(text: str) -> str:
+    """reStructuredText as a fragment of HTML.
+
+    Raises ValueError for marks that are not closed and other faults, and for an address whose scheme is not
+    one of the web or of mail: `javascript:` would run where the report is read.
+    """
+    from docutils.core import publish_doctree, publish_parts
+
+    try:
+        fault = _fault(publish_doctree(text, settings_overrides=_SETTINGS))
+        body = "" if fault else str(publish_parts(text, **_HTML)["body"]).strip()
+    except Exception as error:  # docutils 0.22 raises AttributeError and others for formulas
+        raise ValueError(f"cannot be read as reStructuredText: {type(error).__name__}: {error}") from None
+    if fault:
+        raise ValueError(fault)
+    if '<aside class="system-message">' in body:  # of a formula, which is read when it is written
+        raise ValueError("holds a formula that cannot be read")
+    return body
+
+
+def _fault(tree: nodes.document) -> str:
+    """The fault of a text that was read; "" if there is none."""
+    from docutils import nodes
+
+    said = [*tree.findall(nodes.system_message), *tree.parse_messages, *tree.transform_messages]
+    serious = [message for message in said if message["level"] > 1]
+    if serious:
+        return str(serious[0].children[0].astext() if serious[0].children else serious[0].astext())
+    for node in tree.findall(nodes.Element):
+        for address in (node.get("refuri"), node.get("uri")):
+            if address and not _is_safe(address):
+                return f"the address {address} must begin with {', '.join(_SCHEMES)} or lie in the report"
+    return ""
+
+
+def _is_safe(address: str) -> bool:
+    """Whether an address is one of the web, of mail, or relative. Browsers skip white space and control
+    characters within a scheme."""
+    scheme = _SCHEME.match("".join(c for c in address if c.isprintable() and c != " ").lower())
+    return scheme is None or scheme[1] in _SCHEMES
+
 
 _PIXELS_PER_INCH = 96.0 * 1.5
 """Pixels of the page per inch of a figure, so that its lettering of 8 points is as large as the text."""

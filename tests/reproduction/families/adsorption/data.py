@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.theory import adsorption as theory
-from gaspart.theory.potential import packing_fraction_at
+from gaspart.theory.tables import packing_fraction_at
 
 SPEED = np.linspace(0.1, 3.9, 20)
 

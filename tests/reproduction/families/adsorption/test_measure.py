@@ -7,7 +7,7 @@ from gaspart import run
 from gaspart.reproduction.families.adsorption import measure as adsorption
 from gaspart.reproduction.points.point import Point
 from gaspart.theory.adsorption import flux_density, slow_flux_share, well_ratio
-from gaspart.theory.potential import packing_fraction_at
+from gaspart.theory.tables import packing_fraction_at
 
 SCENES = Path(__file__).parents[4] / "config/scenes"
 SETTINGS = {"blocks": 10, "layer_blocks": 10, "near": 0.5, "bins": 20}

@@ -5,7 +5,7 @@ import xarray as xr
 
 from gaspart.reproduction.families.shared.columns import Stretch
 from gaspart.theory import gravity
-from gaspart.theory.buoyancy import displaced_area
+from gaspart.theory.brownian import displaced_area
 
 WIDTH, HEIGHT, STRENGTH, RADIUS, SMALL = 24.0, 60.0, 0.05, 3.0, 0.5
 

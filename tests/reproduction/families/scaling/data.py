@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.points.points import all_points, figure_points
-from gaspart.theory import partition
+from gaspart.theory import dsmc as partition
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[4]

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from gaspart import theory
-from gaspart.accuracy import models
+from gaspart.accuracy import tabulated as models
 from gaspart.analysis.estimate import Estimate
-from gaspart.engines.dsmc.rates import contact_values
+from gaspart.engines.dsmc.defaults import contact_values
 from gaspart.reproduction.families.tradeoff import flows, relaxation, uniform
 from gaspart.reproduction.families.tradeoff.choices import PARTS, Choice, cheapest
 from gaspart.reproduction.jobs.simulate import simulate

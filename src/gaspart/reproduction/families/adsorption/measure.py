@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.bins import Grid
+from gaspart.analysis.flow import Grid
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import jackknife
 from gaspart.reproduction.families.shared.runs import runs
@@ -28,8 +28,8 @@ from gaspart.theory.adsorption import (
     length_in_langmuirs_formula,
 )
 from gaspart.theory.geometry import particle_volume
-from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
 from gaspart.theory.state import compressibility_factor
+from gaspart.theory.tables import excess_chemical_potential, packing_fraction_at
 
 _REACH = 4.0  # of the histogram of speeds, in units of sqrt(kT/m)
 

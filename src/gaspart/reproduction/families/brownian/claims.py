@@ -8,8 +8,8 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.table import Row, Table
 
 LANGEVIN = "the Langevin equation with the friction of a dilute gas ([Chapman 1970])"
-BOLTZMANN = "the linear Boltzmann equation, direct simulation (gaspart.theory.tagged)"
-RELAXING = f"{BOLTZMANN}, in a gas that relaxes from equal speeds (gaspart.theory.homogeneous)"
+BOLTZMANN = "the linear Boltzmann equation, direct simulation (gaspart.theory.boltzmann)"
+RELAXING = f"{BOLTZMANN}, in a gas that relaxes from equal speeds (gaspart.theory.boltzmann)"
 FAILS_IF = {
     "equipartition": "a particle with another energy than the gas gives it",
     "friction": "a wrong momentum exchange",

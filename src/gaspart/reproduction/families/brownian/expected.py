@@ -12,8 +12,7 @@ import numpy as np
 from gaspart import theory
 from gaspart.errors import SceneError
 from gaspart.reproduction.points.point import Point
-from gaspart.theory.homogeneous import relaxing_speeds
-from gaspart.theory.tagged import tagged_paths
+from gaspart.theory.boltzmann import relaxing_speeds, tagged_paths
 
 HEAVY = 10.0
 """Mass over that of a gas particle above which Langevin's equation is taken as exact. It is a sphere's in the

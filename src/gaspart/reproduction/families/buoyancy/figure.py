@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from gaspart.rendering import style
 from gaspart.reproduction.table import Table
-from gaspart.theory.buoyancy import displaced_area
+from gaspart.theory.brownian import displaced_area
 
 
 def buoyancy(ds: xr.Dataset) -> Figure:

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.bins import Grid
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.flow import Grid
 from gaspart.analysis.statistics import jackknife, mean_of
 from gaspart.reproduction.families.shared.columns import (
     Field,
@@ -25,10 +25,10 @@ from gaspart.reproduction.families.shared.columns import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import prefixed, table
-from gaspart.theory.buoyancy import displaced_area
+from gaspart.theory.brownian import displaced_area
 from gaspart.theory.geometry import particle_volume
 from gaspart.theory.gravity import hydrostatic_profiles
-from gaspart.theory.potential import excess_chemical_potential, packing_fraction_at
+from gaspart.theory.tables import excess_chemical_potential, packing_fraction_at
 
 
 def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:

@@ -16,8 +16,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.correlations import accumulated
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.motion import accumulated
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import fit_linear, mean_of
 from gaspart.analysis.transport import green_kubo

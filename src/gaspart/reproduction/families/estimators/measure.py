@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.accuracy.estimates import components
-from gaspart.analysis.bins import Grid
+from gaspart.analysis.flow import Grid
 from gaspart.analysis.impulses import kept, mixture, numbers_by_impulses
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import mean_of

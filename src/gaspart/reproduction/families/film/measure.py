@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.bins import Grid
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.flow import Grid
 from gaspart.analysis.run import Run
 from gaspart.analysis.series import face_pressures
 from gaspart.analysis.statistics import average, correlated_mean, fit_curve, fit_polynomial, mean_of, means_of

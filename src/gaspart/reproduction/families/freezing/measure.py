@@ -10,10 +10,10 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis import bond_order as structure
-from gaspart.analysis.bins import Grid
-from gaspart.analysis.coexistence import plateau
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.flow import Grid
 from gaspart.analysis.run import Run
+from gaspart.analysis.series import plateau
 from gaspart.analysis.statistics import average, correlated_mean, mean_of
 from gaspart.reproduction.families.shared.pressure import series_of
 from gaspart.reproduction.families.shared.runs import runs

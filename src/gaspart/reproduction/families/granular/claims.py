@@ -52,7 +52,7 @@ def _steady(gas: Row) -> Claim:
         measured=gas.steady_ratio / ratio,
         expected=Estimate(1.0, error / ratio),
         required=0.03,
-        source="homogeneous Boltzmann equation, direct simulation (gaspart.theory.homogeneous); Maxwellian "
+        source="homogeneous Boltzmann equation, direct simulation (gaspart.theory.boltzmann); Maxwellian "
         f"velocities and spins ([Huthmann 1997]) would give {maxwell:.3f}",
         allowance_source="statistical, of the direct simulation" if known else "",
         no_verdict="" if known else "the reference was not computed for these coefficients",
@@ -85,7 +85,7 @@ def _decay(gas: Row) -> list[Claim]:
             measured=Estimate(excess, DIFFERENCE * rotation.error, rotation.freedom),
             expected=Estimate(beyond[most], ROUGH_START_UNCERTAINTY) if known else 0.0,
             required=0.005,
-            source="homogeneous Boltzmann equation, direct simulation (gaspart.theory.homogeneous); "
+            source="homogeneous Boltzmann equation, direct simulation (gaspart.theory.boltzmann); "
             "Maxwellian velocities and spins ([Huthmann 1997]) would give 0",
             allowance_source="statistical, of the direct simulation",
             no_verdict="" if known else "the reference was not computed for this inertia",

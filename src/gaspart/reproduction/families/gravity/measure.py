@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.bins import Grid
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.flow import Grid
 from gaspart.analysis.statistics import jackknife
 from gaspart.reproduction.families.gravity import source
 from gaspart.reproduction.families.shared.columns import (
@@ -34,8 +34,8 @@ from gaspart.theory.gravity import (
     ideal_mean_height,
     lebowitz_percus_verlet,
 )
-from gaspart.theory.potential import excess_chemical_potential
 from gaspart.theory.state import compressibility_factor
+from gaspart.theory.tables import excess_chemical_potential
 
 _BY_BIN = ("temperature_ratio", "packing_fraction", "compressibility", "pressure_ratio")
 _BY_BIN += ("height", "used", "log_ratio", "log_ratio_expected")

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import curve_fit
 
-from gaspart.analysis.bins import Grid
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.flow import Grid
 from gaspart.reproduction.families.shared.columns import field, stretches
 from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.reading import open_trajectory

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaspart.analysis.bins import Grid
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.flow import Grid
 from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import steady_mean
 from gaspart.reproduction.families.shared.runs import runs

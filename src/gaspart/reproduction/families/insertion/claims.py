@@ -9,7 +9,7 @@ from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.claims import PARTICLES
 from gaspart.reproduction.table import Row, Table
-from gaspart.theory.insertion import insertion_saturation_uncertainty
+from gaspart.theory.packing import insertion_saturation_uncertainty
 
 NO_PROGRAM = "the wall excess was fitted to insertions by a program that is not in this repository"
 SOURCE_FRACTION = 0.52

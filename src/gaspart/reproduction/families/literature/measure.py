@@ -13,8 +13,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.correlations import between
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.motion import between
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import combine_estimates, mean_of
 from gaspart.analysis.transport import green_kubo

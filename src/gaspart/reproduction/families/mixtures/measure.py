@@ -14,7 +14,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.mixtures import contact_scales, estimates_of, rate_scales
+from gaspart.analysis.pairs import contact_scales, estimates_of, rate_scales
 from gaspart.analysis.run import Run
 from gaspart.analysis.series import compressibility
 from gaspart.analysis.statistics import average, correlated_mean

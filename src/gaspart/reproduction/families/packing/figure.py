@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from gaspart.rendering import style
 from gaspart.rendering.particles import DrawnParticles, colours_of
 from gaspart.rendering.pictures import picture
-from gaspart.reproduction.claims.captions import concise
+from gaspart.reproduction.claims.table import concise
 from gaspart.reproduction.table import Table
 
 DOTS = 300

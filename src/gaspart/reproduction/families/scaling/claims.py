@@ -86,7 +86,7 @@ def box_count(ds: xr.Dataset) -> list[Claim]:
 
 def _counts(scan: Table) -> list[Claim]:
     """Pair tests (where there is about one a particle) and box visits (everywhere) are those expected."""
-    source = "uniform density, gaspart.theory.partition"
+    source = "uniform density, gaspart.theory.dsmc"
     one = scan[int(np.abs(scan.expected_tests - 1.0).argmin())]
     visits = scan.box_visits / scan.expected_visits
     return [

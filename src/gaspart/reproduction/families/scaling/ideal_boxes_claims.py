@@ -32,7 +32,7 @@ def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
             measured=_work_over_time(gases),
             expected=0.0,
             half_width=0.3,
-            source="(3^d c_test / 2 c_box)^(1/2), gaspart.theory.partition",
+            source="(3^d c_test / 2 c_box)^(1/2), gaspart.theory.dsmc",
             fails_if="something other than pair tests and boxes determines the optimum",
         ),
         *_exponents(Table(ds, "series")),

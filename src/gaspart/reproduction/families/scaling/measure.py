@@ -27,7 +27,7 @@ from gaspart.reproduction.families.shared.timings import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
-from gaspart.theory import partition as theory
+from gaspart.theory import dsmc as theory
 
 
 def naive_scaling(points: list[Point], settings: dict) -> xr.Dataset:

@@ -10,7 +10,7 @@ import xarray as xr
 from gaspart.analysis.statistics import means_of
 from gaspart.reproduction.families.shared.timings import log_ratios, per_particle, ratio_of_jobs
 from gaspart.reproduction.table import entries
-from gaspart.theory.partition import boxes_in_reach, share_of_contacts_in_a_box
+from gaspart.theory.dsmc import boxes_in_reach, share_of_contacts_in_a_box
 
 
 def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:

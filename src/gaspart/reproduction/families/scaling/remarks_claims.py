@@ -20,7 +20,7 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
             measured=Estimate(visits[np.abs(visits - 1.0).argmax()], visits.std(ddof=1)),
             expected=1.0,
             half_width=0.03,
-            source="Steiner's formula, gaspart.theory.partition, without the walls' 1 %",
+            source="Steiner's formula, gaspart.theory.dsmc, without the walls' 1 %",
             fails_if="boxes within reach are left out, or others are searched",
         ),
         Claim(

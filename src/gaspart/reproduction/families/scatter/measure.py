@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from scipy.special import ndtr
 
-from gaspart.analysis.bins import Grid
+from gaspart.analysis.flow import Grid
 from gaspart.reproduction.claims import read
 
 BINS = 10

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaspart.analysis.bins import Grid
+from gaspart.analysis.flow import Grid
 from gaspart.analysis.series import Blocks
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point

@@ -10,7 +10,7 @@ from gaspart.reproduction.table import Row, Table
 from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, Relaxation
 
 ENGINE_TITLES = {"step": "time-stepped", "event": "event-driven"}
-BOLTZMANN = "homogeneous Boltzmann equation from equal speeds (gaspart.theory.homogeneous)"
+BOLTZMANN = "homogeneous Boltzmann equation from equal speeds (gaspart.theory.boltzmann)"
 MONTE_CARLO = "statistical error of the Monte Carlo solution"
 MAXWELL = "Maxwell's distribution (exact)"
 KOLMOGOROV_LIMIT, KOLMOGOROV_SCATTER = 1.818, 0.26

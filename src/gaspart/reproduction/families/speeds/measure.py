@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.bins import Grid
+from gaspart.analysis.flow import Grid
 from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.runs import runs

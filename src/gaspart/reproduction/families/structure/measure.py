@@ -23,7 +23,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
 from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import fit_polynomial, jackknife, means_of
-from gaspart.analysis.waves import admitted, factors, in_shells, shells_of
+from gaspart.analysis.structure_factors import admitted, factors, in_shells, shells_of
 from gaspart.reproduction.families.shared.pressure import series_of
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.structure.potential import chemical_potential

@@ -17,9 +17,9 @@ from gaspart import theory
 from gaspart.accuracy.conditions import even_conditions
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
-from gaspart.engines.asked import Asked
 from gaspart.engines.dsmc.accuracy import boltzmann_error, enskog_error
-from gaspart.engines.dsmc.rates import rates
+from gaspart.engines.dsmc.defaults import rates
+from gaspart.engines.engine import Asked
 from gaspart.reproduction.families.heat.gap import Gap, averages
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.speeds.measure import kurtosis

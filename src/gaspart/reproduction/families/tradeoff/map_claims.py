@@ -114,7 +114,7 @@ def _flows(ds: xr.Dataset) -> list[Claim]:
                     measured=flow[solver] / flow["event"],
                     expected=1.0,
                     half_width=bounds[solver],
-                    source="gaspart.accuracy.candidates: excluded volume, memory, cells, steps",
+                    source="gaspart.accuracy.option: excluded volume, memory, cells, steps",
                     fails_if="a bound leaves out what makes an error",
                 )
                 for solver, name in SOLVERS.items()

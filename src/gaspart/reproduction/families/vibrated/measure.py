@@ -7,8 +7,8 @@ from typing import Any
 
 import xarray as xr
 
-from gaspart.analysis.bins import Grid
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.flow import Grid
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import means_of
 from gaspart.reproduction.families.shared.runs import runs

@@ -16,7 +16,7 @@ RELATIVE_ERROR = 1e-3
 """The largest standard error of a pressure, relative to it, at which a mean of comparisons means anything."""
 THEORY: dict[str, Any] = {
     "source": "bulk equation of state; surfaces, edges and corners of the container to fifth order in the "
-    "density, by cluster integrals (gaspart.theory.clusters); canonical ensemble to first order in 1/N",
+    "density, by cluster integrals (gaspart.theory.film); canonical ensemble to first order in 1/N",
     "allowance_source": "surfaces, edges and corners: a sixth order as large as the larger of the two before",
     "fails_if": "wall collisions are missed or counted twice, or the wrong area, volume or density is taken",
 }

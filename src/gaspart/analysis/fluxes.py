@@ -1,0 +1,358 @@
+"""Heat and tangential momentum that a gas gives to the thermal walls of its container."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.conditions import walled_axis_of
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.flow import per_area
+from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
+from gaspart.analysis.observables import require_defined
+from gaspart.analysis.profiles import Means, with_freedom
+from gaspart.analysis.run import Run, Source, open_run, selected
+from gaspart.analysis.statistics import correlated_mean
+from gaspart.errors import SceneError
+from gaspart.scene.faces import FACES, Open
+from gaspart.scene.scene import Scene
+from gaspart.trajectory.amber import face_names
+
+_BLOCKS = 256
+
+
+def heat_flux(source: Source, start: float | None = None) -> Observable:
+    """Measure the heat flux into each face at a temperature.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        Heat that the face takes per time and per area that centres can reach, (face,), in
+        [energy/(length^(d-1) time)]: positive where the gas warms the wall. Areas are those of
+        `wall_pressure`.
+
+    Raises
+    ------
+    SceneError
+        If no face has a temperature, there are too few frames, or nothing hit these faces.
+
+    Notes
+    -----
+    It is the energy that particles lose there in the frame of the wall: of a wall that slides, the energy
+    that it is given without the work that it does. The mean is that of the steady state: the contributions of
+    the changes of the energy of the gas and of its first moment across the walls, which are bounded, are
+    subtracted (`_corrected`).
+
+    Theory: 0 in equilibrium; between two plates free flight above a Knudsen number of 100, Fourier's law with
+    Enskog's conductivity and temperature jumps below 0.1, and between these an interpolation, good to 8 %
+    (`gaspart.theory.interpolated_flux`); between sliding plates half the work of their stress. With partial
+    accommodation free flight alone.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> faces = {"x_low": gp.Thermal(1.0), "x_high": gp.Thermal(2.0)}
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)], faces=faces)
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.heat_flux(simulation).face.values.tolist()
+    ['x low', 'x high']
+    """
+    with open_run(source, start) as run:
+        require_defined("heat_flux", run.scene)
+        faces = np.array(run.scene.thermal_numbers)
+        heat = _given(run, "wall_energy", "heat_per_area")
+        for number, face in run.scene.sliding_faces:
+            heat[:, number] -= _given(run, "wall_shear", "momentum_per_area")[:, number] @ np.array(
+                face.velocity
+            )
+        found = _steady(run, faces, heat[:, faces], _energies(run))
+        along = {"face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"})}
+        about = described("heat_flux", run, faces)
+        return with_freedom(observable("heat_flux", along, found.values, found.errors, **about), found)
+
+
+def wall_shear(source: Source, start: float | None = None) -> Observable:
+    """Measure the shear stress on each face that draws velocities along itself.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        Momentum along each axis that the face is given per time and per area that centres can touch,
+        (face, component), in [energy/length^d]. NaN across the face, where the `wall_pressure` is.
+
+    Raises
+    ------
+    SceneError
+        If nothing drags faces along themselves, there are too few frames, or nothing hit these faces.
+
+    Notes
+    -----
+    It is measured by the engines that tally it, where a face slides or a force drives the gas along it. The
+    mean is that of the steady state, as of `heat_flux`, by the change of the momentum of the gas.
+
+    Theory: half of the weight of a gas that a force drives along two equal faces, exactly; between plates
+    that slide free flight above a Knudsen number of 100, Enskog's viscosity with slip below 0.1, and between
+    these an interpolation, good to 8 % (`gaspart.theory.interpolated_stress`); with partial accommodation
+    free flight alone.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> faces = {"x_low": gp.Thermal(1.0), "x_high": gp.Thermal(1.0, velocity=(0.0, 1.0))}
+    >>> box = gp.Container((9.0, 9.0), boundary=("wall", "periodic"))
+    >>> scene = gp.Scene(box, [gp.Species(20, 0.2, temperature=1.0)], faces=faces)
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.wall_shear(simulation).estimate.dims
+    ('face', 'component')
+    """
+    with open_run(source, start) as run:
+        require_defined("wall_shear", run.scene)
+        faces = np.array(run.scene.drawing_numbers)
+        axes = np.array([axis for axis in range(run.dimension) if (faces // 2 != axis).any()])
+        given = _given(run, "wall_shear", "momentum_per_area")[:, faces][..., axes]
+        parts = [_steady(run, faces, given[..., n], _momenta(run, axis)) for n, axis in enumerate(axes)]
+        across = faces[:, None] // 2 == axes
+        columns = {key: np.stack([getattr(part, key) for part in parts], axis=1) for key in vars(parts[0])}
+        found = Means(**{key: np.where(across, np.nan, each) for key, each in columns.items()})
+        along = {
+            "face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"}),
+            "component": (np.array(list("xyz"))[axes], {"long_name": "axis along the face"}),
+        }
+        about = described("wall_shear", run, faces, axes)
+        return with_freedom(observable("wall_shear", along, found.values, found.errors, **about), found)
+
+
+def _given(run: Run, name: str, tallied: str) -> np.ndarray:
+    """(T - 1, 2d, ...) what each face is given in each interval per accessible area, see `per_area`. Raises
+    SceneError for frames without the sum of this name."""
+    if name not in run.data:
+        raise SceneError(name, "missing", "the engine does not tally it, or an older version wrote the file")
+    return per_area(run, run.increments(name)[:, : 2 * run.dimension], tallied)
+
+
+def _steady(run: Run, faces: np.ndarray, given: np.ndarray, stored: list[np.ndarray]) -> Means:
+    """(F,) the mean over time of what each face is given, and its error.
+
+    given (T - 1, F): in each interval; stored (T,) each: bounded sums over the gas, by the change of which
+    blocks are corrected. Raises SceneError for too few frames and faces that nothing has hit.
+    """
+    intervals = len(run.time) - 1
+    if intervals < LEAST_INTERVALS:
+        raise SceneError("frames", len(run.time), f"an error needs {LEAST_INTERVALS + 1} or more")
+    if not run.growth("wall_hits")[faces].all():
+        raise SceneError("wall_hits", 0, "nothing hit a thermal wall in the measured part; make a longer run")
+    blocks = min(_BLOCKS, intervals)
+    length = run.block_length(blocks)
+    ends = slice(None, blocks * length + 1, length)
+    grown = given[: blocks * length].reshape(blocks, length, -1).sum(axis=1)
+    rates = grown / np.diff(run.time[ends])[:, None]
+    changes = [np.diff(one[ends]) for one in stored]
+    found = [_corrected(rate, changes) for rate in rates.T]
+    columns = ([getattr(one, name) for one in found] for name in ("value", "error", "freedom"))
+    return Means(*map(np.array, columns))
+
+
+def _corrected(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
+    """The mean of rates (K,) in consecutive blocks, by least squares without what changes (K,) of bounded
+    sums add to them: a gas gives back what it has stored.
+
+    Blocks may be shorter than what a particle remembers, which in free flight is the time that it takes from
+    wall to wall: the error is that of a correlated series.
+    """
+    used = [change / np.abs(change).max() for change in changes if change.any()]
+    design = np.stack([np.ones(len(rates)), *used], axis=1)
+    slopes = np.linalg.lstsq(design, rates, rcond=None)[0][1:]
+    return correlated_mean(rates - design[:, 1:] @ slopes, LEAST_INTERVALS).estimate
+
+
+def _energies(run: Run) -> list[np.ndarray]:
+    """(T,) each: the energy of flight about the mean velocity of the faces, and its first moments across
+    them. None of a file that lacks some particles."""
+    if run.is_subset:
+        return []
+    energy = 0.5 * (_about_faces(run) ** 2).sum(axis=2) * run.masses[run.moving]
+    return _with_moments(run, energy)
+
+
+def _momenta(run: Run, axis: int) -> list[np.ndarray]:
+    """(T,) each: the momentum along an axis about the mean velocity of the faces, and its first moments
+    across them."""
+    if run.is_subset:
+        return []
+    return _with_moments(run, _about_faces(run)[..., axis] * run.masses[run.moving])
+
+
+def _about_faces(run: Run) -> np.ndarray:
+    """(T, M, d) velocities about the mean one of the thermal faces: the same in any frame of reference."""
+    frame = np.zeros(run.dimension)
+    for _, face in run.scene.sliding_faces:
+        frame += np.array(face.velocity) / len(run.scene.thermal_numbers)
+    return np.asarray(run.velocities[:, run.moving] - frame)
+
+
+def _with_moments(run: Run, carried: np.ndarray) -> list[np.ndarray]:
+    """(T,) each: the sum of what particles carry (T, M), and its first moments across the thermal faces,
+    about the middle."""
+    places = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
+    across = sorted({number // 2 for number in run.scene.thermal_numbers})
+    return [carried.sum(axis=1), *((carried * places[..., axis]).sum(axis=1) for axis in across)]
+
+
+# Particles that pass a plane in the container, or an opening of interior walls in it.
+
+
+def particle_flux(
+    source: Source,
+    axis: str | None = None,
+    at: float | None = None,
+    species: int | None = None,
+    start: float | None = None,
+) -> Observable:
+    """Measure the net number of particles that pass a plane across an axis per time.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    axis : {"x", "y", "z"}, optional
+        The axis. Default: the last one with open faces, or else with walls.
+    at : float, [length], optional
+        Position of the plane along the axis. Default: the middle.
+    species : int, optional
+        Only this species, by its number in the scene.
+    start : float, [time], optional
+        Frames before this time are discarded; 0 for a gas that streams out from the start. Default: a quarter
+        of the run.
+
+    Returns
+    -------
+    Observable
+        The flux (component,) along the axis, in [1/time], positive towards larger coordinates.
+
+    Raises
+    ------
+    SceneError
+        If the axis is periodic, which images pass, or another one than that of open faces, the plane is
+        outside the container, the file lacks particles, or there are too few frames.
+
+    Notes
+    -----
+    The flux is the change of the number of particles beyond the plane, exactly, however often each particle
+    has passed between frames: particles that come back do not count, nor do those that come and go through an
+    open face beyond. The plane is that of the whole container; where interior walls lie in it, all pass their
+    openings.
+
+    Theory: 0 in a steady state without interior walls; of free flight through openings of walls in the plane
+    n sqrt(k_B T / 2 pi m) times their area, with the density on both sides.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.particle_flux(simulation, axis="x", at=3.0).estimate.attrs["units"]
+    '1 / time'
+    """
+    with open_run(source, start, varying=True) as run:
+        require_defined("flux", run.scene, axis=axis, at=at, species=species)
+        number = walled_axis_of(run.scene, axis)
+        place = 0.5 * run.scene.container.lengths[number] if at is None else float(at)
+        members = np.flatnonzero(run.moving)[selected(run, species, None)]
+        beyond = (run.positions[:, members, number] > place).sum(axis=1) - _entered_beyond(run, number)
+        if len(beyond) <= LEAST_INTERVALS:
+            raise SceneError("frames", len(beyond), f"an error needs {LEAST_INTERVALS + 1} or more")
+        found = correlated_mean(np.diff(beyond) / np.diff(run.time), LEAST_INTERVALS).estimate
+        along = {"component": (np.array(["xyz"[number]]), {"long_name": "axis"})}
+        about = described("flux", run, number, place, members, beyond)
+        means = Means(*(np.array([each]) for each in (found.value, found.error, found.freedom)))
+        return with_freedom(observable("flux", along, means.values, means.errors, **about), means)
+
+
+def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:
+    """(T,) how many particles more have entered through the upper face of an axis than left; 0 of one that is
+    not open."""
+    upper = 2 * axis + 1
+    if not isinstance(run.scene.faces.get(FACES[upper]), Open):
+        return 0
+    return np.asarray(run.data["entries"].values[:, upper] - run.data["wall_hits"].values[:, upper])
+
+
+# The number of particles in a container with open faces.
+
+
+def particle_numbers(scene: Scene, data: xr.Dataset) -> np.ndarray:
+    """Return the number of particles inside in each frame.
+
+    It is the number at the start, plus all that have entered since, minus those that have left.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    data : Dataset
+        The trajectory.
+
+    Returns
+    -------
+    ndarray, shape (T,)
+        The numbers.
+    """
+    opened = [number for number, _ in scene.faces_of(Open)]
+    moved = data["entries"].values.sum(axis=1) - data["wall_hits"].values[:, opened].sum(axis=1)
+    return np.asarray(scene.count + moved).astype(np.int64)
+
+
+def particle_number(source: Source, start: float | None = None) -> Observable:
+    """Measure the mean number of particles inside a container with open faces.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+
+    Returns
+    -------
+    Observable
+        The mean number in the frames, dimensionless.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no open faces, or there are too few frames.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> gas, reservoir = gp.Species(20, 0.5, temperature=1.0), gp.Open(activity=0.1, temperature=1.0)
+    >>> scene = gp.Scene(
+    ...     gp.Container((16.0, 16.0)), [gas], centres_to_walls=True, faces={"x_low": reservoir}
+    ... )
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(20.0)
+    >>> gp.analysis.particle_number(simulation).estimate.attrs["units"]
+    '1'
+    """
+    with open_run(source, start, varying=True) as run:
+        require_defined("number", run.scene)
+        counts = particle_numbers(run.scene, run.data)
+        return scalar("particle_number", counts[1:].astype(float), run.time, **described("number", run))

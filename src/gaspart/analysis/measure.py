@@ -1,0 +1,497 @@
+"""An observable of a trajectory, by its name, and the part of a run until a time."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+import xarray as xr
+
+from gaspart import analysis
+from gaspart.analysis.flow import FLOW
+from gaspart.analysis.impulses import kept
+from gaspart.analysis.observable import Observable, scalar
+from gaspart.analysis.observables import OBSERVABLES, having, known, require_selection, selecting
+from gaspart.analysis.run import Run, Source, open_run, selected
+from gaspart.analysis.statistics import means_of
+from gaspart.engines import engine_from_dict, engine_to_dict
+from gaspart.errors import SceneError, shown
+from gaspart.scene.scene import Scene
+from gaspart.simulation import Simulation
+from gaspart.state.optional_tallies import ImpulseTally
+from gaspart.state.state import by_number
+from gaspart.trajectory.reading import open_trajectory
+from gaspart.yaml_text import parse_yaml
+
+if TYPE_CHECKING:
+    from gaspart.analysis.observable import Observable
+    from gaspart.analysis.run import Source
+
+
+@overload
+def measure(
+    source: Source, observable: str, start: float | None = ..., end: float | None = ..., **selection: Any
+) -> Observable: ...
+
+
+@overload
+def measure(
+    source: Source,
+    observable: Sequence[str],
+    start: float | None = ...,
+    end: float | None = ...,
+    **selection: Any,
+) -> dict[str, Observable]: ...
+
+
+def measure(
+    source: Source,
+    observable: str | Sequence[str],
+    start: float | None = None,
+    end: float | None = None,
+    **selection: Any,
+) -> Observable | dict[str, Observable]:
+    """Measure an observable of a trajectory or a simulation, or several, by name.
+
+    Parameters
+    ----------
+    source : path, xarray.Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    observable : str or sequence of str
+        Names as of `gaspart measure`, such as "pressure"; aliases are accepted, such as "viscosity".
+    start : float, [time], optional
+        Frames before this time are discarded. Default: the first quarter of the frames.
+    end : float, [time], optional
+        Frames after this time are discarded. Default: none.
+    **selection
+        Selections that the observables have, such as species=1 or axis="x".
+
+    Returns
+    -------
+    Observable or dict
+        The measured quantity with its uncertainty; of several names {name: Observable}.
+
+    Raises
+    ------
+    SceneError
+        If a name is unknown, the observable does not have a selection, fewer than two frames are left,
+        or the scene or the run does not have what the observable needs.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(
+    ...     container=gp.Container(lengths=(10.0, 10.0), boundary="periodic"),
+    ...     species=[gp.Species(count=32, radius=0.5, temperature=1.0, exact_temperature=True)],
+    ... )
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> measured = gp.measure(simulation, ["Z", "collision_rate"])
+    >>> list(measured)
+    ['Z', 'collision_rate']
+    """
+    if not isinstance(observable, str):
+        names = [known(name) for name in observable]
+        return {name: measure(source, name, start, end, **selection) for name in names}
+    name = known(observable)
+    one = OBSERVABLES[name]
+    require_selection(name, selection)
+    function = getattr(analysis, one.function)
+    with until_time(source, end, one.needs == "pairs") as part:
+        found: Observable = function(part, start=start, **one.arguments, **selection)
+    return found
+
+
+@contextmanager
+def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
+    """The frames of a source until a time, whatever it is; itself if the time is None. pairs: whether those
+    of a simulation count the collisions of each pair of species. Raises SceneError for fewer than two."""
+    if end is None:
+        yield source
+        return
+    from gaspart.analysis.run import repeated
+    from gaspart.keys.values import number
+    from gaspart.simulation import Simulation
+    from gaspart.trajectory.reading import open_trajectory
+
+    if isinstance(source, Simulation):
+        source = repeated(source, pairs)
+    with open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source) as data:
+        time = data["time"].values
+        last = number("end", end, "must be a finite number")
+        count = int((time <= last + 1e-9 * abs(last)).sum())
+        if count < 2:
+            longest = float(time[-1]) if len(time) else 0.0
+            raise SceneError("end", end, f"leaves {count} frames of a run until time {longest:g}")
+        yield data.isel(frame=slice(count))
+
+
+# A table of the properties of each species of a run.
+
+
+def by_species(source: Source, start: float | None = None, about: str = FLOW) -> xr.Dataset:
+    """Measure the properties of each species that moves.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+    about : {"flow", "rest"}, default "flow"
+        Frame of reference. "flow": velocities and paths are about the local flow where the gas flows,
+        otherwise about the centre of mass along axes on which the total momentum is conserved (see
+        `gaspart.analysis.flow`). "rest": in the frame of the container, without a correction.
+
+    Returns
+    -------
+    Dataset
+        Properties (species,) with standard uncertainties (suffix _error). The coordinate `species` has the
+        numbers of the scene; single particles have the number after the last. Variables:
+
+        - `count`, number of moving particles;
+        - `temperature` [energy], twice the mean kinetic energy of flight per degree of freedom;
+        - `mean_speed` [length/time];
+        - `D` [length^2/time], and the curves `msd` and `vacf` (species, lag), as of `gaspart measure` with a
+          species. NaN where a species cannot have one, such as a D between walls, for the reason in the
+          attribute `not_measured`, and where it has fewer lags than others.
+
+    Raises
+    ------
+    SceneError
+        If nothing moves, or there are too few frames.
+
+    Notes
+    -----
+    About the centre of mass the mean square of a particle of mass m is 1 - m / M of its value without this
+    condition, M the mass of all whose mean is subtracted (exact in equilibrium). Temperatures and speeds are
+    corrected for this. `to_dataframe` of the variables without lags is a table with a row for each species.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.by_species(simulation)["count"].values.tolist()
+    [20]
+    """
+    opened = open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source)
+    with opened as run_of_all:
+        with open_run(run_of_all, start, about=about) as run:
+            kinds = [int(kind) for kind in np.unique(run.species[run.moving])]
+            if not kinds:
+                raise SceneError("species", [], "none of the particles moves")
+            counts = [int((run.species[run.moving] == kind).sum()) for kind in kinds]
+            rows: list[dict[str, Observable]] = [_of_velocities(run, kind) for kind in kinds]
+        missing = {}
+        for kind, row in zip(kinds, rows, strict=True):
+            for name in _of_motion():
+                try:
+                    row[name] = measure(run_of_all, name, start, species=kind, about=about)
+                except SceneError as error:
+                    missing[f"{name} of species {kind}"] = error.rule
+    table = xr.Dataset(coords={"species": ("species", kinds, {"long_name": "number of the species"})})
+    table["count"] = ("species", counts, {"units": "1", "long_name": "moving particles"})
+    for name in ("temperature", "mean_speed", *_of_motion()):
+        table = table.merge(
+            _column(name, [row.get(name) for row in rows]), join="outer", compat="no_conflicts"
+        )
+    reasons = "; ".join(f"{what}: {reason}" for what, reason in missing.items())
+    return table.assign_attrs(not_measured=reasons)
+
+
+def _of_motion() -> tuple[str, ...]:
+    """The observables of the motion of particles that are of a species too."""
+    return tuple(name for name in selecting("species") if name in having(scatter="particles"))
+
+
+def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
+    """The temperature and the mean speed of the moving particles of a species."""
+    chosen, masses = selected(run, kind, None), run.masses[run.moving]
+    shape = run.motion.velocities.shape
+    velocities = run.motion.velocities[:, chosen]
+    free = np.broadcast_to(run.motion.freedom, shape)[:, chosen]
+    if not free.any():
+        raise SceneError("count", len(masses), "a single particle keeps its velocity")
+    energies = np.einsum("tnd,tnd,n->t", velocities, velocities, masses[chosen])
+    energies /= free.sum(axis=(1, 2)).mean()
+    known = (free > 0.0).all(axis=2)  # not alone in its cell of a flow
+    squares = np.divide(velocities**2, free, out=np.zeros(free.shape), where=free > 0.0).sum(axis=2)
+    speeds = (np.sqrt(squares) * known).sum(axis=1) / known.sum(axis=1).mean()
+    edges = np.append(run.time, 2.0 * run.time[-1] - run.time[-2])
+    about: dict[str, Any] = {"units": "energy", "long_name": "temperature"}
+    temperature = scalar("temperature", energies, edges, **about)
+    about = {"units": "length / time", "long_name": "mean speed"}
+    return {
+        "temperature": temperature,
+        "mean_speed": scalar("mean_speed", speeds, edges, **about),
+    }
+
+
+def _column(name: str, found: list[Observable | None]) -> xr.Dataset:
+    """One observable of all species with its uncertainty; nothing if it was measured of none."""
+    known = [one for one in found if one is not None]
+    if not known:
+        return xr.Dataset()
+    blank = xr.full_like(known[0].estimate, np.nan)
+    parts = {
+        name: [blank if one is None else one.estimate for one in found],
+        f"{name}_error": [blank if one is None else one.error for one in found],
+    }
+    columns = {}
+    for key, values in parts.items():
+        plain = [value.drop_vars("time", errors="ignore") for value in values]
+        column = xr.concat(plain, "species", join="outer", compat="equals")  # few particles have fewer lags
+        columns[key] = column.rename(key).assign_attrs(values[0].attrs)
+    columns[name].attrs.update(known[0].estimate.attrs)
+    columns[f"{name}_error"].attrs.update(known[0].error.attrs)
+    return xr.Dataset(columns)
+
+
+# Replicas: an observable of several independent runs of one scene, with the scatter of the runs.
+
+
+def replicas(
+    name: str,
+    sources: Sequence[Source],
+    start: float | None = None,
+    end: float | None = None,
+    **selection: Any,
+) -> Observable:
+    """Measure an observable, by its name, as the mean over independent runs of one scene.
+
+    Parameters
+    ----------
+    name : str
+        Name of the observable as of `gaspart measure`.
+    sources : sequence of str, Path, Dataset or Simulation
+        At least two runs of different seeds or initial states: trajectories, by their paths or open, or
+        simulations.
+    start : float, [time], optional
+        Frames before this time are discarded, as of the observable's function.
+    end : float, [time], optional
+        Frames after this time are discarded. Default: none.
+    **selection
+        Selections of the observable's function.
+
+    Returns
+    -------
+    Observable
+        The mean with its uncertainty. The variable with the suffix _replicas has the value of each run,
+        (replica, ...). Theory is the mean of the runs' theories.
+
+    Raises
+    ------
+    SceneError
+        If there are fewer than two runs; if scenes or engines differ (with the first difference); if two runs
+        are the same bit for bit (of one initial state and one seed, or of one initial state in a scene that
+        draws nothing afterwards); if curves are at different positions, as densities in the bins of different
+        impulses that runs have stored; and as the observable's function does.
+
+    Notes
+    -----
+    The uncertainty is the standard error of the mean from the scatter of the runs. It needs no assumption
+    about correlations within a run. It has one degree of freedom less than there are runs (`freedom`).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
+    >>> runs = [gp.Simulation(scene, seed=seed) for seed in (1, 2)]
+    >>> for run in runs:
+    ...     run.advance(10.0)
+    >>> gp.analysis.replicas("Z", runs)["compressibility_factor_replicas"].sizes["replica"]
+    2
+    """
+    if isinstance(sources, str | Path | Simulation | xr.Dataset) or len(sources) < 2:
+        raise SceneError("sources", sources, "must be a list of two runs or more")
+    found: list[Observable] = []
+    recipes: list[_Recipe] = []
+    for number, source in enumerate(sources, 1):
+        with _opened(source) as run:
+            recipe = _recipe(run, str(source) if isinstance(source, str | Path) else f"run {number}")
+            _check_replica(recipe, recipes)
+            recipes.append(recipe)
+            found.append(measure(run, name, start, end, **selection))
+    if OBSERVABLES[name].ends:
+        found = _in_joint_bins(name, sources, found, start, end)
+    return _mean(found, recipes)
+
+
+def _opened(source: Source) -> AbstractContextManager[xr.Dataset | Simulation]:
+    """Return a context with an open trajectory or a simulation."""
+    return open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source)
+
+
+def _in_joint_bins(
+    name: str, sources: Sequence[Source], found: list[Observable], start: float | None, end: float | None
+) -> list[Observable]:
+    """Measure an observable again in the widest of the bins that follow from each run."""
+    declared = OBSERVABLES[name]
+    middles = [one[declared.along[-1]].values for one in found]
+    widest = max(float(middle[-1] + 0.5 * (middle[1] - middle[0])) for middle in middles)
+    function, again = getattr(analysis, declared.function), []
+    for source in sources:
+        with _opened(source) as run, until_time(run, end) as part:
+            again.append(function(part, start=start, **declared.arguments, **{declared.ends: widest}))
+    return again
+
+
+@dataclass(frozen=True)
+class _Recipe:
+    """What a run was made from, and what it has become. name: of the run, for its user; settings: its scene
+    and engine; seed; draws: whether this matters after the start; times: of its states, all until the last
+    one if `every`; state: the bits of that at a time, as a file has them; impulses: what it has kept of
+    them."""
+
+    name: str
+    settings: dict[str, Any]
+    seed: str
+    draws: bool
+    times: np.ndarray
+    every: bool
+    state: Callable[[float], bytes]
+    impulses: str
+
+
+def _recipe(run: Any, name: str) -> _Recipe:
+    """The recipe of an open trajectory or a simulation."""
+    if isinstance(run, Simulation):
+        settings = {"scene": run.scene.to_dict(), "engine": engine_to_dict(run.engine)}
+        times = np.array([0.0, run.time])
+        draws, state = run.engine.draws(run.scene), partial(_simulated, run)
+        tally = next((one for one in run.tallies if isinstance(one, ImpulseTally)), None)
+        return _Recipe(name, settings, str(run.seed), draws, times, True, state, _named(tally))
+    if not isinstance(run, xr.Dataset) or not {"scene", "engine", "seed"} <= set(run.attrs):
+        raise SceneError("sources", type(run).__name__, "must be trajectories, their paths or simulations")
+    settings = {"scene": parse_yaml(run.attrs["scene"]), "engine": json.loads(run.attrs["engine"])}
+    draws = engine_from_dict(settings["engine"]).draws(Scene.from_dict(settings["scene"]))
+    frames = {one: run[one].values for one in ("time", "coordinates", "velocities") if one in run}
+    stored = partial(_stored, frames)
+    seed, impulses = str(run.attrs["seed"]), _named(kept(run))
+    return _Recipe(name, settings, seed, draws, frames["time"], False, stored, impulses)
+
+
+def _named(tally: ImpulseTally | None) -> str:
+    """What a run has kept of impulses, as its user asked for it."""
+    return "none" if tally is None else tally.to_text()
+
+
+def _stored(frames: dict[str, np.ndarray], time: float) -> bytes:
+    """The state of a trajectory in the frame at a time."""
+    number = int(np.searchsorted(frames["time"], time))
+    return _bits(*(frames[one][number] for one in ("coordinates", "velocities") if one in frames))
+
+
+def _simulated(simulation: Simulation, time: float) -> bytes:
+    """The state of a simulation at a time until the present one, for which it is run again."""
+    if time < simulation.time:
+        simulation = simulation.again()
+        simulation.advance(until=time)
+    state, capacity = simulation.state, simulation.scene.capacity
+    return _bits(*(by_number(state, values, capacity) for values in (state.positions, state.velocities)))
+
+
+def _bits(*vectors: np.ndarray) -> bytes:
+    """Of positions and velocities (N, d), in single precision."""
+    return np.stack(vectors).astype(np.float32).tobytes()
+
+
+def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
+    """Raise SceneError unless a run is a replica of others: the same but for the seed or the first state."""
+    for other in others:
+        if difference := _difference(recipe.settings, other.settings):
+            key, one, two = difference
+            rule = f"is {shown(two)} in {other.name}: replicas differ in nothing but seed and first state"
+            raise SceneError(key, one, rule, recipe.name)
+        time = _last_common(recipe, other)
+        if time is None or recipe.state(0.0) != other.state(0.0):
+            continue
+        drawn = recipe.draws and recipe.seed != other.seed  # decides where no later time is common
+        if not drawn if time == 0.0 else recipe.state(time) == other.state(time):
+            rule = f"and the first state give the same run, bit for bit, as {other.name}: no scatter"
+            raise SceneError("seed", recipe.seed, rule, recipe.name)
+
+
+def _last_common(one: _Recipe, other: _Recipe) -> float | None:
+    """The last time at which both have a state; None if they have not even the first one."""
+    if one.every and other.every:
+        return float(min(one.times[-1], other.times[-1]))
+    if one.every or other.every:
+        stored, end = (other, one.times[-1]) if one.every else (one, other.times[-1])
+        common = stored.times[stored.times <= end]
+    else:
+        common = np.intersect1d(one.times, other.times)
+    return float(common[-1]) if common.size and common[0] == 0.0 else None
+
+
+def _difference(one: Any, two: Any, key: str = "") -> tuple[str, Any, Any] | None:
+    """The first difference of two trees, as its dotted key and both values; None if they are equal."""
+    if isinstance(one, dict) and isinstance(two, dict):
+        pairs = {str(name): (one.get(name), two.get(name)) for name in {**one, **two}}
+        form = f"{key}.{{}}" if key else "{}"
+    elif isinstance(one, list | tuple) and isinstance(two, list | tuple) and len(one) == len(two):
+        pairs = {str(n): pair for n, pair in enumerate(zip(one, two, strict=True))}
+        form = f"{key}[{{}}]"
+    else:
+        return None if one == two else (key, one, two)
+    found = (_difference(*pair, form.format(name)) for name, pair in pairs.items())
+    return next((difference for difference in found if difference), None)
+
+
+def _other_coordinate(one: Observable, other: Observable, name: str, other_name: str) -> SceneError:
+    """Return the error of two results of one observable with different coordinates, which it names."""
+    for dim in map(str, one.estimate.dims):
+        first, second = one[dim].values, other[dim].values
+        if not np.array_equal(first, second):
+            rule = (
+                f"{_described(first)} in {name}: all runs need the same values of it, as with one "
+                "sample_interval and duration (--start, --end)"
+            )
+            return SceneError(dim, _described(second), rule, other_name)
+    raise AssertionError("equal coordinates")
+
+
+def _described(values: np.ndarray) -> str:
+    """Return a coordinate in words."""
+    if values.dtype.kind in "US" or not values.size:
+        return ", ".join(map(str, values)) or "none"
+    return f"{values.size} values from {values[0]:.6g} to {values[-1]:.6g}"
+
+
+def _mean(found: list[Observable], recipes: list[_Recipe]) -> Observable:
+    """The mean of independent measurements of one observable, of runs with these recipes."""
+    first, quantity = found[0], str(found[0].attrs["quantity"])
+    dims = first.estimate.dims
+    for one, recipe in zip(found[1:], recipes[1:], strict=True):
+        same = one.estimate.shape == first.estimate.shape
+        if not same or any(not np.array_equal(one[dim], first[dim]) for dim in dims if dim in first.coords):
+            if recipe.impulses != recipes[0].impulses:
+                rule = f"are {recipes[0].impulses} in {recipes[0].name}: {quantity} is in the bins of these"
+                raise SceneError("impulses", recipe.impulses, rule, recipe.name)
+            raise _other_coordinate(first, one, recipes[0].name, recipe.name)
+    each = np.array([one.estimate.values for one in found])
+    values, errors = means_of(each)
+    parts = {"": values, "_error": errors}
+    if all(one.theory is not None for one in found):
+        for part in ("_theory", "_theory_error"):
+            parts[part] = np.mean([one[quantity + part].values for one in found], axis=0)
+    coords = {dim: first.coords[dim] for dim in dims if dim in first.coords}
+    data = {key: (dims, part, first[quantity + key].attrs) for key, part in parts.items()}
+    attrs = {key: text for key, text in first.attrs.items() if key in ("quantity", "source")}
+    result = Observable({quantity + key: value for key, value in data.items()}, coords, attrs)
+    result[f"{quantity}_replicas"] = (("replica", *dims), each, first.estimate.attrs)
+    result.attrs["freedom"] = len(found) - 1
+    if not dims:  # what a plot of a scalar shows
+        about = {"long_name": "replica", "units": "1"}
+        result = result.assign_coords(time=("time", np.arange(len(found)), about))
+        result["stretches"] = ("time", each, {**first.estimate.attrs, "long_name": "replicas"})
+    return result

@@ -1,0 +1,219 @@
+"""The sums of the stress tensor and the heat flux of a scene under the event-driven engine."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gaspart.engines.features.part import TallyPart
+from gaspart.kernels.event import impulses as kernels
+from gaspart.kernels.event.impulses import MEETING, OTHERS, PairImpulses
+from gaspart.kernels.event.simd import PLACES
+from gaspart.kernels.event.stress import Stress, add_flights, add_sheared_flights
+from gaspart.kernels.memory import WIDTH
+from gaspart.kernels.model import Model
+from gaspart.kernels.physics.flight import advance_all
+from gaspart.kernels.physics.sums import values
+from gaspart.scene.faces import FLOW, GRADIENT
+from gaspart.scene.geometry import ball_volume
+from gaspart.scene.impulses import row_count
+from gaspart.scene.scene import Scene
+from gaspart.state.optional_tallies import ImpulseTally, OptionalTally, PairImpulseTally
+from gaspart.state.state import State, drift_of
+from gaspart.state.tally import tallied_fluxes
+
+
+class StressPart(TallyPart):
+    """The stress tensor and the heat flux of a gas without walls.
+
+    flights (N,): the particles, each with a velocity that holds at any time until its next contact; drift
+    (d,): the velocity of their centre of mass.
+    """
+
+    kernel: Stress
+
+    def __init__(self, flights: np.ndarray, model: Model, unit_mass: float, drift: np.ndarray) -> None:
+        self._flights, self._unit_mass = flights, unit_mass
+        self._masses = model.space, model.masses, model.law
+        self._drift, d = drift, len(drift)
+        sums = np.zeros((2 * d * d + d, 2))
+        super().__init__("stress", Stress(sums, np.zeros((2, d + 1)), drift.copy()), {"stress": sums})
+
+    def end_epoch(self, length: float, start: float) -> None:
+        """Add what the particles have carried in the epoch."""
+        add_flights(self._flights, length, *self._masses, self.kernel)
+
+    def reset(self, clock: float) -> None:
+        """Begin to count from zero."""
+        self.kernel.sums[...] = 0.0
+        add_flights(self._flights, -clock, *self._masses, self.kernel)
+
+    def read(self, clock: float) -> np.ndarray:
+        """(2 d^2 + d,) the sums until this time on the clocks of the epoch."""
+        total = self.kernel._replace(sums=self.kernel.sums.copy())
+        add_flights(self._flights, clock, *self._masses, total)
+        return values(total.sums) * self._unit_mass
+
+    def counts(self, clock: float) -> dict[str, Any]:
+        """The sums, by the fields of `Tally`."""
+        return tallied_fluxes(self.read(clock), self._drift)
+
+
+class ShearedStressPart(StressPart):
+    """The stress tensor and the heat flux of a sheared gas. Velocities relative to the flow change in flight,
+    so that each flight counts from its clock on."""
+
+    def __init__(self, flights: np.ndarray, model: Model, unit_mass: float, drift: np.ndarray) -> None:
+        super().__init__(flights, model, unit_mass, drift)
+        self._model = model
+
+    def begin_epoch(self, length: float, start: float, model: Model) -> Model:
+        """Set how fast the centre of mass moves about the flow: across it at one speed, and so along it less
+        and less."""
+        assert model.shear is not None  # or there were no such part
+        across = self._drift[GRADIENT]
+        self.kernel.drift[FLOW] = self._drift[FLOW] - model.shear.rate * across * start
+        return model
+
+    def close_epoch(self, length: float) -> None:
+        """Add what the particles have carried until the end of the epoch."""
+        add_sheared_flights(self._flights, length, 1.0, self._model, self.kernel)
+
+    def end_epoch(self, length: float, start: float) -> None:
+        """Nothing: the flights begin anew."""
+
+    def reset(self, clock: float) -> None:
+        """Begin to count from zero."""
+        self.kernel.sums[...] = 0.0
+        add_sheared_flights(self._flights, clock, -1.0, self._model, self.kernel)
+
+    def read(self, clock: float) -> np.ndarray:
+        """(2 d^2 + d,) the sums until this time on the clocks of the epoch."""
+        total = self.kernel._replace(sums=self.kernel.sums.copy())
+        add_sheared_flights(self._flights, clock, 1.0, self._model, total)
+        return values(total.sums) * self._unit_mass
+
+
+def stress_part(
+    asked: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
+) -> StressPart:
+    """The part for a gas that is sheared or not, which is in this `state` at time 0."""
+    kind = StressPart if model.shear is None else ShearedStressPart
+    return kind(flights, model, unit_mass, drift_of(scene, state))
+
+
+# The momentum that particles carry through planes across an axis, from the impulses that they receive.
+
+
+def rows_of(scene: Scene) -> np.ndarray:
+    """(N,) the row of each particle: the number of its species; single particles have the number after the
+    last, and are the first particles."""
+    counts = [len(scene.particles), *(kind.count for kind in scene.species)]
+    return np.repeat([len(scene.species), *range(len(scene.species))], counts)
+
+
+class ImpulsesPart(TallyPart):
+    """What is tallied of them: the momentum below each plane at the last reset and all impulses since then,
+    of which that below at present is taken off when it is read.
+
+    flights (N,): the particles, each at its own clock.
+    """
+
+    kernel: kernels.Impulses
+
+    def __init__(
+        self, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, axis: int, bins: int
+    ) -> None:
+        self._flights, self._unit_mass = flights, unit_mass
+        self._model = model._replace(faces=None, walls=None, oversized=None)
+        rows, per_length = row_count(scene), bins / scene.container.lengths[axis]
+        sums = np.zeros((rows, bins + 1))
+        row = rows_of(scene) if rows > 1 else None
+        super().__init__("impulses", kernels.Impulses(sums, axis, per_length, row), {"impulses": sums})
+
+    def _add_momenta(self, clock: float, sign: float, sums: np.ndarray) -> None:
+        """Add `sign` times the momenta of all particles at this time on the clocks of the epoch."""
+        flights, model = self._flights.copy(), self._model
+        advance_all(flights, clock, model.space, model.gravity)
+        kernels.add_momenta(flights, sign, model, self.kernel._replace(sums=sums))
+
+    def reset(self, clock: float) -> None:
+        """Begin to count from zero."""
+        self.kernel.sums[...] = 0.0
+        self._add_momenta(clock, 1.0, self.kernel.sums)
+
+    def read(self, clock: float) -> np.ndarray:
+        """(species, bins) the momentum that has flown until this time on the clocks of the epoch."""
+        sums = self.kernel.sums.copy()
+        self._add_momenta(clock, -1.0, sums)
+        return np.asarray(self._unit_mass * np.cumsum(sums, axis=1)[:, :-1])
+
+    def counts(self, clock: float) -> dict[str, Any]:
+        """The same, by the field of `Tally`."""
+        return {"momentum_flux_sum": self.read(clock)}
+
+
+def impulses_part(
+    asked: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
+) -> ImpulsesPart:
+    """The part of an `ImpulseTally`."""
+    assert isinstance(asked, ImpulseTally)
+    return ImpulsesPart(flights, model, unit_mass, scene, "xyz".index(asked.axis), asked.bins)
+
+
+# The momentum that pairs gain along their separation, from the impulses of contacts.
+
+
+_FINEST = 2.0**-27
+"""The unit of whole numbers, in what a thermal momentum gives to a pair at the smallest diameter: a sum holds
+2^36 of these."""
+
+
+class PairImpulsesPart(TallyPart):
+    """What is tallied of them, in whole numbers. unit: of these, in that of `Tally`."""
+
+    kernel: PairImpulses
+
+    def __init__(self, kernel: PairImpulses, unit: float) -> None:
+        super().__init__("pair_impulses", kernel, {"pair_impulses": kernel.sums})
+        self._units = np.array([[unit], [unit / kernel.share]])
+
+    def reset(self, clock: float) -> None:
+        """Begin to count from zero."""
+        self.kernel.sums[...] = 0
+
+    def read(self, clock: float) -> np.ndarray:
+        """(2, shells) k_B T g(r) times the time, of the pairs that collide and of the others."""
+        return np.asarray(self._units * np.cumsum(self.kernel.sums, axis=1)[:, :-1])
+
+    def counts(self, clock: float) -> dict[str, Any]:
+        """The same, by the fields of `Tally`."""
+        found = self.read(clock)
+        return {"contact_impulse_sum": found[MEETING], "other_impulse_sum": found[OTHERS]}
+
+
+def pair_impulses_part(
+    asked: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
+) -> PairImpulsesPart:
+    """The part of a `PairImpulseTally`."""
+    assert isinstance(asked, PairImpulseTally)
+    d, n = scene.dimension, scene.count
+    momentum = math.sqrt(2.0 * state.kinetic_energy / n * float(state.masses.max())) / unit_mass
+    largest = momentum / (2.0 * scene.smallest_radius) ** (d - 1)
+    per_unit = 2.0 ** -round(math.log2(largest * _FINEST)) if largest > 0.0 else 1.0
+    per_volume = 1.0 / np.diff(np.arange(asked.shells + 1.0) ** d)
+    kernel = PairImpulses(
+        sums=np.zeros((2, asked.shells + 1), np.int64),
+        impulse=np.zeros(d),
+        furthest=float(asked.furthest),
+        per_length=asked.shells / asked.furthest,
+        per_volume=per_volume,
+        per_unit=per_unit,
+        share=float(asked.share),
+        listed=np.zeros(n + PLACES + WIDTH, np.uint32),
+        found=np.zeros((2, WIDTH)),
+    )
+    pairs = 0.5 * n * (n - 1) * d * ball_volume(d)  # per volume and distance^(d - 1), if independent
+    return PairImpulsesPart(kernel, unit_mass * scene.container.volume / (pairs * per_unit))

@@ -1,0 +1,346 @@
+"""How many independent samples a trajectory holds: from the motion of its own particles, whatever made it.
+
+Velocities change by collisions, positions by flights. So the first are judged on a clock of collisions, the
+second by the way that particles have moved; neither needs times, nor a law of motion.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from gaspart import theory
+from gaspart.analysis.bulk import EXACT, collision_rate
+from gaspart.analysis.diffusion import linear_lags, settled_slope
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.expected.transport import diffusion_in_cube
+from gaspart.analysis.statistics import histogram_chi_square, mean_of
+from gaspart.inspection.frames import Frames
+from gaspart.inspection.verdict import Check, compared
+from gaspart.scene.gas import Gas
+from gaspart.scene.geometry import ball_volume
+
+UNEVEN = 20.0
+"""Power of a long wave, 1 on average if particles are independent, from which on a gas is not uniform: by
+chance once in 1e8."""
+_CHANGED = 0.05  # of the root-mean-square speed, from which on a velocity has changed
+
+
+def collided(frames: Frames) -> np.ndarray:
+    """(T,) collisions of a particle since the first frame, or fewer: a lower bound.
+
+    From frame to frame it is the smaller of two numbers: -ln of the fraction of particles whose velocity has
+    not changed (reflections at walls apart), and -(d/2) ln of the correlation of velocities, which falls by
+    exp(-2s/d) in s collisions. The first is deceived by a thermostat, which changes all velocities a
+    little, the second by walls.
+    """
+    velocities = frames.velocities
+    assert velocities is not None, "requires velocities"
+    square = (velocities**2).sum(axis=(1, 2))
+    least = 0.5 / frames.count
+    small = np.maximum(_CHANGED**2 * square / frames.count, np.finfo(float).tiny)
+    reflected = np.where(frames.periodic, velocities, np.abs(velocities))
+    changed = ((reflected[1:] - reflected[:-1]) ** 2).sum(axis=2) > small[1:, None]
+    correlation = (velocities[1:] * velocities[:-1]).sum(axis=(1, 2))
+    correlation /= np.maximum(np.sqrt(square[1:] * square[:-1]), np.finfo(float).tiny)
+    unhit = -np.log(np.clip(1.0 - changed.mean(axis=1), least, 1.0))
+    kept = -0.5 * frames.dimension * np.log(np.clip(correlation, least, 1.0))
+    return np.concatenate([[0.0], np.cumsum(np.minimum(unhit, kept))]) + 0.0  # no -0
+
+
+def independent(times: np.ndarray, rate: float) -> float:
+    """Number of independent samples that a mean over frames at `times` is worth, for a property whose
+    correlation decays as exp(-rate t): 1 / mean of exp(-rate |t_i - t_j|) over all pairs i, j."""
+    total, before = 0.0, 0.0  # sum over earlier frames of their correlation with this one
+    for decay in np.exp(-rate * np.diff(times, prepend=times[0])):
+        before *= decay
+        total += 1.0 + 2.0 * before
+        before += 1.0
+    return len(times) ** 2 / total
+
+
+def steps(frames: Frames) -> np.ndarray:
+    """(T - 1, N, d) displacements from frame to frame, by nearest images."""
+    apart = np.diff(frames.positions, axis=0)
+    return apart - np.where(frames.periodic, frames.lengths * np.round(apart / frames.lengths), 0.0)
+
+
+def path(frames: Frames) -> np.ndarray:
+    """(T, N, d) way of each particle since the first frame, about the centre of mass where
+    nothing but particles gives it momentum."""
+    way = np.concatenate([np.zeros_like(frames.positions[:1]), np.cumsum(steps(frames), axis=0)])
+    return way - np.where(frames.periodic, way.mean(axis=1, keepdims=True), 0.0)
+
+
+def decorrelated_frames(way: np.ndarray, distance: float, first: int = 0) -> list[int]:
+    """Frames, from `first` on, between which the particles have moved by a root mean square of `distance` or
+    more, one after the other."""
+    chosen = [first]
+    for n in range(first + 1, len(way)):
+        if ((way[n] - way[chosen[-1]]) ** 2).sum(axis=1).mean() >= distance**2:
+            chosen.append(n)
+    return chosen
+
+
+def first_relaxed_frame(way: np.ndarray, distance: float) -> int | None:
+    """The first frame until which particles have moved by a root mean square of `distance`, or None."""
+    far = np.flatnonzero((way**2).sum(axis=2).mean(axis=1) >= distance**2)
+    return int(far[0]) if far.size else None
+
+
+def density_modulation(frames: Frames, n: int, of: np.ndarray | None = None) -> float:
+    """The largest power of the two longest waves along each axis, of the particles' density in frame n or,
+    with `of` (N,), of that property about its mean: about 1 if it does not depend on the place."""
+    weights = np.ones(frames.count) if of is None else of - of.mean()
+    total = float((weights**2).sum())
+    if total == 0.0:
+        return 0.0
+    largest = 0.0
+    for x, side, periodic in zip(frames.positions[n].T, frames.lengths, frames.periodic, strict=True):
+        phases = np.pi * np.outer((2.0, 4.0) if periodic else (1.0, 2.0), x / side)
+        powers = (np.cos(phases) @ weights) ** 2
+        powers = powers + (np.sin(phases) @ weights) ** 2 if periodic else 2.0 * powers
+        largest = max(largest, float(powers.max()))
+    return largest / total
+
+
+# Checks of speeds: Maxwell's distribution, and its kurtosis, once collisions have brought it about.
+
+
+SPEEDS = "speed law", "kurtosis of speeds"
+"""Names of the checks of speeds."""
+RESIDUE = 0.25
+"""Deviation of the kurtosis that may remain from the initial state, over its scatter in one frame."""
+RARE = 1e-4
+"""Probability below which the check of the distribution fails."""
+_MOST_SKEWED = 1.0  # skewness of a mean whose probability is known well enough
+
+
+def why_not_speeds(frames: Frames) -> str | None:
+    """The reason why speeds cannot be checked; None if they can."""
+    if frames.velocities is None:
+        return frames.no_velocities
+    if not np.any(frames.velocities):
+        return "all velocities are 0"
+    if not np.isfinite(frames.velocities).all():
+        return "not all velocities are finite"
+    if frames.gas is None:
+        return "particles differ, or are moved by more than elastic contacts"
+    if frames.part:
+        return "the file has some of the particles only"
+    if frames.count < 2:
+        return "one particle has no distribution"
+    return None
+
+
+def judge_speeds(frames: Frames) -> list[Check]:
+    """Checks of the distribution of speeds in the last frame, and of its kurtosis in all relaxed ones.
+
+    The clock is that of `samples.collided`. A deviation of the kurtosis decays by its slowest rate of the
+    homogeneous Boltzmann equation; what the first frame has of it is known from that frame.
+    """
+    names = SPEEDS
+    if reason := why_not_speeds(frames):
+        return [Check(name, None, reason) for name in names]
+    series, expected = _kurtosis(frames), _expected_kurtosis(frames)
+    clock, rate = collided(frames), theory.KURTOSIS_RELAXATION_RATE[frames.dimension]
+    scatter, skewness = theory.kurtosis_scatter(frames.dimension, frames.count)
+    excess = max(abs(series[0] - expected), scatter)
+    needed = math.log(excess / (RESIDUE * scatter)) / rate
+    if clock[-1] < needed:
+        reason = (
+            f"needs {needed:.3g} collisions of a particle after the first frame, to relax; there are"
+            f" {clock[-1]:.3g}"
+        )
+        return [Check(name, None, reason) for name in names]
+    first = int(np.argmax(clock >= needed))
+    if any(density_modulation(frames, n, _squares(frames, n)) > UNEVEN for n in (first, len(series) - 1)):
+        return [Check(name, None, "the temperature is not uniform: not relaxed") for name in names]
+    samples = independent(clock[first:], rate)
+    found = Estimate(series[first:].mean(), scatter / math.sqrt(samples))
+    skewness /= math.sqrt(samples)
+    if skewness > _MOST_SKEWED:
+        text = f"{samples:.2g} independent samples of {frames.count} particles are too few"
+        return [_law(frames), Check(names[1], None, text)]
+    basis = f"Maxwell's; {samples:.3g} independent samples of {frames.count} particles"
+    deviation = _normal((found.value - expected) / found.error, skewness)
+    return [_law(frames), compared(names[1], found, Estimate(expected), basis, deviation)]
+
+
+def _law(frames: Frames) -> Check:
+    """The last frame's speeds against Maxwell's law, of their own temperature."""
+    bins = min(30, frames.count // 10)
+    if bins < 4:
+        return Check("speed law", None, f"{frames.count} particles are too few for a histogram")
+    square = _squares(frames, -1)
+    temperature = float(frames.temperatures[-1])
+    found = histogram_chi_square(
+        np.sqrt(square), lambda v: theory.maxwell_cdf(v, frames.dimension, temperature), bins
+    )
+    text = f"chi-square {found.chi_square:.3g} of {found.degrees_of_freedom} about Maxwell's, last frame"
+    return Check("speed law", found.p_value > RARE, f"{text} (p = {found.p_value:.2g})")
+
+
+def _squares(frames: Frames, n: int) -> np.ndarray:
+    """(N,) squared speeds in a frame, about the centre of mass along periodic axes."""
+    return np.asarray((frames.motion.velocities[n] ** 2).sum(axis=1))
+
+
+def _kurtosis(frames: Frames) -> np.ndarray:
+    """(T,) <v^4> / <v^2>^2; 1 in a frame in which all are at rest."""
+    values = []
+    for n in range(len(frames.positions)):
+        square = _squares(frames, n)
+        mean = square.mean()
+        values.append((square**2).mean() / mean**2 if mean > 0.0 else 1.0)
+    return np.array(values)
+
+
+def _expected_kurtosis(frames: Frames) -> float:
+    """In equilibrium at fixed energy, and zero momentum along periodic axes (exact).
+
+    As `theory.kurtosis`; along a periodic axis <v_k^2> is the part 1 - 1/N of that along another one.
+    """
+    parts = np.where(frames.periodic, 1.0 - 1.0 / frames.count, 1.0)
+    freedoms = frames.count * parts.sum()
+    return float((1.0 + 2.0 * (parts**2).sum() / parts.sum() ** 2) * freedoms / (freedoms + 2.0))
+
+
+def _normal(deviation: float, skewness: float) -> float:
+    """The normal deviation of the same probability as one above the mean of a skewed distribution, by that of
+    the gamma distribution (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17, 684 (1931)); unchanged below it,
+    where the tail is the shorter one."""
+    if deviation <= 0.0:
+        return deviation
+    return 6.0 / skewness * (math.cbrt(1.0 + 0.5 * skewness * deviation) - 1.0) + skewness / 6.0
+
+
+# The pair distribution at contact, g(sigma), from positions alone; it gives Z = 1 + 2^(d-1) eta g(sigma).
+#
+# g(r) in thin shells from contact to 1.3 diameters is fitted by a polynomial of degree 4 in r, whose value
+# at contact is a sum of the shells' counts with fixed coefficients; so each frame gives one number, and
+# blocks of them the error. A cubic has 0.7 of this error, and is too low by 0.8 % of g(sigma) at packing
+# fraction 0.45, 1.7 % at 0.49, 2.2 % at 0.511 and 2.5 % at 0.52 (each +- 0.3 %, 500 spheres).
+
+
+WIDTH = 0.3
+"""Width of all shells together, in diameters."""
+_SHELLS, _DEGREE = 15, 4
+FIT_ERROR = 0.005
+"""Bound on the relative error of the fit. Differences from the collisions of the same runs, in %: of 500
+spheres at packing fractions 0.4, 0.45, 0.49, 0.511 and 0.52 -0.4(7), -0.2(5), -0.2(4), -0.4(4), -0.6(4); of
+500 discs at 0.5, 0.6 and 0.69 0.2(1.3), -0.6(9), -0.8(6)."""
+
+
+def contact_values(frames: Frames) -> np.ndarray:
+    """(T,) g(sigma) of each frame of equal particles in a periodic container. Dimensionless."""
+    n, d, sigma = frames.count, frames.dimension, frames.diameter
+    assert sigma is not None, "requires equal particles"
+    edges = 1.0 + WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)
+    volumes = ball_volume(d) * np.diff(edges**d)
+    coefficients = _at_contact(edges, volumes, d)
+    pairs = n * (n / np.prod(frames.lengths / sigma)) * volumes
+    reach = sigma * edges
+    reach[0] *= 1.0 - 1e-5  # pairs that rounding has brought below contact belong to the first shell
+    values = []
+    for positions in frames.positions:
+        tree = cKDTree(positions, boxsize=frames.lengths)
+        within = tree.count_neighbors(tree, reach)
+        values.append(coefficients @ (np.diff(within) / pairs))
+    return np.array(values)
+
+
+def _at_contact(edges: np.ndarray, volumes: np.ndarray, dimension: int) -> np.ndarray:
+    """(shells,) coefficients that turn a polynomial's means over shells into its value at r = 1."""
+    nodes, weights = np.polynomial.legendre.leggauss(_DEGREE + dimension)
+    radii = 0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 * np.diff(edges)[:, None] * nodes
+    weights = weights * radii ** (dimension - 1)
+    weights /= weights.sum(axis=1, keepdims=True)
+    powers = np.stack([(weights * (radii - 1.0) ** k).sum(axis=1) for k in range(_DEGREE + 1)], axis=1)
+    scale = np.sqrt(volumes)  # counts of larger shells are the more certain ones
+    return np.linalg.pinv(powers * scale[:, None])[0] * scale
+
+
+# The diffusion coefficient of spheres from a trajectory, and that of theory for their number and cube.
+
+
+_GROUPS = 32
+
+
+def why_not(frames: Frames) -> str | None:
+    """The reason why D cannot be measured from a trajectory of equal particles with velocities, or None."""
+    if frames.dimension == 2:
+        return "discs have none: the displacement's square grows like t ln t"
+    if frames.time is None or not all(frames.periodic):
+        return "needs times (--time-step) and a periodic container"
+    cubic = np.ptp(frames.lengths) <= 1e-6 * frames.lengths[0]
+    if not cubic or frames.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
+        return "needs a fluid in a cube"
+    interval = np.diff(frames.time)
+    if len(interval) == 0 or np.ptp(interval) > 1e-3 * interval.mean():
+        return "needs frames at even times"
+    if np.abs(steps(frames)).max() > 0.45 * frames.lengths[0]:
+        return "frames are too far apart to follow a particle across the boundary"
+    _, first, last = _lags(frames)
+    if last - first < 1 or len(interval) < 2 * last:
+        start = first * interval.mean()
+        return f"needs frames closer than {start:.2g} over a time of {4.0 * start:.2g} or more"
+    return None
+
+
+def groups_of(frames: Frames) -> int:
+    """Number of groups of particles whose scatter gives the error."""
+    return min(frames.count, _GROUPS)
+
+
+def diffusion(frames: Frames) -> tuple[Estimate, tuple[float, float]]:
+    """Measure D by the slope of the mean-squared displacement that no longer changes, as `gaspart measure`,
+    with the collisions of a particle between which it is taken. Raises SceneError if it still changes.
+
+    Of N particles whose total momentum is zero D is (N - 1) / N of its value without this condition; this is
+    corrected. The error is the scatter of groups of particles.
+    """
+    way, n = path(frames), frames.count
+    lags = _lags(frames)
+    while 4 * lags[-1] <= len(way):
+        lags = [*lags, 2 * lags[-1]]
+    squares = np.array([((way[lag:] - way[:-lag]) ** 2).sum(axis=2).mean(axis=0) for lag in lags])  # (K, N)
+    times = _interval(frames) * np.diff(lags)
+    rises = np.diff(squares, axis=0) / (6.0 * times[:, None]) * n / (n - 1.0)
+    groups = np.array([part.mean(axis=1) for part in np.array_split(rises, groups_of(frames), axis=1)])
+    number, tail = settled_slope(groups)
+    found, rate = mean_of(groups[:, number]), _rate(frames) * _interval(frames)
+    window = rate * lags[number], rate * lags[number + 1]
+    return Estimate(found.value, math.hypot(found.error, float(tail)), found.freedom), window
+
+
+def expected_diffusion(frames: Frames, window: tuple[float, float]) -> tuple[float, float, str]:
+    """D in this cube, its uncertainty and source, by the equation of the engine, if the file states one."""
+    found = diffusion_in_cube(_gas(frames), float(frames.lengths[0]), frames.engine, frames.scene, window)
+    assert found is not None, "see `why_not`"
+    return found
+
+
+def _interval(frames: Frames) -> float:
+    """Mean time between frames."""
+    assert frames.time is not None, "see `why_not`"
+    return float(np.diff(frames.time).mean())
+
+
+def _gas(frames: Frames) -> Gas:
+    assert frames.gas is not None, "see `why_not_speeds`"
+    return frames.gas
+
+
+def _rate(frames: Frames) -> float:
+    """Return the collisions of a particle per time, by theory."""
+    return collision_rate(_gas(frames), frames.engine.equation if frames.engine else EXACT)
+
+
+def _lags(frames: Frames) -> list[int]:
+    """Return the first lags between which slopes are taken, in frames, all different."""
+    first, middle, last = linear_lags(_rate(frames), _interval(frames))
+    middle = max(middle, first + 1)
+    return [first, middle, max(last, middle + 1)]

@@ -1,0 +1,315 @@
+"""The earliest contact of a particle: the search of the boxes about it.
+
+First all particles there are listed, then the times of all their contacts are computed, eight at once
+(`simd`): with hardly a branch, so that the processor has little to predict. Indices are unsigned, since for
+signed ones numba checks at every access whether it counts from the end.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy import int64, uint64
+
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
+from gaspart.kernels.event.simd import PLACES, earliest, list_box
+from gaspart.kernels.memory import WIDTH, aligned, lowest
+from gaspart.kernels.model import BOX_VISITS, IMAGE_BITS, NUMBER_BITS, PAIR_TESTS
+from gaspart.kernels.physics.flight import time_of_contact
+
+# Which particles are in which box: the first few in places of its own, any others in a linked list.
+#
+# Nearly all boxes hold a few particles only, and a search then reads each in one go, whatever their number.
+
+
+CANDIDATES = 64  # gathered by a search before they are tested: a bit of a word for each
+_EMPTY = np.uint32(0xFFFFFFFF)
+
+
+class BoxLists(NamedTuple):
+    """The grid of boxes (see `state.boxes.Boxes`): per_side, widths, strides (3,), neighbour, shift. How many
+    particles each box holds, filled (boxes,), the first of them, places (boxes, PLACES), and of the others
+    the first, head (boxes,), and the next after each particle, following (N,). candidates (M,), room for
+    those of a search; resting (N,), which particles gravity may not pull, see `flight.mark_resting`. lists:
+    `NeighbourLists`, which are searched instead, or None."""
+
+    per_side: np.ndarray
+    widths: np.ndarray
+    strides: np.ndarray
+    neighbour: np.ndarray
+    shift: np.ndarray
+    filled: np.ndarray
+    places: np.ndarray
+    head: np.ndarray
+    following: np.ndarray
+    candidates: np.ndarray
+    resting: np.ndarray
+    lists: Any
+
+
+def empty_lists(boxes, count, lists=None):
+    """The lists of these `state.boxes.Boxes` for `count` particles, with none in them."""
+    return BoxLists(
+        boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour, boxes.shift,
+        filled=np.zeros(boxes.count, dtype=np.uint32),
+        places=aligned((boxes.count, PLACES), np.uint32),
+        head=np.zeros(boxes.count, dtype=np.uint32),
+        following=np.zeros(count, dtype=np.uint32),
+        candidates=np.zeros(CANDIDATES + WIDTH, dtype=np.uint32),
+        resting=np.zeros(count, dtype=np.uint8),
+        lists=lists,
+    )  # fmt: skip
+
+
+@inner_helper
+def box_of(predictions, boxes, i):
+    """The linear index of a particle's box."""
+    at = predictions[i].box
+    return at[0] * boxes.strides[0] + at[1] * boxes.strides[1] + at[2] * boxes.strides[2]
+
+
+@inner_helper
+def member(boxes, box, n, other):
+    """The n-th particle of a box that holds more; `other` is the one before it."""
+    if n < PLACES:
+        return boxes.places[box, n]
+    return boxes.head[box] if n == PLACES else boxes.following[other]
+
+
+@inner_helper
+def insert(predictions, boxes, i):
+    """Put a particle into its box."""
+    box = np.uint64(box_of(predictions, boxes, i))
+    filled = boxes.filled[box]
+    if filled < PLACES:
+        boxes.places[box, filled] = i
+    else:
+        boxes.following[np.uint64(i)] = boxes.head[box]
+        boxes.head[box] = i
+    boxes.filled[box] = filled + np.uint32(1)
+
+
+@inner_helper
+def remove(predictions, boxes, i):
+    """Take a particle out of its box; another of the same box fills its place."""
+    box = np.uint64(box_of(predictions, boxes, i))
+    places, head, following = boxes.places, boxes.head, boxes.following
+    last = np.uint64(boxes.filled[box]) - np.uint64(1)
+    boxes.filled[box] = last
+    place = np.uint64(0)
+    for n in range(np.uint64(1), np.uint64(PLACES)):
+        place += n * np.uint64(places[box, n] == i)
+    if places[box, place] == i:
+        if last < PLACES:
+            places[box, place] = places[box, last]
+            places[box, last] = _EMPTY
+        else:
+            places[box, place] = head[box]
+            head[box] = following[head[box]]
+    elif head[box] == i:
+        head[box] = following[head[box]]
+    else:
+        other = head[box]
+        while following[other] != i:
+            other = following[other]
+        following[other] = following[np.uint64(i)]
+
+
+@inner_helper
+def withdraw(predictions, boxes, i, opened):
+    """Take a particle that is no longer in the container, where faces are open, out of its box."""
+    if opened is not None:
+        if not opened.present[i]:
+            remove(predictions, boxes, i)
+
+
+@inner_helper
+def move(predictions, boxes, i, axis, to):
+    """Take a particle to another box along an axis."""
+    remove(predictions, boxes, i)
+    predictions[i].box[axis] = to
+    insert(predictions, boxes, i)
+
+
+@inner_kernel
+def sort_in(predictions, boxes):
+    """Put all particles into their boxes."""
+    boxes.filled[:] = 0
+    boxes.places[:] = _EMPTY
+    for i in range(len(predictions)):
+        insert(predictions, boxes, i)
+
+
+# A candidate of a search: the number of a particle and, in the bits above it, its image along each axis.
+#
+# Words are unsigned, since numba makes reals of signed ones that meet these.
+
+
+NUMBER = uint64((1 << NUMBER_BITS) - 1)  # the bits of a candidate that name the particle
+X, Y, Z = (uint64(NUMBER_BITS + IMAGE_BITS * k) for k in range(3))  # the first bit of the image along an axis
+_IMAGE, _ONE = uint64((1 << IMAGE_BITS) - 1), uint64(1)
+_LOW = (_ONE << X) | (_ONE << Y) | (_ONE << Z)
+
+
+@inner_helper
+def number_of(candidate):
+    """The number of the particle."""
+    return int64(candidate & NUMBER)
+
+
+@inner_helper
+def image_bits(image, first):
+    """The bits, from `first` on, that stand for the image -1, 0 or 1 of a candidate along an axis."""
+    return (uint64(image) & _IMAGE) << first
+
+
+@inner_helper
+def image_of(candidate, first):
+    """The image that the bits of a candidate from `first` on stand for."""
+    return (int64((candidate >> first) & _IMAGE) ^ 2) - 2
+
+
+@inner_helper
+def offset_of(candidate, space):
+    """(3,) the displacement of the image of a candidate."""
+    lengths = space.lengths
+    return (
+        image_of(candidate, X) * lengths[0],
+        image_of(candidate, Y) * lengths[1],
+        image_of(candidate, Z) * lengths[len(lengths) - 1],
+    )
+
+
+@inner_helper
+def opposite(image):
+    """The image bits of one particle seen from another, of which `image` is seen from the first."""
+    return image ^ (image & _LOW) << _ONE
+
+
+_WIDTH, _PLACES, _FULL = uint64(WIDTH), uint64(PLACES), uint64(CANDIDATES - 3 * PLACES - 1)
+
+
+@inner_helper
+def test_candidates(particles, i, count, boxes, space, tally, gravity):
+    """Predict the contact with one of the first `count` candidates, if it is earlier than that predicted."""
+    flights, predictions, candidates = particles.flights, particles.predictions, boxes.candidates
+    tally.counts[PAIR_TESTS] += int64(count)
+    for n in range(_WIDTH):
+        candidates[count + n] = i  # no particle meets itself
+    before, partner = predictions[i].contact_time, int64(predictions[i].partner)
+    best, found, unknown = earliest(flights, i, (uint64(0), count), (before, partner), boxes, space, gravity)
+    if gravity is not None:
+        while unknown:
+            candidate = candidates[lowest(unknown)]
+            unknown &= unknown - uint64(1)
+            other = candidate & NUMBER
+            time = time_of_contact(flights, i, other, offset_of(candidate, space), space, gravity)
+            if time < best or (time == best and time < inf and int64(other) < found):
+                best = time
+                found = int64(other)
+    if best < before or found != partner:
+        predictions[i].contact_time = best
+        predictions[i].partner = found
+
+
+@inner_kernel
+def list_others(particles, i, count, row, boxes, space, tally, gravity):
+    """List the particles of a row of boxes that have no place, and test the candidates whenever there may be
+    no room for another row's. row: its first box, its image, the first step and end along it. Returns how
+    many candidates are left."""
+    first, image_yz, low, end = row
+    x = uint64(particles.predictions[i].box[0])
+    for step in range(low, end):
+        beside = boxes.neighbour[0, x, step]
+        if beside < 0:
+            continue
+        box = uint64(first + beside)
+        image = image_yz | image_bits(boxes.shift[0, x, step], X)
+        other = uint64(boxes.head[box])
+        for _ in range(_PLACES, uint64(boxes.filled[box])):
+            boxes.candidates[count] = other | image
+            count += uint64(1)
+            if count > _FULL:
+                test_candidates(particles, i, count, boxes, space, tally, gravity)
+                count = uint64(0)
+            other = uint64(boxes.following[other])
+    if count > _FULL:
+        test_candidates(particles, i, count, boxes, space, tally, gravity)
+        count = uint64(0)
+    return count
+
+
+@inner_helper
+def span(boxes, axis, at, crossed, dimension):
+    """Which boxes to search along an axis, about that at a coordinate: first step and end (0..3), how many
+    there are, and how many of them are that box itself. Discs have one box along the third axis."""
+    if axis >= dimension:
+        return uint64(1), uint64(2), 1, 1
+    low, end = uint64(0), uint64(3)
+    if crossed:
+        low = uint64(1 + crossed)
+        end = low + uint64(1)
+    visits = itself = 0
+    own = boxes.neighbour[axis, at, 1]
+    for step in range(low, end):
+        beside = boxes.neighbour[axis, at, step]
+        visits += int64(beside >= 0)
+        itself += int64(beside == own)
+    return low, end, visits, itself
+
+
+@inner_helper
+def list_places(boxes, count, box, image, most):
+    """List the particles that have a place in a box, after `count` others: how many there are then, and how
+    many particles the fullest box so far holds, `most`."""
+    list_box(boxes.candidates, count, boxes.places, box, image)
+    filled = uint64(boxes.filled[box])
+    return count + min(filled, _PLACES), max(most, filled)
+
+
+@inner_helper
+def find_contact(particles, number, boxes, space, tally, crossed, gravity):
+    """Search for an earlier contact of a particle in the boxes about its own; if it has just `crossed` (3,)
+    into this one, in those only that were not neighbours before.
+
+    All places of a box are listed whether they are filled or not, which costs less than to test it.
+    """
+    i = uint64(number)
+    at = particles.predictions[i].box
+    ax, ay, az = uint64(at[0]), uint64(at[1]), uint64(at[2])
+    neighbour, shift = boxes.neighbour, boxes.shift
+    low_x, end_x, visits_x, itself_x = span(boxes, 0, ax, crossed[0], len(space.lengths))
+    low_y, end_y, visits_y, itself_y = span(boxes, 1, ay, crossed[1], len(space.lengths))
+    low_z, end_z, visits_z, itself_z = span(boxes, 2, az, crossed[2], len(space.lengths))
+    tally.counts[BOX_VISITS] += visits_x * visits_y * visits_z
+    tally.counts[PAIR_TESTS] -= itself_x * itself_y * itself_z
+    within = crossed[0] == 0 and 0 < at[0] < boxes.per_side[0] - 1  # a row's three lie side by side
+    count = uint64(0)
+    for dz in range(low_z, end_z):
+        beside_z = neighbour[2, az, dz]
+        if beside_z < 0:
+            continue
+        image_z = image_bits(shift[2, az, dz], Z)
+        for dy in range(low_y, end_y):
+            beside_y = neighbour[1, ay, dy]
+            if beside_y < 0:
+                continue
+            row = beside_y + beside_z
+            image = image_z | image_bits(shift[1, ay, dy], Y)
+            most = uint64(0)
+            if within:
+                first = uint64(row + at[0] - 1)
+                for box in range(first, first + uint64(3)):
+                    count, most = list_places(boxes, count, box, image, most)
+            else:
+                for dx in range(low_x, end_x):
+                    beside_x = neighbour[0, ax, dx]
+                    if beside_x >= 0:
+                        box, image_x = uint64(row + beside_x), image | image_bits(shift[0, ax, dx], X)
+                        count, most = list_places(boxes, count, box, image_x, most)
+            if most > _PLACES or count > _FULL:
+                line = row, image, low_x, end_x
+                count = list_others(particles, i, count, line, boxes, space, tally, gravity)
+    test_candidates(particles, i, count, boxes, space, tally, gravity)

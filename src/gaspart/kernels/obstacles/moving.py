@@ -1,0 +1,358 @@
+"""Vibrating faces: the container's side is where such a face is at time 0, and it moves inwards from there.
+
+A particle meets it where its height above that place, h(t) = x + v t + a t^2 / 2, falls to that of the face,
+s(t). In each period a sawtooth moves up at one speed and is back at once; a sine is at
+stroke (1 - cos(2 pi t / period)) / 2. Heights and velocities count from the container's side inwards. The
+remainder of a division (%) is exact, and so the same on every machine.
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
+from gaspart.kernels.model import NONE, PISTON_CLOCK, PISTON_PLACE, PISTON_VELOCITY, WALLS
+from gaspart.kernels.physics.ballistic import flown, time_to_side
+from gaspart.kernels.physics.collision import LEAST, collide_wall_by_law
+from gaspart.kernels.physics.flight import acceleration_of, face_plane
+from gaspart.kernels.physics.rng import TURN, mass_of, sine_cosine
+from gaspart.kernels.physics.sums import add
+
+# A piston: a face of finite mass, which a constant force pushes inwards and particles push back.
+#
+# It starts at the side of the container and bounces off that without loss. Between its contacts it
+# therefore moves on one parabola, or on two: one outwards to the side, and one from there. Places and
+# velocities count from the container's side inwards.
+
+
+@inner_helper
+def time_to_stop(place, velocity, push):
+    """Time until a piston reaches the side of the container; inf if it never does."""
+    return time_to_side(place, -velocity, -push)
+
+
+@kernel
+def moved(place, velocity, push, late):
+    """(place, velocity) of a piston some time later, if it meets no particle."""
+    stop = time_to_stop(place, velocity, push)
+    if late < stop:
+        return flown(place, velocity, push, late), velocity + push * late
+    back = -(velocity + push * stop)
+    late -= stop
+    return flown(0.0, back, push, late), back + push * late
+
+
+@kernel
+def time_to_piston(x, v, place, velocity, push):
+    """Time until a particle of height x and inward velocity v touches a piston; inf if it never does."""
+    stop = time_to_stop(place, velocity, push)
+    time = time_to_side(x - place, velocity - v, push)
+    if time <= stop:
+        return time
+    back = -(velocity + push * stop)
+    return stop + time_to_side(x + v * stop, back - v, push)
+
+
+@inner_kernel
+def next_piston(particles, i, space, piston):
+    """When a particle touches the piston."""
+    flights, face = particles.flights, piston.face
+    upper, axis = face % 2 == 1, face // 2
+    flight, motion = flights[i], piston.motion
+    x, v = flight.position[axis] - face_plane(flights, i, axis, upper, space), flight.velocity[axis]
+    if upper:
+        x, v = -x, -v
+    place, velocity = motion[PISTON_PLACE], motion[PISTON_VELOCITY]
+    start = max(flight.clock, motion[PISTON_CLOCK])
+    if start > motion[PISTON_CLOCK]:
+        place, velocity = moved(place, velocity, piston.push, start - motion[PISTON_CLOCK])
+    return start + time_to_piston(x + v * (start - flight.clock), v, place, velocity, piston.push)
+
+
+@inner_helper
+def find_piston(particles, i, axis, space, piston):
+    """(time, face code) of the contact with a piston across an axis, where there may be none."""
+    if piston is None:
+        return inf, NONE
+    if piston.face // 2 != axis:
+        return inf, NONE
+    return next_piston(particles, i, space, piston), piston.face
+
+
+@kernel
+def advance_piston(motion, push, time):
+    """Move a piston to `time`."""
+    late = time - motion[PISTON_CLOCK]
+    motion[PISTON_PLACE], motion[PISTON_VELOCITY] = moved(
+        motion[PISTON_PLACE], motion[PISTON_VELOCITY], push, late
+    )
+    motion[PISTON_CLOCK] = time
+
+
+@inner_kernel
+def collide_with_piston(flights, i, face, model, tally, piston):
+    """Let a particle and the piston exchange momentum without loss.
+
+    They part so fast that the clocks resolve the next contact: a push, which a piston needs that lies on a
+    particle at rest.
+    """
+    axis, inwards = face // 2, -1.0 if face % 2 else 1.0
+    motion = piston.motion
+    advance_piston(motion, piston.push, flights[i].clock)
+    mass = mass_of(i, model.masses, model.law)
+    before = inwards * flights[i].velocity[axis]
+    approach = motion[PISTON_VELOCITY] - before
+    parting = max(abs(approach), piston.slowest[0])
+    impulse = (approach + parting) * mass * (piston.mass / (mass + piston.mass))
+    after = before + impulse / mass
+    flights[i].velocity[axis] = inwards * after
+    motion[PISTON_VELOCITY] -= impulse / piston.mass
+    add(tally.wall_impulse, face, impulse)
+    add(tally.wall_energy, face, -0.5 * impulse * (before + after))
+
+
+@inner_helper
+def collide_piston(flights, i, face, model, tally, piston):
+    """The same where there may be no piston."""
+    if piston is not None:
+        collide_with_piston(flights, i, face, model, tally, piston)
+
+
+@inner_helper
+def is_piston(face, piston):
+    """Whether a face is a piston."""
+    if piston is None:
+        return False
+    return face == piston.face
+
+
+# A wall across the container that moves: of finite mass, pushed by the particles on both its sides.
+#
+# Between its contacts it moves evenly, and each particle stays on its side.
+
+
+@kernel
+def advance_wall(motion, time):
+    """Move the wall to `time`."""
+    motion[PISTON_PLACE] += motion[PISTON_VELOCITY] * (time - motion[PISTON_CLOCK])
+    motion[PISTON_CLOCK] = time
+
+
+@inner_kernel
+def next_moving(flights, i, moving):
+    """When a particle touches the wall; inf if it never does."""
+    axis, side, motion = moving.axis, moving.side[i], moving.motion
+    start = max(flights[i].clock, motion[PISTON_CLOCK])
+    x = flights[i].position[axis] + flights[i].velocity[axis] * (start - flights[i].clock)
+    place = motion[PISTON_PLACE] + motion[PISTON_VELOCITY] * (start - motion[PISTON_CLOCK])
+    gap = side * (x - place) - flights[i].radius
+    closing = side * (motion[PISTON_VELOCITY] - flights[i].velocity[axis])
+    return start + time_to_side(gap, closing, 0.0)
+
+
+@inner_helper
+def find_moving(flights, i, moving, time, face):
+    """The earlier of the contact with the wall, where there may be none, and the face (time, face code)."""
+    if moving is not None:
+        soon = next_moving(flights, i, moving)
+        if soon < time:
+            return soon, WALLS
+    return time, face
+
+
+@inner_kernel
+def collide_moving_wall(flights, i, model, tally, moving):
+    """Let a particle and the wall exchange momentum without loss. Returns the number of the wall, with the
+    faces before it.
+
+    They part at a speed that rounding cannot hide, or they would meet for ever.
+    """
+    axis, side, motion = moving.axis, moving.side[i], moving.motion
+    advance_wall(motion, flights[i].clock)
+    mass, own = mass_of(i, model.masses, model.law), moving.mass
+    before, speed = side * flights[i].velocity[axis], side * motion[PISTON_VELOCITY]
+    approach = speed - before
+    parting = max(abs(approach), LEAST * max(abs(speed), abs(before)))
+    impulse = (approach + parting) * mass * (own / (mass + own))
+    after = before + impulse / mass
+    flights[i].velocity[axis] = side * after
+    motion[PISTON_VELOCITY] -= side * (impulse / own)
+    wall = 2 * len(model.space.lengths)
+    tally.wall_hits[wall] += 1
+    add(tally.wall_impulse, wall, impulse)
+    add(tally.wall_energy, wall, -0.5 * impulse * (before + after))
+    distance = side * (flights[i].position[axis] - motion[PISTON_PLACE]) / flights[i].radius
+    tally.worst[0] = max(tally.worst[0], abs(distance * distance - 1.0))
+    return wall
+
+
+# Hard faces: what passes at a contact with one at rest.
+
+
+@inner_helper
+def bounce(flights, i, face, model, tally, law):
+    """Reflect a particle, by the law of contacts if there is one. Returns the momentum given to the face."""
+    axis = face // 2
+    if law is None:
+        velocity = flights[i].velocity[axis]
+        flights[i].velocity[axis] = -velocity
+        return 2.0 * mass_of(i, model.masses, law) * abs(velocity)
+    side = 1.0 if face % 2 else -1.0
+    normal = side if axis == 0 else 0.0, side if axis == 1 else 0.0, side if axis == 2 else 0.0
+    return collide_wall_by_law(flights, i, normal, 0.0, model.space, tally, law)
+
+
+_RESOLVED = 2.0**-52  # of clocks and of the period: the shortest step of a search
+_SLACK = 1.0 + 2.0**-20  # of the stroke: a particle further away needs no search
+
+
+@kernel
+def place_and_velocity(time, sine, stroke, period):
+    """Where a face is at a time of its period, and how fast it moves inwards."""
+    if not sine:
+        speed = stroke / period
+        return speed * time, speed
+    s, c = sine_cosine(time / period)
+    return 0.5 * stroke * (1.0 - c), 0.5 * stroke * TURN / period * s
+
+
+@inner_helper
+def time_to_sawtooth(gap, closing, pull, left):
+    """Time until a particle touches a face that moves evenly for the time `left`, and whether it does;
+    otherwise that time."""
+    time = time_to_side(gap, closing, pull)
+    return (time, True) if time < left else (left, False)
+
+
+@inner_helper
+def time_to_sine(gap, closing, most):
+    """A time up to which a particle cannot touch a face to which it comes nearer with an acceleration of at
+    most `most`, the root for this acceleration; and whether it touches it now."""
+    if gap <= 0.0 and closing > 0.0:
+        return 0.0, True
+    gap = max(gap, 0.0)
+    root = sqrt(closing * closing + 2.0 * most * gap)
+    return (2.0 * gap / (root + closing) if closing > 0.0 else (root - closing) / most), False
+
+
+@kernel
+def time_to_vibrating(x, v, a, clocks, at, sine, stroke, period):
+    """Time until a particle of height x, inward velocity v and acceleration a touches a vibrating face, and
+    approaches it; inf if it never does, or not before the clocks' epoch ends. clocks: the time since that
+    epoch began, and its length; at: the time of the face's period; both times are those of x and v.
+
+    All is predicted anew in the next epoch. Without that end, a particle that comes to the stroke at 1e-16
+    of its former speed would be searched for in 1e16 periods, whose phases rounding decides.
+
+    Above the stroke the particle flies on to it. Within it, each step of the search ends before the first
+    contact, however the face moves, so that none is passed over: one with the largest acceleration of the
+    face converges to the contact quadratically, as Newton's steps do.
+    """
+    largest = 0.5 * stroke * (TURN / period) * (TURN / period) + abs(a)
+    clock, epoch = clocks
+    time = 0.0
+    while clock + time <= epoch:
+        height, velocity = flown(x, v, a, time), v + a * time
+        if height > stroke:
+            step, meets = time_to_side(height - stroke, -velocity, -a), False
+        else:
+            place, speed = place_and_velocity(at, sine, stroke, period)
+            if sine:
+                step, meets = time_to_sine(height - place, speed - velocity, largest)
+            else:
+                step, meets = time_to_sawtooth(height - place, speed - velocity, -a, period - at)
+        if meets:
+            return time + step
+        if not step < inf:
+            return inf
+        if step < _RESOLVED * (clock + time + period):
+            step = _RESOLVED * (clock + time + period)
+        time += step
+        at = (at + step) % period
+    return inf
+
+
+@inner_helper
+def moves(face, motion):
+    """Whether a face moves."""
+    if motion is None:
+        return False
+    return motion.stroke[face] > 0.0
+
+
+@inner_helper
+def is_near(particles, i, face, boxes, space, motion):
+    """Whether a particle in this box may touch the face."""
+    axis, upper = face // 2, face % 2 == 1
+    at, width = particles.predictions[i].box[axis], boxes.widths[axis]
+    inset = face_plane(particles.flights, i, axis, False, space)
+    reach = inset + _SLACK * motion.stroke[face]
+    return space.lengths[axis] - (at + 1) * width <= reach if upper else at * width <= reach
+
+
+@inner_kernel
+def next_vibrating(particles, i, axis, boxes, space, gravity, motion):
+    """When a particle touches a vibrating face of an axis: (time, face code)."""
+    flights, soon, code = particles.flights, inf, NONE
+    for face in range(2 * axis, 2 * axis + 2):
+        if motion.stroke[face] > 0.0 and is_near(particles, i, face, boxes, space, motion):
+            flight = flights[i]
+            upper = face % 2 == 1
+            a = 0.0
+            if gravity is not None:
+                a = acceleration_of(flights, i, axis, space, gravity)
+            plane = face_plane(flights, i, axis, upper, space)
+            x, v = flight.position[axis] - plane, flight.velocity[axis]
+            if upper:
+                x, v, a = -x, -v, -a
+            period = motion.period[face]
+            at = (motion.begun[face] + flight.clock) % period
+            sine, stroke = motion.sine[face], motion.stroke[face]
+            clocks = flight.clock, motion.epoch[0]
+            time = flight.clock + time_to_vibrating(x, v, a, clocks, at, sine, stroke, period)
+            if time < soon:
+                soon, code = time, face
+    return soon, code
+
+
+@inner_helper
+def find_vibrating(particles, i, axis, boxes, space, gravity, motion):
+    """The same where no face may vibrate."""
+    if motion is None:
+        return inf, NONE
+    return next_vibrating(particles, i, axis, boxes, space, gravity, motion)
+
+
+@inner_kernel
+def collide_vibrating(flights, i, face, model, tally, law, motion):
+    """Reflect a particle in the frame of a vibrating face, whose work is its velocity times the momentum.
+
+    Particles part from it so fast that the clocks resolve the next contact: a push, whose energy is counted
+    as well.
+    """
+    axis, period = face // 2, motion.period[face]
+    inwards = -1.0 if face % 2 else 1.0
+    at = (motion.begun[face] + flights[i].clock) % period
+    _, speed = place_and_velocity(at, motion.sine[face], motion.stroke[face], period)
+    mass = mass_of(i, model.masses, law)
+    flights[i].velocity[axis] -= inwards * speed
+    impulse = 0.0
+    if inwards * flights[i].velocity[axis] < 0.0:
+        impulse = bounce(flights, i, face, model, tally, law)
+    work = speed * impulse
+    parting = inwards * flights[i].velocity[axis]
+    push = motion.slowest[face] - parting
+    if push > 0.0:
+        flights[i].velocity[axis] += inwards * push
+        impulse += mass * push
+        work += mass * push * (speed + parting + 0.5 * push)
+    flights[i].velocity[axis] += inwards * speed
+    add(tally.wall_impulse, face, impulse)
+    add(tally.wall_energy, face, -work)
+
+
+@inner_helper
+def collide_moving(flights, i, face, model, tally, law, motion):
+    """The same where no face may vibrate."""
+    if motion is not None:
+        collide_vibrating(flights, i, face, model, tally, law, motion)
