@@ -9,7 +9,7 @@ import gaspart
 
 SOURCES = Path(gaspart.__file__).parent
 PLACES = {
-    # a histogram: `analysis.bins.Grid`
+    # a histogram: `analysis.flow.Grid`
     r"\bhistogram(dd|2d)?\(": set(),
     # Z and the collisions' virial; `mixtures` compares the virial with that of each pair
     r'increments\("virial_sum"\)': {"analysis/series.py", "reproduction/families/mixtures/measure.py"},

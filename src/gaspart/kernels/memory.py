@@ -86,7 +86,7 @@ def fetch_numbered(typingctx, array, numbers, first, mask):
 
 
 # Eight numbers at once, in vector instructions: what the searches of both engines are written in
-# (`event.simd`, `step.simd`).
+# (`event.simd`, `step.neighbour_list`).
 #
 # LLVM makes of the vectors what the processor has, of whatever width.
 

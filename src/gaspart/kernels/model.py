@@ -106,7 +106,7 @@ class Gravity(NamedTuple):
 
 class ContactDuration(NamedTuple):
     """Contacts less than `length` after an earlier one are elastic. Of the particles: latest (N,), the time
-    of the latest contact; met (N,), that with another particle; island (N,), see `event.islands`, or NONE;
+    of the latest contact; met (N,), that with another particle; island (N,), see `event.jams`, or NONE;
     contacts (N,), their number since the last look at what rests; inverse_mass (N,), those that the law has
     of them when no jam holds them. moving: the speed that frees a particle from a jam (`event.jams`). elastic
     (1,): the number of contacts that last; kept (1, 2): the energy that they have not dissipated, see
@@ -184,7 +184,7 @@ class Ramp(NamedTuple):
 class Open(NamedTuple):
     """Faces through which particles leave and enter. present (N,), 1 of particles that are inside, and 0 of
     the others, which are at no place (NaN), at rest and in no box; vacant (blocks,), the number of the others
-    in each block of numbers, see `obstacles.open_face`; entries (2d,), how many have entered through each of
+    in each block of numbers, see `obstacles.face`; entries (2d,), how many have entered through each of
     the container's faces."""
 
     present: np.ndarray
@@ -258,7 +258,7 @@ class MovingWall(NamedTuple):
 
 
 class InteriorWalls(NamedTuple):
-    """rows (M, 5) or (M, 11) and wall (M,), see `obstacles.distance`; listed[first[b] :
+    """rows (M, 5) or (M, 11) and wall (M,), see `obstacles.interior_wall`; listed[first[b] :
     first[b + 1]] are those near box b, for particles of a radius up to `largest_radius`; those for larger
     ones, all, follow the last box. warm: None if no wall is at a temperature; moving: None if none moves,
     which has no row."""
@@ -310,7 +310,7 @@ class Tally(NamedTuple):
     """counts (of `COUNTS`,); sums (of `SUMS`, 2) and by face and interior wall wall_impulse, wall_energy
     (faces + walls, 2), see `running_sum.add`; wall_hits (faces + walls,); worst (1,): the largest
     |r^2/sigma^2 - 1| at a contact; stress: an `event.stress.Stress`, impulses: an `event.impulses.Impulses`,
-    pair_impulses: an `event.pair_impulses.PairImpulses`, None if they are not wanted; per_area: a
+    pair_impulses: an `event.impulses.PairImpulses`, None if they are not wanted; per_area: a
     `physics.per_area.PerArea`, None unless particles of several sizes reach other areas of faces."""
 
     counts: np.ndarray

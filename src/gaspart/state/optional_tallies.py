@@ -184,7 +184,7 @@ class ImpulseTally(OptionalTally):
 class PairImpulseTally(OptionalTally):
     """Momentum that pairs of particles gain along their separation, in shells of equal thickness.
 
-    The pair distribution g(r) follows from it (`analysis.pair_impulses`).
+    The pair distribution g(r) follows from it (`analysis.pairs`).
 
     Parameters
     ----------

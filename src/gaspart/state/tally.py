@@ -118,7 +118,7 @@ class Tally:
         particles below is subtracted (`analysis.impulses`). None unless requested.
     contact_impulse_sum : ndarray, shape (shells,), optional, [mass length^2/time]
         Mean over each shell of k_B T g(r) times the time, from the pairs that collide
-        (`analysis.pair_impulses`). None unless requested.
+        (`analysis.pairs`). None unless requested.
     other_impulse_sum : ndarray, shape (shells,), optional, [mass length^2/time]
         Contribution of all other pairs to the same quantity.
 

@@ -173,7 +173,10 @@ def test_docstrings_and_comments_recompile_nothing_and_rerun_no_stage(tmp_path):
         return hits, digests
 
     compiled, before = run()
-    file.write_text('"""Random numbers."""\n# A comment.\n' + text.replace(line, f'{line}\n    """Text."""'))
+    commented = text.replace(line, f'{line}\n    """Text."""').replace(
+        "Random numbers inside", "Numbers inside", 1
+    )
+    file.write_text(f"# A comment.\n{commented}")
     assert (compiled, run()) == ("0", ("1", before))
     file.write_text(text.replace(line, f"{line}\n    x = x + 0.0"))
     hits, after = run()

@@ -33,7 +33,7 @@ class EventDriven(Engine):
 
     No box is narrower than the diameters of the particles in it. A few oversized particles can be left out of
     the boxes, each of them tested by every small one near it: by default the largest of all, if that saves a
-    quarter of what a search examines (`state.oversized`); with `boxes_per_side`, those that are wider than a
+    quarter of what a search examines (`state.boxes`); with `boxes_per_side`, those that are wider than a
     box, which must be fewer than the others.
     """
 

@@ -83,7 +83,7 @@ class Dense(NamedTuple):
 @inner_helper
 def contact_value(filled, surface, radius, dense):
     """The pair distribution at contact 1/f + slope X/f^2 + bend X^2/f^3, f = 1 - filled, X = 2 surface
-    `radius`, with `radius` the product of two radii over their sum. See `engines.dsmc.rates`."""
+    `radius`, with `radius` the product of two radii over their sum. See `engines.dsmc.defaults`."""
     free = 1.0 - min(filled, _FULLEST)
     ratio = 2.0 * surface * radius / free
     return (1.0 + ratio * (dense.slope + dense.bend * ratio)) / free

@@ -1,7 +1,7 @@
 """What the DSMC engine's kernels pass to one another: particles, grid, kinds, room, tally.
 
 A *slot* is a particle's present place in memory, the slots being in the order of the cells; `numbers` gives
-the particle's number. What several threads add up is exact (`physics.exact_sum`), so that the sums
+the particle's number. What several threads add up is exact (`physics.sums`), so that the sums
 do not depend on the order of adding. The structures hold arrays and plain numbers only, because numba
 passes nothing else to threads.
 """

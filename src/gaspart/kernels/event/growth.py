@@ -1,4 +1,4 @@
-"""Particles that grow while they fly and collide: the kernels of a compression (`state.compression`).
+"""Particles that grow while they fly and collide: the kernels of a compression (`state.insertion`).
 
 Smooth particles of mass 1, all growing in proportion, in a container of hard or periodic faces: a flight's
 radius is that at time 0 of the clocks, and 1 + rate t times that at time t. Queue, boxes and flights are

@@ -1,4 +1,4 @@
-"""Impulses by the place where a particle receives them, along one axis (`kernels.physics.planes`): what makes
+"""Impulses by the place where a particle receives them, along one axis (`kernels.physics.flight`): what makes
 densities accurate.
 """
 
@@ -93,7 +93,7 @@ _DOUBLE, _WORD = ir.DoubleType(), ir.IntType(64)
 
 
 def nearest(gap: Lanes, length: ir.Value) -> Lanes:
-    """Differences along a periodic axis by the nearest image, as in `physics.periodic`."""
+    """Differences along a periodic axis by the nearest image, as in `physics.flight`."""
     side = gap.all(length)
     lower = (gap + side).where(gap + gap < gap.all(0.0) - side, gap)
     return (gap - side).where(gap + gap > side, lower)

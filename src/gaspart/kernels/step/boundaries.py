@@ -24,7 +24,7 @@ from gaspart.kernels.physics.flight import advance, bin_at, face_plane, row_of
 from gaspart.kernels.physics.sums import add, add_whole
 from gaspart.kernels.step.model import LOSS, VIRIAL
 
-# Impulses by the place where a particle receives them, along one axis (`kernels.physics.planes`), in steps.
+# Impulses by the place where a particle receives them, along one axis (`kernels.physics.flight`), in steps.
 #
 # Between two impulses a particle flies freely here too, for a time that may be negative: a contact is
 # where the pair is rewound to, a reflection at the face. So positions change by flights alone, and what

@@ -96,7 +96,7 @@ class StepTally(NamedTuple):
     by `running_sum.add_whole`; momentum and energy: the powers of two that few terms of these exceed.
 
     impulses (threads, rows, bins + 1, 2), by `add_whole`: those along an axis, as in
-    `kernels.physics.planes`, or None; pull, the acceleration along it; per_length, bins in a unit of length;
+    `kernels.physics.flight`, or None; pull, the acceleration along it; per_length, bins in a unit of length;
     turns, one over the number of bins if the axis is periodic, otherwise 0; row (N,), that of each particle,
     or None if there is one. They are not in a tuple of their own: numba passes no tuples in tuples to
     threads.
