@@ -1,8 +1,8 @@
 """Interior walls as arrays, with images of walls near periodic faces.
 
 There is a row for each wall, and for each image of a wall that comes near a periodic face. Rows of segments
-and plates are described in `kernels.obstacles.interior_wall`. Particles meet a wall near a periodic face across it
-too, so a wall has an image wherever one is within a radius of the container.
+and plates are described in `kernels.obstacles.interior_wall`. Particles meet a wall near a periodic face
+across it too, so a wall has an image wherever one is within a radius of the container.
 """
 
 from __future__ import annotations
