@@ -109,8 +109,9 @@ class Run:
     def _vectors(self, name: str) -> xr.DataArray:
         """Those of all frames. Raises SceneError if the file does not keep them."""
         if name not in self.data:
-            rule = f"of each particle the file has nothing else, and {name} are needed"
-            raise SceneError("keep", self.data.attrs.get("keep"), rule)
+            kept = self.data.attrs.get("keep")
+            rule = f"the file holds only {kept} of the particles, and {name} are needed; run without keep"
+            raise SceneError("keep", kept, rule)
         return self.data[name]
 
     @cached_property
@@ -363,7 +364,7 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
     that has not advanced."""
     scene, engine = simulation.scene, simulation.engine
     if simulation.time <= 0.0:
-        raise SceneError("simulation", "at time 0", "has not advanced")
+        raise SceneError("simulation", "at time 0", "has not advanced; call advance(duration=...) first")
     frames = int(np.clip(_MOST // (3 * max(1, scene.count) * scene.dimension), 33, REPEATED))
     times = np.linspace(0.0, simulation.time, frames)
     if step := engine.quantum:  # half a step more, so that rounding does not cost one

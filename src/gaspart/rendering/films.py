@@ -118,7 +118,10 @@ def film(
             raise no_run(source)
         if isinstance(source, Simulation | State):
             raise SceneError(
-                "trajectory", source, "must be a path or an open trajectory: a film needs frames"
+                "trajectory",
+                source,
+                "must be a path or an open trajectory: a film needs frames; gaspart.run(scene, path=...) "
+                "writes them",
             )
         source = _part(source, start, stop, every)
         direction = _checked(source, colour, trail, camera)
