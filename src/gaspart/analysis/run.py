@@ -8,7 +8,7 @@ from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -375,17 +375,29 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
     counter = PairCounter(again) if pairs else None
     for time in times:
         again.advance(until=time)
-        state, tally = again.state, again.tally
-        places = {"coordinates": state.positions, "velocities": state.velocities}
-        places["displacements"] = state.unwrapped
-        places = {name: by_number(state, values, scene.capacity) for name, values in places.items()}
-        extra = {} if state.piston is None else {"piston_position": state.piston[0]}
+        row = frame_of(again)
         if counter:
             counter.take()
-            extra["pair_collisions"] = counter.counts.copy()
-        row = {**vars(tally), **places, **extra, "time": again.time}
-        row["kinetic_energy"] = state.kinetic_energy
-        rows.append({name: value for name, value in row.items() if value is not None})
+            row["pair_collisions"] = counter.counts.copy()
+        rows.append(row)
+    return with_frames(simulation, rows)
+
+
+def frame_of(simulation: Simulation) -> dict[str, Any]:
+    """Return the variables of a frame: those of a simulation now."""
+    state, scene = simulation.state, simulation.scene
+    places = {"coordinates": state.positions, "velocities": state.velocities}
+    places["displacements"] = state.unwrapped
+    row = {name: by_number(state, values, scene.capacity) for name, values in places.items()}
+    if state.piston is not None:
+        row["piston_position"] = state.piston[0]
+    row = {**vars(simulation.tally), **row, "time": simulation.time, "kinetic_energy": state.kinetic_energy}
+    return {name: value for name, value in row.items() if value is not None}
+
+
+def with_frames(simulation: Simulation, rows: Sequence[dict[str, Any]]) -> xr.Dataset:
+    """Return frames of a simulation as a trajectory has them."""
+    scene, engine = simulation.scene, simulation.engine
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]
     if scene.is_open:

@@ -221,13 +221,13 @@ def _pictures(
         particles = particles_of(trajectory, n)
         if trail is not None:
             path.append(particles.positions[trail])
-        paths = _pieces(path, particles.lengths)
+        paths = pieces(path, particles.lengths)
         image = picture(particles, inner, colours_of(particles, colour, fastest), paths, direction)
         yield labels.around(image, f"{time:{decimals}}", scale) if labels else image
 
 
-def _pieces(path: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:
-    """A path as lines (M, 2), cut where it crosses a periodic face."""
+def pieces(path: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:
+    """Return a path as lines (M, 2), cut where it crosses a periodic face."""
     if len(path) < 2:
         return []
     points = np.array(path)
