@@ -229,13 +229,15 @@ def referees():
 
 
 def paper():
-    """The page of method and results: docs/paper.md with the numbers of the claims that have been judged. Its
-    places begin with the figure, {{figure: beginning of a claim}}."""
+    """Return the page of method and results: workflow/report/paper.md with the numbers of judged claims.
+
+    Its places begin with the figure, {{figure: beginning of a claim}}.
+    """
     rows = []
     for path in sorted((ROOT / "results/claims").glob("*.csv")):
         with path.open(newline="", encoding="utf-8") as file:
             rows += [{**row, "claim": f"{row['figure']}: {row['claim']}"} for row in csv.DictReader(file)]
-    text = (ROOT / "docs/paper.md").read_text(encoding="utf-8")
+    text = (ROOT / "workflow/report/paper.md").read_text(encoding="utf-8")
     return {"paper.md": filled(text, rows, "(see the claims)")}
 
 

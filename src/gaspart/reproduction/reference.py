@@ -252,7 +252,7 @@ the Boltzmann or the Enskog equation.""",
     "config": _Page(
         "Keys of a config",
         "Experiments, points, engines, runs and films of the workflow.",
-        "[The config](../config.md) explains them.",
+        "[The workflow](../workflow.md) explains them.",
         _experiment_keys,
     ),
     "figures": _Page(
