@@ -108,11 +108,8 @@ def test_files_and_functions_that_the_architecture_names_exist():
 
 def test_lines_that_the_page_on_help_explains_exist():
     source = "".join(path.read_text(encoding="utf-8") for path in SOURCE.rglob("*.py"))
-    text = (
-        (DOCS / "installation.md")
-        .read_text(encoding="utf-8")
-        .partition("\n## When something goes wrong\n")[2]
-    )
+    page = (DOCS / "installation.md").read_text(encoding="utf-8")
+    text = page.partition("\n## When something goes wrong\n")[2]
     rows = re.findall(r"^\| (`.+?) \|", text, re.M)
     lines = [line for row in rows for line in re.findall(r"`([^`]+)`", row)]
     assert len(lines) > 12
