@@ -270,5 +270,5 @@ def test_every_field_of_the_specifications_is_in_the_documentation():
     for fields, found in zip((set(AMBER.split()), schema, columns), named, strict=True):
         assert fields <= found, fields - found
     rows = [line for section in sections for line in section.splitlines() if line.startswith("| ")]
-    words = ("used", "refused", "not elastic", "no effect")
+    words = ("used", "rejected", "not elastic", "no effect")
     assert not [row for row in rows if not any(word in row for word in (*words, "field", "---"))]
