@@ -8,7 +8,7 @@ from scipy import stats
 
 import gaspart as gp
 from gaspart.analysis.fields import QUANTITIES
-from gaspart.analysis.measure import measure
+from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES, having, selecting
 from gaspart.errors import SceneError
 
