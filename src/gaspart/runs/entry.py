@@ -162,13 +162,14 @@ def run(
     needs_paths = _needs_paths(wanted, scene, engine, follow, correlations, initial)
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    contents = {"displacements": displacements or needs_paths, "follow": follow, "keep": keep, "pairs": pairs}
-    contents |= {"impulses": impulses, "pair_impulses": pair_impulses, "correlations": correlations}
     if impulses is None and wanted is not None:
-        contents["impulses"] = _useful_impulses(wanted, scene, engine)
-    start = _start(initial, scene, path, replicas)
-    fields = recipe_fields({**contents, "until": wanted, "initial": start})
-    recipe = Recipe(scene, engine, seed, duration, sample_interval, **fields)
+        impulses = _useful_impulses(wanted, scene, engine)
+    tallies = {"impulses": impulses, "pair_impulses": pair_impulses}
+    recipe = Recipe(
+        scene, engine, seed, duration, sample_interval, displacements or needs_paths,
+        correlations=correlations, until=wanted, initial=_start(initial, scene, path, replicas),
+        **recipe_fields({"follow": follow, "keep": keep, "pairs": pairs, **tallies}),
+    )  # fmt: skip
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return _record(_in_replicas(recipe, replicas), _required(path), options, examined)
 

@@ -289,7 +289,13 @@ ASKED: dict[str, type[OptionalTally]] = {
 """Tallies that a run can have beside those of its scene, by name."""
 REQUESTED = {name: tally for name, tally in ASKED.items() if tally.form}
 """Tallies that an option requests by its text, by name."""
-TALLIES = (*ASKED.values(), WallShearTally, EntryTally, FixedCollisionTally, PerAreaTally)
+TALLIES: tuple[type[OptionalTally], ...] = (
+    *ASKED.values(),
+    WallShearTally,
+    EntryTally,
+    FixedCollisionTally,
+    PerAreaTally,
+)
 """All optional tallies."""
 
 
