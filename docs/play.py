@@ -18,14 +18,14 @@ from pathlib import Path
 import yaml
 
 import gaspart as gp
-from gaspart.accuracy.target import scales
+from gaspart.accuracy.scales import scales
 from gaspart.cli.new import templates
 from gaspart.rendering.live import meters_of
 from gaspart.rendering.live_gas import LiveGas
 
 MOST = 4_000_000
 """Bytes of all files."""
-_FRAMES, _CROSSINGS = 61, 1.5
+_FRAMES, _CROSSINGS = 41, 1.0
 """Frames of a run, and its duration in times in which a particle crosses the container."""
 _STEPS = 400
 """Steps of the gauges."""

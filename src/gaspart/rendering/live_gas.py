@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.accuracy.target import scales
-from gaspart.analysis.measure import measure
+from gaspart.accuracy.scales import scales
+from gaspart.analysis.measuring import measure
 from gaspart.analysis.run import frame_of, with_frames
 from gaspart.analysis.statistics.blocks import correlated_mean
 from gaspart.engines import Engine

@@ -12,10 +12,10 @@ from gaspart.kernels.event import impulses as kernels
 from gaspart.kernels.event.impulses import MEETING, OTHERS, PairImpulses
 from gaspart.kernels.event.simd import PLACES
 from gaspart.kernels.event.stress import Stress, add_flights, add_sheared_flights
-from gaspart.kernels.memory import WIDTH
 from gaspart.kernels.model import Model
 from gaspart.kernels.physics.flight import advance_all
-from gaspart.kernels.physics.sums import values
+from gaspart.kernels.physics.running_sum import values
+from gaspart.kernels.simd import WIDTH
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.impulses import row_count
@@ -217,3 +217,7 @@ def pair_impulses_part(
     )
     pairs = 0.5 * n * (n - 1) * d * ball_volume(d)  # per volume and distance^(d - 1), if independent
     return PairImpulsesPart(kernel, unit_mass * scene.container.volume / (pairs * per_unit))
+
+
+PARTS = {"stress": stress_part, "impulses": impulses_part, "pair_impulses": pair_impulses_part}
+"""Functions that make the part of an optional tally of the event-driven engine, by its name."""
