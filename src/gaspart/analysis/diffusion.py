@@ -252,10 +252,7 @@ def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
 def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
     """(G, stretches, d) of the squared displacements between consecutive lags, over two."""
     squares = np.array(
-        [
-            [((path[lag:] - path[: len(path) - lag]) ** 2).mean(axis=(0, 1)) for lag in lags]
-            for path in groups.paths
-        ]
+        [[((path[lag:] - path[: len(path) - lag]) ** 2).mean(axis=(0, 1)) for lag in lags] for path in groups]
     )
     return 0.5 * np.diff(squares, axis=1) / (groups.interval * np.diff(lags))[:, None]
 

@@ -99,15 +99,16 @@ class Run:
     @cached_property
     def positions(self) -> np.ndarray:
         """(T, N, d); NaN where faces are open, of numbers that no particle has."""
-        return self._vectors("coordinates").values.astype(float)
+        return self.vectors("coordinates").values.astype(float)
 
     @cached_property
     def velocities(self) -> np.ndarray:
         """(T, N, d)."""
-        return self._vectors("velocities").values.astype(float)
+        return self.vectors("velocities").values.astype(float)
 
-    def _vectors(self, name: str) -> xr.DataArray:
-        """Those of all frames. Raises SceneError if the file does not keep them."""
+    def vectors(self, name: str) -> xr.DataArray:
+        """Return vectors (T, N, d) of all frames, which are read as they are used. Raises SceneError if the
+        file does not have them."""
         if name not in self.data:
             rule = f"of each particle the file has nothing else, and {name} are needed"
             raise SceneError("keep", self.data.attrs.get("keep"), rule)
@@ -205,7 +206,7 @@ class Run:
             whole = np.einsum("tnd,tnd,n->t", *[self.velocities[:, self.moving]] * 2, masses)
         else:  # the energy is in double precision, and the momentum that of any frame
             whole = 2.0 * self.data["kinetic_energy"].values
-            first = self._vectors("velocities")[0].values[self.moving].astype(float)
+            first = self.vectors("velocities")[0].values[self.moving].astype(float)
             momentum = np.where(self.conserved, masses @ first, 0.0)
             energies = whole - (momentum @ momentum) / (masses.sum() or 1.0)
         moves = energies.mean() > _AT_REST * whole.mean()
