@@ -224,8 +224,8 @@ PLANTS = [
     Plant(
         "pairs N / (N - 1) twice",
         "analysis.pairs",
-        "each = np.array([g for",
-        "each = stored / (stored - 1) * np.array([g for",
+        "each[n] = counts / (len(run.time[part]) * ideal)",
+        "each[n] = stored / (stored - 1) * counts / (len(run.time[part]) * ideal)",
         ("periodic", "rdf"),
     ),
     Plant(

@@ -41,6 +41,7 @@ REPEATED = 129
 """Frames of a simulation, which is run again to measure it; fewer of many particles."""
 _AT_REST = 1e-24  # of a kinetic energy: a rounding error, squared
 _MOST = 20_000_000  # numbers that such frames hold
+_BLOCK = 2_000_000  # numbers of a block of frames that are read at once; of one frame, if it has more
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,13 @@ class Run:
             rule = f"of each particle the file has nothing else, and {name} are needed"
             raise SceneError("keep", self.data.attrs.get("keep"), rule)
         return self.data[name]
+
+    def blocks(self, name: str, frames: slice) -> Iterator[np.ndarray]:
+        """Read vectors (T, N, d) of some frames in blocks, whose memory does not grow with their number."""
+        values = self.vectors(name)[frames]
+        length = max(1, _BLOCK // max(1, values[0].size))
+        for first in range(0, len(values), length):
+            yield values[first : first + length].values
 
     @cached_property
     def masses(self) -> np.ndarray:
