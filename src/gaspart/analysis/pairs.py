@@ -103,7 +103,7 @@ def ideal_counts(count: int, lengths: Sequence[float] | np.ndarray, bins: int, f
 # g(r) from the momentum that pairs of particles gain along their separation.
 #
 # In equilibrium this gives k_B T g(r) without the noise of counting, but for what all distances share
-# (`Tally.contact_impulse_sum`; docs/design-notes.md has the derivation). That follows from the number of
+# (`Tally.contact_impulse_sum`; docs/estimators.md has the derivation). That follows from the number of
 # pairs within the furthest distance, which is counted. Counts have less noise in wide shells of a dense
 # fluid, so both are mixed, as densities are (`gaspart.analysis.impulses`).
 
@@ -115,7 +115,7 @@ _ALIKE = 1e-9
 def kept(run: Run) -> PairImpulseTally | None:
     """What a run has kept of impulses of pairs; None if that is nothing, or not all particles are in the
     file, from which the temperature follows."""
-    return None if run.is_subset else stored_tally(run.data.attrs.get("tallies", "[]"), PairImpulseTally)
+    return None if run.is_subset else stored_tally(run.data.attrs, PairImpulseTally)
 
 
 def shell_volumes(bins: int, dimension: int) -> np.ndarray:
