@@ -100,7 +100,7 @@ def field(
 
 
 def _axes(run: Run, axes: str | None) -> list[int]:
-    """The numbers of the named axes. Raises SceneError."""
+    """Return the numbers of the named axes; raise SceneError for others."""
     names = "xyz"[: run.dimension]
     wanted = "xy" if axes is None else axes
     if not wanted or len(set(wanted)) < len(wanted) or not set(wanted) <= set(names):
@@ -109,7 +109,7 @@ def _axes(run: Run, axes: str | None) -> list[int]:
 
 
 def _numbers(cells: int | Sequence[int], axes: int) -> list[int]:
-    """The number of cells along each axis. Raises SceneError."""
+    """Return the number of cells along each axis; raise SceneError for others."""
     each = [cells] * axes if isinstance(cells, int) else list(cells)
     if len(each) != axes:
         raise SceneError("cells", each, f"must be one number, or {axes}")

@@ -1,4 +1,4 @@
-"""An observable of a trajectory, by its name, and the part of a run until a time."""
+"""Observables of a trajectory, by name, and the part of a run until a time."""
 
 from __future__ import annotations
 
@@ -110,8 +110,13 @@ def measure(
 
 @contextmanager
 def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
-    """The frames of a source until a time, whatever it is; itself if the time is None. pairs: whether those
-    of a simulation count the collisions of each pair of species. Raises SceneError for fewer than two."""
+    """Return the frames of a source until a time, which may be None.
+
+    For None it is the source itself.
+
+    If `pairs`, the frames of a simulation count the collisions of each pair of species. Raises SceneError for
+    fewer than two frames.
+    """
     if end is None:
         yield source
         return
@@ -208,12 +213,12 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
 
 
 def _of_motion() -> tuple[str, ...]:
-    """The observables of the motion of particles that are of a species too."""
+    """Return the observables of the motion of particles that can be measured by species."""
     return tuple(name for name in selecting("species") if name in having(scatter="particles"))
 
 
 def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
-    """The temperature and the mean speed of the moving particles of a species."""
+    """Measure the temperature and the mean speed of the moving particles of a species."""
     chosen, masses = selected(run, kind, None), run.masses[run.moving]
     shape = run.motion.velocities.shape
     velocities = run.motion.velocities[:, chosen]
@@ -236,7 +241,10 @@ def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
 
 
 def _column(name: str, found: list[Observable | None]) -> xr.Dataset:
-    """One observable of all species with its uncertainty; nothing if it was measured of none."""
+    """Join one observable of all species with its uncertainty.
+
+    The result is empty if it was measured for no species.
+    """
     known = [one for one in found if one is not None]
     if not known:
         return xr.Dataset()
@@ -347,10 +355,16 @@ def _in_joint_bins(
 
 @dataclass(frozen=True)
 class _Recipe:
-    """What a run was made from, and what it has become. name: of the run, for its user; settings: its scene
-    and engine; seed; draws: whether this matters after the start; times: of its states, all until the last
-    one if `every`; state: the bits of that at a time, as a file has them; impulses: what it has kept of
-    them."""
+    """Recipe of a run, and its outcome.
+
+    name : name of the run, for its user.
+    settings : scene and engine.
+    seed : seed.
+    draws : True if the seed matters after the start.
+    times : times of its states, all until the last one if `every`.
+    state : function that returns the bits of the state at a time, as a file has them.
+    impulses : the impulses that it has stored.
+    """
 
     name: str
     settings: dict[str, Any]
@@ -363,7 +377,7 @@ class _Recipe:
 
 
 def _recipe(run: Any, name: str) -> _Recipe:
-    """The recipe of an open trajectory or a simulation."""
+    """Return the recipe of an open trajectory or a simulation."""
     if isinstance(run, Simulation):
         settings = {"scene": run.scene.to_dict(), "engine": engine_to_dict(run.engine)}
         times = np.array([0.0, run.time])
@@ -381,18 +395,21 @@ def _recipe(run: Any, name: str) -> _Recipe:
 
 
 def _named(tally: ImpulseTally | None) -> str:
-    """What a run has kept of impulses, as its user asked for it."""
+    """Return the impulses that a run has stored, in the words of its option."""
     return "none" if tally is None else tally.to_text()
 
 
 def _stored(frames: dict[str, np.ndarray], time: float) -> bytes:
-    """The state of a trajectory in the frame at a time."""
+    """Return the state of a trajectory in the frame at a time."""
     number = int(np.searchsorted(frames["time"], time))
     return _bits(*(frames[one][number] for one in ("coordinates", "velocities") if one in frames))
 
 
 def _simulated(simulation: Simulation, time: float) -> bytes:
-    """The state of a simulation at a time until the present one, for which it is run again."""
+    """Return the state of a simulation at a time until the present one.
+
+    For an earlier time the simulation is run again.
+    """
     if time < simulation.time:
         simulation = simulation.again()
         simulation.advance(until=time)
@@ -401,12 +418,15 @@ def _simulated(simulation: Simulation, time: float) -> bytes:
 
 
 def _bits(*vectors: np.ndarray) -> bytes:
-    """Of positions and velocities (N, d), in single precision."""
+    """Return the bytes of positions and velocities (N, d), in single precision."""
     return np.stack(vectors).astype(np.float32).tobytes()
 
 
 def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
-    """Raise SceneError unless a run is a replica of others: the same but for the seed or the first state."""
+    """Raise SceneError unless a run is a replica of others.
+
+    Replicas differ in nothing but the seed or the first state.
+    """
     for other in others:
         if difference := _difference(recipe.settings, other.settings):
             key, one, two = difference
@@ -422,7 +442,7 @@ def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
 
 
 def _last_common(one: _Recipe, other: _Recipe) -> float | None:
-    """The last time at which both have a state; None if they have not even the first one."""
+    """Return the last time at which both have a state; None without a common start."""
     if one.every and other.every:
         return float(min(one.times[-1], other.times[-1]))
     if one.every or other.every:
@@ -434,7 +454,10 @@ def _last_common(one: _Recipe, other: _Recipe) -> float | None:
 
 
 def _difference(one: Any, two: Any, key: str = "") -> tuple[str, Any, Any] | None:
-    """The first difference of two trees, as its dotted key and both values; None if they are equal."""
+    """Find the first difference of two trees: its dotted key and both values.
+
+    None if they are equal.
+    """
     if isinstance(one, dict) and isinstance(two, dict):
         pairs = {str(name): (one.get(name), two.get(name)) for name in {**one, **two}}
         form = f"{key}.{{}}" if key else "{}"
@@ -468,7 +491,7 @@ def _described(values: np.ndarray) -> str:
 
 
 def _mean(found: list[Observable], recipes: list[_Recipe]) -> Observable:
-    """The mean of independent measurements of one observable, of runs with these recipes."""
+    """Average independent measurements of one observable, of runs with these recipes."""
     first, quantity = found[0], str(found[0].attrs["quantity"])
     dims = first.estimate.dims
     for one, recipe in zip(found[1:], recipes[1:], strict=True):

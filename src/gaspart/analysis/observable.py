@@ -313,7 +313,7 @@ def _cells(found: Observable) -> list[str]:
 
 
 def _plot_field(found: Observable, axis: Axes, cells: list[str]) -> None:
-    """Draw a scalar field as a map of colours; of a flow the components along both axes, as arrows."""
+    """Draw a scalar field as a map of colours, a flow as arrows along both axes."""
     if len(cells) > _PLANE:
         raise SceneError("axes", "".join(cells), "a plot has two; choose a layer: .isel(z=0)")
     x, y = (found[name] for name in cells)
@@ -347,10 +347,13 @@ def label_of(values: xr.DataArray) -> str:
 
 
 def scalar(name: str, series: np.ndarray, edges: np.ndarray, **about: Any) -> Observable:
-    """The mean of a series over the intervals between frames, with the error of a correlated series.
+    """Return the mean of a correlated series over the intervals between frames, with its error.
 
-    series (M,); edges (M + 1,), the times of the frames. about: `units`, `long_name`, and perhaps `theory`, a
-    value and its uncertainty, and its `source`. Raises SceneError for fewer than `LEAST_INTERVALS`.
+    series : (M,).
+    edges : (M + 1,), the times of the frames.
+    about : `units`, `long_name`, and perhaps `theory`, a value and its uncertainty, and its `source`.
+
+    Raises SceneError for fewer values than `LEAST_INTERVALS`.
     """
     if len(series) < LEAST_INTERVALS:
         raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_INTERVALS + 1} or more")
@@ -376,7 +379,10 @@ def observable(
     theory: tuple[Any, Any] | None = None,
     source: str | None = None,
 ) -> Observable:
-    """A result from its parts. along: dimension -> its coordinate and the attributes of that."""
+    """Build a result from its parts.
+
+    `along` maps a dimension to its coordinate and the attributes of the coordinate.
+    """
     dims = tuple(along)
     parts = {name: (values, long_name), f"{name}_error": (errors, "standard uncertainty")}
     if theory is not None:
