@@ -1,7 +1,8 @@
-"""The local density and temperature of a steady scene, from which bounds on the errors of DSMC follow.
+"""Local density and temperature of a steady scene, which bound the errors of DSMC.
 
-A gas that is even has its mean values everywhere; one under gravity those of hydrostatics (`column`), where
-theory knows them; any other has those that a pilot run of the exact engine shows.
+A homogeneous gas has its mean values everywhere; a gas under gravity has the profiles of hydrostatics
+(`column`), where theory knows them; any other gas has the values that a pilot run of the exact engine
+measures.
 """
 
 from __future__ import annotations
@@ -36,9 +37,17 @@ _ROUNDS = 40
 
 @dataclass(frozen=True)
 class Column:
-    """heights (Z,); numbers: (S, Z) particles per height of kinds that differ in mass; masses (S,);
-    temperature; pull: the acceleration; area: across it; diameter, dimension: of the particles; ideal: see
-    the module."""
+    """Column of a gas in equilibrium under gravity.
+
+    heights : (Z,), heights.
+    numbers : (S, Z), particles per height, of kinds that differ in mass.
+    masses : (S,), masses of the kinds.
+    temperature : temperature.
+    pull : acceleration of gravity.
+    area : area of the cross-section.
+    diameter, dimension : of the particles.
+    ideal : see the module.
+    """
 
     heights: np.ndarray
     numbers: np.ndarray
@@ -57,7 +66,7 @@ class Column:
 
     @property
     def energy(self) -> float:
-        """Of all particles, kinetic and potential."""
+        """Energy of all particles, kinetic and potential."""
         total = np.trapezoid(self.numbers, self.heights, axis=1)
         raised = np.trapezoid(self.numbers * self.heights, self.heights, axis=1)
         kinetic = 0.5 * self.dimension * self.temperature * total.sum()
@@ -65,14 +74,17 @@ class Column:
 
     @property
     def collisions(self) -> float:
-        """Per time, in units that do not depend on the state: to compare two columns of one scene."""
+        """Collisions per time, in units that do not depend on the state.
+
+        They serve to compare two columns of one scene.
+        """
         contact = 1.0 if self.ideal else theory.contact_value(self.filled, self.dimension)
         speed = np.sqrt(1.0 / self.masses[:, None] + 1.0 / self.masses)
         pairs = np.einsum("iz,jz,ij->z", self.numbers, self.numbers, speed) * contact
         return math.sqrt(self.temperature) * float(np.trapezoid(pairs, self.heights))
 
     def pressure(self, top: bool) -> float:
-        """On the floor, or at the top."""
+        """Compute the pressure on the floor, or at the top."""
         at = -1 if top else 0
         ratio = 1.0 if self.ideal else theory.compressibility_factor(self.filled[at], self.dimension)
         return float(self.numbers[:, at].sum() / self.area * self.temperature * ratio)
@@ -80,8 +92,16 @@ class Column:
 
 @dataclass(frozen=True)
 class Pulled:
-    """What a column is of: a scene under gravity along one axis with walls. axis: its number; low: whether
-    the floor is the lower wall; pull; height: that centres have; area; masses, counts (S,); diameter."""
+    """Scene under gravity along one axis with walls, whose columns are computed.
+
+    axis : number of the axis.
+    low : True if the floor is the lower wall.
+    pull : acceleration of gravity.
+    height : height that centres can reach.
+    area : area of the cross-section.
+    masses, counts : (S,), masses and numbers of particles of the kinds.
+    diameter : diameter of the particles.
+    """
 
     dimension: int
     axis: int
@@ -94,7 +114,10 @@ class Pulled:
     diameter: float
 
     def column(self, temperature: float, ideal: bool) -> Column:
-        """At a temperature. Raises ValueError if the fluid would be denser than its equation of state."""
+        """Compute the column at a temperature.
+
+        Raises ValueError if the fluid would be denser than its equation of state.
+        """
         d, weights = self.dimension, self.masses * self.pull / temperature
         top = min(self.height, self._reaches(temperature))
         z = np.linspace(0.0, top, _POINTS)
@@ -108,13 +131,18 @@ class Pulled:
         return Column(z, densities * self.area, *shape)
 
     def _reaches(self, temperature: float) -> float:
-        """How high the gas is: a close-packed bed, and above it an atmosphere of its lightest particles."""
+        """Return the height of the gas: a close-packed bed, and an atmosphere above it.
+
+        The atmosphere consists of the lightest particles.
+        """
         volume = self.counts.sum() * theory.particle_volume(self.dimension, self.diameter) / self.area
         return 2.0 * float(volume) + _SCALES * temperature / float(self.masses.min() * self.pull)
 
     def of_energy(self, energy: float, ideal: bool) -> Column:
-        """At the temperature at which it has an energy. Raises ValueError as `column`, and for an energy that
-        no temperature has."""
+        """Compute the column at the temperature at which it has an energy.
+
+        Raises ValueError as `column`, and for an energy that the column has at no temperature.
+        """
         if not energy > 0.0:
             raise ValueError(f"energy: {energy} (must be positive)")
         low, high = 0.0, 2.0 * energy / (self.dimension * float(self.counts.sum()))
@@ -128,20 +156,24 @@ class Pulled:
         return self.column(high, ideal)
 
     def energy_of(self, state: State) -> float:
-        """Of a state, kinetic and potential; the floor is at 0."""
+        """Compute the energy of a state, kinetic and potential; the floor is at 0."""
         place, length = state.positions[:, self.axis], float(state.lengths[self.axis])
         heights = (place if self.low else length - place) - 0.5 * (length - self.height)
         return float(state.translational_energy + self.pull * (state.masses @ heights))
 
     def settled(self, energy: float, heat: float | None, ideal: bool) -> Column:
-        """In equilibrium: at the temperature of its faces, `heat`, or else with its energy. Raises ValueError
-        as `of_energy`."""
+        """Compute the column in equilibrium: at the temperature of its faces, or with its energy.
+
+        The temperature of the faces is `heat`, if there is one. Raises ValueError as `of_energy`.
+        """
         return self.column(heat, ideal) if heat else self.of_energy(energy, ideal)
 
 
 def pulled(scene: Scene) -> Pulled | None:
-    """What theory knows of a scene under gravity, None if it knows nothing: of particles of one size between
-    hard walls, or ones at one temperature, that lose no energy."""
+    """Return the column of a scene under gravity, or None if theory does not know it.
+
+    Theory knows particles of one size that lose no energy, between hard walls, or walls at one temperature.
+    """
     pull = [(k, g) for k, g in enumerate(scene.gravity or ()) if g]
     kinds = [kind for kind in scene.kinds if kind.count]
     law, thermal = scene.restitution, scene.face_temperatures
@@ -164,8 +196,10 @@ def pulled(scene: Scene) -> Pulled | None:
 
 
 def between(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
-    """By how much an observable of a column of points differs from that of particles, relatively; top: of the
-    pressure, whether it is that at the top, None for any wall."""
+    """Compute the relative difference of an observable between columns of points and of particles.
+
+    For a pressure, `top` is True at the top, None for any wall.
+    """
     differences = {
         "collision_rate": abs(ideal.collisions / real.collisions - 1.0),
         "temperature": abs(ideal.temperature / real.temperature - 1.0),
@@ -178,14 +212,14 @@ def between(real: Column, ideal: Column, observable: str, top: bool | None) -> f
 
 
 def _of_profiles(real: Column, ideal: Column) -> float:
-    """Root mean square of the difference of two densities over that of the first."""
+    """Compute the root mean square of the difference of two densities, relative to the first."""
     exact = real.numbers.sum(axis=0)
     other = np.interp(real.heights, ideal.heights, ideal.numbers.sum(axis=0), right=0.0)
     return float(np.sqrt(((other - exact) ** 2).sum() / (exact**2).sum()))
 
 
 _LAYERS = 12
-"""Of a measured profile, in each axis, with as many particles in each."""
+"""Number of equally populated layers of a measured profile, in each axis."""
 _CERTAIN = 4.0
 """Standard errors by which two of all layers differ if there is a gradient."""
 _HELD = 0.02
@@ -196,10 +230,16 @@ _FREE = 0.02
 
 @dataclass(frozen=True)
 class Conditions:
-    """Layers across an axis, from wall to wall: place (S,) of their middle; share (S,) of all particles in
-    each; crowding (S,), the density over that of a gas that fills evenly what centres can reach; temperature
-    (S,). axis: None of an even gas; scale: the shortest length along it over which density or temperature
-    change by the factor e; columns: under gravity, by theory, of the real gas and of an ideal one."""
+    """Layers across an axis, from wall to wall.
+
+    place : (S,), positions of their middles.
+    share : (S,), fractions of all particles in them.
+    crowding : (S,), density relative to a gas that fills the accessible volume uniformly.
+    temperature : (S,), temperatures.
+    axis : number of the axis, None for a homogeneous gas.
+    scale : shortest length along the axis over which density or temperature change by the factor e.
+    columns : under gravity, by theory, the columns of the real gas and of an ideal gas.
+    """
 
     scene: Scene
     place: np.ndarray
@@ -240,11 +280,12 @@ class Conditions:
 
     @cached_property
     def contact_of_few(self) -> np.ndarray:
-        """(S,) that of so many particles, inf where a pair has no room.
+        """Contact value (S,) of the finite number of particles; inf where a pair does not fit.
 
-        A pair at contact has not to avoid itself: 1 / (1 - v / V), v the volume from which one of the pair
-        keeps the centre of the other, which is exact of two particles, times the contact value of the rest.
-        To first order in the packing fraction of spheres 1 + (5/2 + 3/N) eta: 4 eta of two, 5/2 eta of many.
+        A pair at contact need not avoid itself: 1 / (1 - v / V), with v the volume from which one particle of
+        the pair keeps the centre of the other, which is exact for two particles, times the contact value of
+        the rest. To first order in the packing fraction of spheres 1 + (5/2 + 3/N) eta: 4 eta for two, 5/2
+        eta for many.
         """
         radii, _, numbers = self._kinds
         d, count = self.scene.dimension, self.scene.count
@@ -278,7 +319,7 @@ class Conditions:
 
     @property
     def quickened(self) -> float:
-        """How often particles collide over how often they would in an even gas as hot as they start."""
+        """Collision rate divided by the rate in a homogeneous gas as hot as at the start."""
         kinds = self.scene.moving_kinds
         d = self.scene.dimension
         start = sum(kind.count * kind.initial_temperature(d) for kind in kinds) / self.scene.count
@@ -293,8 +334,11 @@ class Conditions:
 
     @cached_property
     def surfaces(self) -> float:
-        """What part of all contacts lack a neighbour beyond a wall, to first order: the sum over axes with
-        walls of the largest diameter over the length in which the particles are."""
+        """Fraction of all contacts that lack a neighbour beyond a wall, to first order.
+
+        It is the sum over axes with walls of the largest diameter divided by the length in which the
+        particles are.
+        """
         sides = np.where(self.scene.container.periodic, math.inf, self.free)
         if self.axis is not None and math.isfinite(sides[self.axis]):
             sides[self.axis] = min(sides[self.axis], self.scale)
@@ -302,18 +346,26 @@ class Conditions:
 
     @cached_property
     def memory(self) -> float:
-        """|D / Enskog's - 1| of spheres, by which correlated collisions change transport; of discs, whose
-        coefficients grow with the size of the system, the same at this packing fraction, an estimate."""
+        """Effect |D / Enskog's - 1| of correlated collisions on the transport of spheres.
+
+        The coefficients of discs grow with the size of the system; their estimate is the value at the same
+        packing fraction.
+        """
         densest = min(float(self.filled.max()), theory.ERPENBECK_WOOD_HIGHEST)
         return abs(float(theory.erpenbeck_wood_ratio(densest)) - 1.0) if densest > 0.0 else 0.0
 
     def of_points(self, observable: str, face: str | None) -> float | None:
-        """By how much an observable of points differs from that of particles, relatively; face: of the
-        pressure; None where theory does not know the column."""
+        """Compute the relative difference of an observable between points and particles.
+
+        `face` is the wall of a pressure. None if theory does not know the column.
+        """
         return between(*self.columns, observable, self._top(face)) if self.columns else None
 
     def _top(self, face: str | None) -> bool | None:
-        """Whether a face of the container is at the top of a column, None of any that is not across it."""
+        """Return True if a face of the container is at the top of a column.
+
+        None for a face that is not across the axis of the column.
+        """
         scene, axis = self.scene, self.axis
         if face is None or axis is None or face[0] != "xyz"[axis] or scene.gravity is None:
             return None
@@ -321,7 +373,10 @@ class Conditions:
 
 
 def known_conditions(scene: Scene, start: State) -> Conditions | None:
-    """By theory, None where that knows nothing; start: a state of the scene, which has its energy."""
+    """Compute conditions by theory; None where theory knows nothing.
+
+    The initial state `start` determines the energy of the scene.
+    """
     if column := pulled(scene):
         try:
             return _of_column(scene, column, start)
@@ -334,7 +389,7 @@ def known_conditions(scene: Scene, start: State) -> Conditions | None:
 
 
 def _is_even(scene: Scene) -> bool:
-    """Whether a scene becomes even, whatever its start."""
+    """Return True if a scene becomes homogeneous from any start."""
     law = scene.restitution
     uneven = [
         scene.gravity is not None,
@@ -348,19 +403,19 @@ def _is_even(scene: Scene) -> bool:
 
 
 def kinetic_temperature(scene: Scene, start: State) -> float:
-    """Of a state, k_B T; 0 of particles at rest."""
+    """Compute the temperature k_B T of a state; 0 for particles at rest."""
     moving = np.isfinite(start.masses)
     freedom = scene.dimension * moving.sum() - sum(scene.conserved_axes)
     return float(2.0 * start.translational_energy / freedom) if freedom > 0 else 0.0
 
 
 def even_conditions(scene: Scene, temperature: float) -> Conditions:
-    """Those of a gas that is the same everywhere."""
+    """Return the conditions of a homogeneous gas."""
     return Conditions(scene, np.zeros(1), np.ones(1), np.ones(1), np.array([temperature]))
 
 
 def _of_column(scene: Scene, pulled_scene: Pulled, start: State) -> Conditions:
-    """Under gravity. Raises ValueError where theory knows nothing."""
+    """Compute the conditions under gravity; raise ValueError where theory knows nothing."""
     energy, heat = pulled_scene.energy_of(start), max(scene.face_temperatures, default=None)
     real, ideal = (pulled_scene.settled(energy, heat, one) for one in (False, True))
     z, numbers = real.heights, real.numbers.sum(axis=0)
@@ -382,8 +437,11 @@ def _of_column(scene: Scene, pulled_scene: Pulled, start: State) -> Conditions:
 
 
 def measured_conditions(scene: Scene, path: Path) -> Conditions:
-    """Those of the measured part of a run, along the axis on which density and temperature change most.
-    Raises SceneError for a file without all particles."""
+    """Measure conditions in a run, along the axis on which they change most.
+
+    The measured part of the run counts, and the change of density and temperature. Raises SceneError for a
+    file without all particles.
+    """
     with open_run(path, None, sheared=True) as run:
         places = run.positions[:, run.moving]
         thermal = (run.masses[run.moving] * (run.peculiar**2).sum(axis=2)) / run.dimension
@@ -392,7 +450,7 @@ def measured_conditions(scene: Scene, path: Path) -> Conditions:
 
 
 def _along(scene: Scene, axis: int, places: np.ndarray, thermal: np.ndarray) -> Conditions:
-    """Layers with as many particles in each of frames (T, M)."""
+    """Compute layers that are equally populated in frames (T, M), along an axis."""
     lower, upper = (float(one[axis]) for one in accessible(scene))
     order = np.argsort(places, axis=None)
     layers = np.array_split(order, _LAYERS)

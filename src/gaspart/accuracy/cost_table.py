@@ -1,12 +1,13 @@
-"""The table of measured costs and errors, and interpolation between its points.
+"""Table of measured costs and errors, and interpolation between its points.
 
 Columns: ``dimension``, ``packing_fraction``; ``engine`` (event; step, with its standard four passes and
-rewinding; dsmc and dsmc enskog, by its model), ``precision``, ``time_step`` in diameters over the thermal
-speed (kT / m)^(1/2), of DSMC in its own step, a fifth of a mean free time, 0 for event; ``quantity``, its
-``value`` and standard ``error``. Quantities: ``seconds`` of processor time for one exact contact of two
-particles; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance of an estimate
-times the contacts that it is made of; ``price_<feature>``, the time per event with a feature over that
-without it. Observables: Z, collision_rate, D. Other errors follow from theory (`gaspart.accuracy.tabulated`).
+rewinding; dsmc and dsmc enskog, by its model), ``precision``, ``time_step`` in diameters divided by the
+thermal speed (kT / m)^(1/2), for DSMC in its own step, a fifth of a mean free time, 0 for event;
+``quantity``, its ``value`` and standard ``error``. Quantities: ``seconds`` of CPU time for one exact contact
+of two particles; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance of an
+estimate times the number of its contacts; ``price_<feature>``, the time per event with a feature divided by
+the time without it. Observables: Z, collision_rate, D. Other errors follow from theory
+(`gaspart.accuracy.tabulated`).
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ _BEYOND = 1.05  # a packing fraction may exceed those of the table by this facto
 
 @cache
 def read() -> tuple[dict, ...]:
-    """All rows, with numbers as numbers."""
+    """Read all rows, and convert numbers."""
     with PATH.open(encoding="utf-8") as file:
         lines = [line for line in file if not line.startswith("#")]
     kinds = (int, float, str, str, float, str, float, float)
@@ -63,30 +64,30 @@ def read() -> tuple[dict, ...]:
 
 
 def lowest(dimension: int) -> float:
-    """The lowest packing fraction at which an engine was timed, minus 5 %."""
+    """Return the lowest packing fraction at which an engine was timed, minus 5 %."""
     timed = (row for row in read() if row["quantity"] == "seconds" and row["dimension"] == dimension)
     return min(float(row["packing_fraction"]) for row in timed) / _BEYOND
 
 
 def steps(dimension: int, engine: str) -> list[tuple[str, float]]:
-    """(precision, time_step) of all timed settings of an engine."""
+    """Return precision and time step of all timed settings of an engine."""
     timed = (row for row in read() if row["engine"] == engine and row["quantity"] == "seconds")
     found = (row for row in timed if row["dimension"] == dimension)
     return list(dict.fromkeys((row["precision"], row["time_step"]) for row in found))
 
 
 def has_biases(engine: str) -> bool:
-    """Whether errors of an engine were measured; of the others they follow from theory."""
+    """Return True if errors of an engine were measured; otherwise they follow from theory."""
     return any(row["engine"] == engine and row["quantity"].startswith(_BIAS) for row in read())
 
 
 def bias(
     dimension: int, fraction: float, precision: str, step: float, observable: str, engine: str = "step"
 ) -> float:
-    """A bound on the relative error of an engine, by default that of time steps, with two standard errors;
-    inf where none was measured.
+    """Return a bound on the relative error of an engine, with two standard errors.
 
-    Between packing fractions the larger of the neighbours' is taken: errors change their sign between them.
+    The default engine is the one with time steps. The bound is inf where no error was measured. Between
+    packing fractions the larger error of both neighbours is taken: errors change their sign between them.
     """
     eta, value, error = _curve(dimension, engine, precision, step, f"{_BIAS}{observable}")
     if not eta.size or not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND:
@@ -100,8 +101,11 @@ def bias(
 def seconds(
     dimension: int, fraction: float, engine: str, precision: str = "float64", step: float = 0.0
 ) -> float:
-    """Processor time of one exact contact, on the machine of the table; inf where it was not measured. Beyond
-    the gases of the table that of an engine without steps is that of the nearest one."""
+    """Return the CPU time of one exact contact, on the machine of the table.
+
+    It is inf where it was not measured. Outside the gases of the table an engine without steps has the time
+    of the nearest gas.
+    """
     eta, value, _ = _curve(dimension, engine, precision, step, "seconds")
     if not eta.size or (step and not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND):
         return np.inf
@@ -109,10 +113,11 @@ def seconds(
 
 
 def noise(dimension: int, fraction: float, observable: str) -> float:
-    """Relative variance of an observable, times the contacts that it is made of; inf if there is none.
+    """Return the relative variance of an observable times the number of its contacts.
 
-    In a gas more dilute than those of the table that of Z falls with the square of (Z - 1) / Z, since Z - 1
-    is in proportion to the contacts, and the others are those of the most dilute one.
+    It is inf if it was not measured. In a gas more dilute than the gases of the table the variance of Z falls
+    with the square of (Z - 1) / Z, since Z - 1 is in proportion to the contacts, and the others are those in
+    the most dilute gas.
     """
     eta, value, _ = _curve(dimension, _EXACT, "float64", 0.0, f"noise_{observable}")
     if not eta.size:
@@ -130,7 +135,10 @@ def noise(dimension: int, fraction: float, observable: str) -> float:
 
 
 def prices(engine: str) -> dict[str, float]:
-    """The time per event with each feature that was measured over that without it (`price_of_features`)."""
+    """Return the time per event with each measured feature, divided by the time without it.
+
+    The features are measured by `price_of_features`.
+    """
     rows = (row for row in read() if row["engine"] == engine and row["quantity"].startswith(_PRICE))
     return {row["quantity"].removeprefix(_PRICE): row["value"] for row in rows}
 
@@ -139,7 +147,7 @@ def prices(engine: str) -> dict[str, float]:
 def _curve(
     dimension: int, engine: str, precision: str, step: float, quantity: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(packing fractions, values, errors) of one quantity."""
+    """Return packing fractions, values and errors of one quantity."""
     wanted = (dimension, engine, precision, step, quantity)
     keys = ("dimension", "engine", "precision", "time_step", "quantity")
     found = sorted(
@@ -161,7 +169,7 @@ def _curve(
 
 
 def rows(folder: Path) -> list[dict]:
-    """All rows of the table; see `gaspart.accuracy.cost_table` for what they mean."""
+    """Return all rows of the table; their meaning is in `gaspart.accuracy.cost_table`."""
     accuracy = xr.load_dataset(folder / "speed_accuracy.nc")
     found = [
         *_events(accuracy),
@@ -190,7 +198,7 @@ def _row(
 
 
 def _events(accuracy: xr.Dataset) -> Iterator[dict]:
-    """Times of the event-driven engine, in denser gases too than those of time steps."""
+    """Yield times of the event-driven engine, in denser gases than the time-stepped engine too."""
     for n in range(accuracy.sizes["timed"]):
         run = accuracy.isel(timed=n)
         gas = run.timed_dimension, run.timed_packing_fraction
@@ -198,7 +206,7 @@ def _events(accuracy: xr.Dataset) -> Iterator[dict]:
 
 
 def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
-    """Errors and times of the time-stepped engine."""
+    """Yield errors and times of the time-stepped engine."""
     for n in range(accuracy.sizes["row"]):
         row = accuracy.isel(row=n)
         gas = row.dimension, row.packing_fraction
@@ -217,7 +225,7 @@ def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
 
 
 def _models(accuracy: xr.Dataset) -> Iterator[dict]:
-    """Times of the models of the DSMC engine, with its own step and longer ones."""
+    """Yield times of the models of the DSMC engine, with its own step and longer ones."""
     names = {engine.equation: engine.timed_as for engine in DSMC.offered()}
     for n in range(accuracy.sizes["dsmc"]):
         run = accuracy.isel(dsmc=n)
@@ -230,7 +238,7 @@ def _models(accuracy: xr.Dataset) -> Iterator[dict]:
 
 
 def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:
-    """Relative variances of Z and of the collision rate, times the contacts that they come from."""
+    """Yield relative variances of Z and of the collision rate, times their numbers of contacts."""
     for n, fraction in enumerate(virial.packing_fraction.values):
         contacts = float(virial.collisions[n])
         for name, quantity in (("Z", "Z"), ("collision_rate", "collision_rate")):
@@ -240,8 +248,10 @@ def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:
 
 
 def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
-    """Relative variance of D of spheres, times the contacts that it comes from: one number, the median of all
-    gases (each has few replicas)."""
+    """Yield the relative variance of D of spheres, times its number of contacts.
+
+    It is one number, the median of all gases (each has few replicas).
+    """
     length = msd.time.max("lag") * 2.0 * msd.collision_rate  # lags reach to half a run
     contacts = 0.5 * msd["count"] * length * msd.replicas
     values = ((msd.diffusion_error / msd.diffusion) ** 2 * contacts).values
@@ -252,7 +262,7 @@ def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
 
 
 def _prices(price: xr.Dataset) -> Iterator[dict]:
-    """The cost of each feature, of 4000 spheres at a packing fraction of 0.2."""
+    """Yield the cost of each feature, for 4000 spheres at a packing fraction of 0.2."""
     for n in np.flatnonzero(price.feature.values != "plain"):
         at = price.isel(point=n)
         name = f"price_{str(at.feature.values).replace(' ', '_')}"
@@ -293,9 +303,13 @@ _MEASURED = ("gravity", "roughness")
 
 @dataclass(frozen=True)
 class Price:
-    """What a scene pays for beside its collisions. ratios: time per event with each measured feature over
-    that without it; unknown: features of the scene whose cost was not measured; single: time in single over
-    that in double precision, None for an engine that has one precision only."""
+    """Cost of the features of a scene, in addition to its collisions.
+
+    ratios : time per event with each measured feature, divided by the time without it.
+    unknown : features of the scene whose cost was not measured.
+    single : time in single precision divided by the time in double precision, None for an engine that has one
+        precision only.
+    """
 
     ratios: dict[str, float]
     unknown: tuple[str, ...]
@@ -303,8 +317,11 @@ class Price:
 
 
 def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
-    """The price of an observable of a scene with an engine, measured in a gas of 4000 spheres at a packing
-    fraction of 0.2 (figure `price_of_features`), where a feature that is absent costs nothing."""
+    """Return the price of an observable of a scene with an engine.
+
+    It was measured in a gas of 4000 spheres at a packing fraction of 0.2 (figure `price_of_features`), where
+    a feature that is absent costs nothing.
+    """
     has = {
         "walls": not scene.is_periodic,
         "gravity": any(scene.gravity or ()),
@@ -320,8 +337,10 @@ def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
 
 
 def _single(engine: Engine, dimension: int) -> float | None:
-    """Time per contact in single over that in double precision, of the gas at which the engine is timed; None
-    of an engine that was not timed in both."""
+    """Compute the time per contact in single precision divided by the time in double precision.
+
+    The gas is the one at which the engine is timed; None for an engine that was not timed in both.
+    """
     fraction, step = engine.timed_at
     single, double = (
         seconds(dimension, fraction, engine.timed_as, precision, step) for precision in ("float32", "float64")
@@ -339,10 +358,10 @@ _CONTACTS = 2e4
 
 @cache
 def factor(dimension: int, engine: str, precision: str, count: int) -> float:
-    """Processor time of a contact here over that of the table, for `count` particles; engine: its name in the
-    table.
+    """Measure the CPU time of a contact here, divided by the time in the table.
 
-    The gas at which the engine is `timed_at` is timed three times, after a short run from a lattice.
+    The gas at which the engine is `timed_at` is timed three times, with `count` particles, after a short run
+    from a lattice. `engine` is its name in the table.
     """
     growth = max(1.0, count / _MOST) ** _GROWTH
     count = min(max(count, _LEAST), _MOST)
@@ -365,5 +384,5 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
 
 
 def _named(name: str) -> Engine:
-    """An engine by its name in the table."""
+    """Return an engine by its name in the table."""
     return next(one for one in offered() if one.timed_as == name)

@@ -1,26 +1,27 @@
-"""What a run that ends when it is accurate has reached, and the rule that ends it.
+"""Accuracy that a run until accurate has reached, and the rule that ends the run.
 
-A run is examined when it has 64, 96, 128, 192 ... frames, whatever the time of day or the number of kills, on
-its frames so far without their first quarter. Each examination gives a value and its standard error e with f
-degrees of freedom. A run that ended at the first e that is small enough would end when e happens to be too
-small: its 95 % intervals would cover the true value in 88 to 94 % of runs. Two rules prevent this:
+A run is examined when it has 64, 96, 128, 192 ... frames, at any time of day and after any number of kills,
+on its frames so far without their first quarter. Each examination gives a value and its standard error e with
+f degrees of freedom. A run that ended at the first e that is small enough would end when e happens to be too
+small. Its 95 % intervals would cover the true value in 88 to 94 % of runs. Two rules prevent this:
 
-- The error that counts is the larger one of two successive examinations, that of the earlier one times the
+- The error that counts is the larger one of two successive examinations, the earlier one multiplied by the
   root of the ratio of their lengths. An error that fell by chance alone does not end the run, and intervals
   from this one, with Student's t for f degrees of freedom, cover the true value in 95 % of runs.
 - An upper bound of this error must be as small as required: e sqrt(f / chi2), chi2 the lower 10 % quantile of
-  chi-square for f, which is 1.32 e for f = 15 and 1.10 e for 100. f must be 15 or more, as of 16 independent
+  chi-square for f, which is 1.32 e for f = 15 and 1.10 e for 100. f must be 15 or more, from 16 independent
   blocks. So the true standard error is as small as required in 98 % of runs.
 
-Of replicas, which are independent, the value is the mean, and the error follows from those of each, by which
-degrees of freedom add up. They are examined when all have so many frames.
 
-Where a run keeps the energy of its start, which its seed draws, the run shows only the error for this
-energy: other seeds scatter by more (`gaspart.accuracy.reached`). The mean of replicas is of no single energy,
-so that its error has the scatter of the starts in it. No longer run reduces this part. Noise has to be as
-small as what the part leaves of the required accuracy, or as the accuracy itself if nothing is left.
+For replicas, which are independent, the value is the mean, and the error follows from the errors of the
+replicas; their degrees of freedom add up. They are examined when all have the same number of frames.
 
-Both were measured with autoregressive series (`tests/accuracy/test_until.py`); for fixed widths and
+If a run keeps the energy of its start, which its seed draws, the run shows only the error for this energy;
+other seeds scatter by more (`gaspart.accuracy.reached`). The mean of replicas is of no single energy, so that
+its error has the scatter of the starts in it. No longer run reduces this part. Noise has to be as small as
+what the part leaves of the required accuracy, or as the accuracy itself if nothing is left.
+
+Both rules were measured with autoregressive series (`tests/accuracy/test_until.py`); for fixed widths and
 independent samples the first is the problem of Chow and Robbins, Ann. Math. Stat. 36, 457 (1965).
 """
 
@@ -63,11 +64,16 @@ IDLE = 16384
 class AccuracyStatus:
     """Estimate of an observable by a run, compared with the required accuracy.
 
-    asked: what is required; component: the face or axis that is known worst, "" for a scalar; value; noise:
-    its standard error at the energies of the runs, correlations included, the larger one of the last two
-    examinations, inf where nothing was measured, for the reason in `rule`; freedom: degrees of freedom of the
-    noise; confirmed: whether there were two examinations; scatter: relative standard deviation of the value
-    from seed to seed by the energy of the start, beyond the noise; replicas: number of runs.
+    asked : requirement.
+    component : the least accurate face or axis, "" for a scalar.
+    value : its value.
+    noise : its standard error at the energies of the runs, correlations included, the larger one of the last
+        two examinations, inf where nothing was measured, for the reason in `rule`.
+    freedom : degrees of freedom of the noise.
+    confirmed : True if there were two examinations.
+    scatter : relative standard deviation of the value from seed to seed by the energy of the start, beyond
+        the noise.
+    replicas : number of runs.
     """
 
     asked: Requirement
@@ -82,13 +88,18 @@ class AccuracyStatus:
 
     @property
     def of_starts(self) -> float:
-        """Relative standard error of the mean of replicas by the energies of their starts; 0 for a single
-        run, whose interval is for its energy."""
+        """Relative standard error of the mean of replicas by the energies of their starts.
+
+        It is 0 for a single run, whose interval is for its energy.
+        """
         return self.scatter / math.sqrt(self.replicas) if self.replicas > 1 else 0.0
 
     @property
     def error(self) -> float:
-        """The standard error: of a single run for its energy, of replicas with the scatter of the starts."""
+        """Standard error: for replicas with the scatter of the starts.
+
+        For a single run it is the error at its energy.
+        """
         return math.hypot(self.noise, self.of_starts * self.value) if self.of_starts else self.noise
 
     @property
@@ -113,7 +124,7 @@ class AccuracyStatus:
 
     @property
     def excess(self) -> float:
-        """The upper bound of the noise divided by the required one; above 1 while it is not confirmed."""
+        """Upper bound of the noise divided by the required one; above 1 until confirmed."""
         if not self.confirmed or not math.isfinite(self.accuracy):
             return math.inf
         few = math.sqrt(LEAST_FREEDOM / self.freedom)
@@ -132,12 +143,15 @@ class AccuracyStatus:
 
 
 def noise_allowed(accuracy: float, of_starts: float) -> float:
-    """Return the relative noise at which a run ends, beside a relative error of the mean by its starts."""
+    """Return the relative noise at which a run ends, given the error due to its starts.
+
+    Both errors are relative.
+    """
     return math.sqrt(accuracy**2 - of_starts**2) if of_starts < accuracy else accuracy
 
 
 def _student(freedom: float) -> float:
-    """Half the width of a 95 % interval, in standard errors."""
+    """Return half the width of a 95 % interval, in standard errors."""
     from scipy.special import ndtri, stdtrit
 
     beyond = 0.5 * (1.0 + _CONFIDENCE)
@@ -145,8 +159,10 @@ def _student(freedom: float) -> float:
 
 
 def confirmed(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
-    """An estimate with the larger one of its error and that of the examination before, for a run whose
-    measured part was shorter by `ratio`."""
+    """Return an estimate with the larger error of two examinations.
+
+    The measured part at the examination before was shorter by `ratio`.
+    """
     from gaspart.analysis.estimate import Estimate
 
     if before is None:
@@ -155,18 +171,40 @@ def confirmed(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
 
 
 def merged(estimates: Sequence[Estimate]) -> Estimate:
-    """The mean of independent estimates, as of `gaspart.analysis.replicas`, with the error that follows from
-    theirs: the scatter of a few replicas says less."""
+    """Average independent estimates, with the error that follows from their errors.
+
+    `gaspart.analysis.replicas` does the same: the scatter of a few replicas says less.
+    """
     first, *others = estimates
     return sum(others, first) / len(estimates) if others else first
 
 
 def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
-    """What a run `until` some accuracies has reached, in their order, by all of its frames, finished or not;
-    with replicas, of which `path` may be one, by those that all of them have.
+    """Return the accuracies that a run until accurate has reached.
 
-    An empty list for a run of a fixed duration. Raises SceneError as `open_trajectory` does, and for replicas
-    that are missing.
+    Parameters
+    ----------
+    path : str or Path
+        The trajectory, finished or not; one of several replicas stands for all.
+
+    Returns
+    -------
+    list of AccuracyStatus
+        Reached accuracies in the order of the required ones, by all frames of the run; for replicas, by the
+        frames that all of them have. Empty for a run of a fixed duration.
+
+    Raises
+    ------
+    SceneError
+        If `open_trajectory` rejects the file, or replicas are missing.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> path = gp.run(scene, seed=1, duration=2.0, sample_interval=0.1, path="gas.nc")
+    >>> gp.reached_accuracy(path)
+    []
     """
     paths = files_of(path)
     until = read_recipe(paths[0]).until
@@ -177,8 +215,10 @@ def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
 
 
 class Examiner:
-    """Examines a run, or all replicas of one, and calls `report` with the result. Remembers the last
-    examination, whose frames do not change any more."""
+    """Examination of a run, or of all replicas, which is given to `report`.
+
+    It remembers the last examination, whose frames do not change any more.
+    """
 
     def __init__(self, report: Callable[[list[AccuracyStatus]], None] | None = None) -> None:
         self._report = report
@@ -186,8 +226,11 @@ class Examiner:
         self._scatters: dict[Requirement, float] = {}
 
     def __call__(self, runs: Sequence[xr.Dataset], until: Until, frames: int) -> float:
-        """The largest error over the required one, by the first frames of open trajectories; 0 for a run
-        without a longest duration that is given up, since nothing happens that could be measured."""
+        """Return the largest error divided by the required one, by the first frames of trajectories.
+
+        The trajectories are open. It is 0 for a run without a longest duration that is given up, since
+        nothing happens that could be measured.
+        """
         reached = self.examine(runs, until.accuracies, frames)
         collisions = sum(_contacts(data.isel(frame=frames - 1)) for data in runs)
         if self._report:
@@ -199,7 +242,7 @@ class Examiner:
     def examine(
         self, runs: Sequence[xr.Dataset], accuracies: tuple[Requirement, ...], frames: int
     ) -> list[AccuracyStatus]:
-        """What the first frames of open trajectories give."""
+        """Compute the accuracies from the first frames of open trajectories."""
         from gaspart.analysis.run import EQUILIBRATION
 
         before, results = examined_before(frames), []
@@ -227,7 +270,7 @@ class Examiner:
         return results
 
     def _scatter(self, run: xr.Dataset, asked: Requirement) -> float:
-        """Return the relative scatter of an observable from seed to seed by the energy of the start."""
+        """Return the relative scatter of an observable from seed to seed by the initial energy."""
         if asked not in self._scatters:
             self._scatters[asked] = scatter_of_run(run, asked.observable, asked.face).value
         return self._scatters[asked]
@@ -235,7 +278,7 @@ class Examiner:
     def _estimates(
         self, runs: Sequence[xr.Dataset], asked: Requirement, frames: int
     ) -> dict[str, Estimate] | str:
-        """The components of an observable, or the rule that the frames break."""
+        """Return the components of an observable, or the rule that the frames break."""
         key = asked, frames
         if key not in self._known:
             self._known = {known: it for known, it in self._known.items() if 2 * known[1] >= frames}
@@ -249,15 +292,14 @@ class Examiner:
 
 
 def _contacts(frame: xr.Dataset) -> float:
-    """Return the number of collisions until a frame; with open faces, also of particles that entered or hit
-    a face."""
+    """Count collisions until a frame; with open faces, also particles that entered or hit a face."""
     entered = "entries" in frame and bool(frame["entries"].any())  # not of every engine
     names = ("collisions", "entries", "wall_hits") if entered else ("collisions",)
     return float(sum(frame[name].sum() for name in names))
 
 
 def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
-    """Whether an observable is made of contacts of which there was none."""
+    """Return True if an observable is made of contacts and there was no contact."""
     return any(
         one.value == 0.0 if "face" in OBSERVABLES[one.asked.observable].along else collisions == 0.0
         for one in reached
@@ -265,8 +307,10 @@ def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
 
 
 def _measure(runs: Sequence[xr.Dataset], asked: Requirement) -> dict[str, Estimate]:
-    """An observable by component, "" for a scalar, as the mean over runs; of pressures those that are asked
-    for."""
+    """Measure an observable by component, as the mean over runs.
+
+    The component is "" for a scalar. Pressures are restricted to the requested face.
+    """
     found = [components(data, asked.observable, asked.start) for data in runs]
     known = [name for name in found[0] if of_face(name, asked.face) and all(name in one for one in found)]
     return {name: merged([one[name].estimate for one in found]) for name in known}
@@ -292,7 +336,8 @@ _DENSEST = 0.45
 class Scatter:
     """Relative standard deviation of an observable from seed to seed by the energy of the start.
 
-    value: it; drawn, placed: whether drawn velocities and random positions contribute.
+    value : the deviation.
+    drawn, placed : True if drawn velocities and random positions contribute.
     """
 
     value: float = 0.0
@@ -330,7 +375,7 @@ def start_scatter(target: Target) -> Scatter:
 
 
 def _of_velocities(scene: Scene) -> float:
-    """Standard deviation of the kinetic energy at the start."""
+    """Compute the standard deviation of the kinetic energy at the start."""
     drawn = [kind for kind in scene.species if kind.temperature is not None and not kind.exact_temperature]
     return math.sqrt(
         sum(0.5 * scene.dimension * kind.count * (kind.temperature or 0.0) ** 2 for kind in drawn)
@@ -338,8 +383,10 @@ def _of_velocities(scene: Scene) -> float:
 
 
 def _of_places(scene: Scene) -> float:
-    """Standard deviation of the potential energy at the start: that of even places in a region, the less the
-    denser it is."""
+    """Compute the standard deviation of the potential energy at the start.
+
+    It is the deviation of uniform positions in a region, reduced by the density.
+    """
     kinds = [kind for kind in scene.species if kind.count and kind.arrangement == "random" and not kind.fixed]
     square = 0.0
     for axis, pull in enumerate(scene.gravity or ()):
@@ -349,7 +396,7 @@ def _of_places(scene: Scene) -> float:
 
 
 def _range(scene: Scene, kind: Species, axis: int) -> float:
-    """The length along an axis in which a species is placed."""
+    """Return the length along an axis in which a species is placed."""
     lower, upper = (one[axis] for one in scene.reach(kind.radius))
     if kind.region is None:
         return float(upper - lower)
@@ -358,7 +405,10 @@ def _range(scene: Scene, kind: Species, axis: int) -> float:
 
 
 def _smoothed(scene: Scene, kinds: list[Species]) -> float:
-    """By how much excluded volume reduces the scatter of places: the compressibility of the fluid."""
+    """Return the factor by which excluded volume reduces the scatter of positions.
+
+    It is the reduced compressibility of the fluid.
+    """
     d = scene.dimension
     filled = 0.0
     for kind in kinds:
@@ -368,7 +418,7 @@ def _smoothed(scene: Scene, kinds: list[Species]) -> float:
 
 
 def _of_observable(target: Target, deviation: float) -> float:
-    """Relative standard deviation of an observable with one of the energy."""
+    """Compute the relative standard deviation of an observable from a deviation of the energy."""
     scene = target.scene
     freedom = 0.5 * scene.dimension * scene.count
     power = target.declared.power
@@ -391,7 +441,10 @@ def _of_observable(target: Target, deviation: float) -> float:
 
 
 def _of_column(target: Target, deviation: float) -> float | None:
-    """The same under gravity, by hydrostatics; None where that knows nothing."""
+    """Compute the deviation of an observable under gravity, by hydrostatics.
+
+    None where hydrostatics knows nothing.
+    """
     column = pulled(target.scene)
     assert column is not None
     energy = column.energy_of(target.initial)
@@ -404,7 +457,7 @@ def _of_column(target: Target, deviation: float) -> float | None:
 
 
 def _change(target: Target, low: Column, middle: Column, high: Column) -> float:
-    """Of the observable between two columns, over its value."""
+    """Compute the change of the observable between two columns, divided by its value."""
     by_temperature = (high.temperature - low.temperature) / middle.temperature
     if target.observable == "collision_rate":
         return abs(high.collisions - low.collisions) / middle.collisions

@@ -1,7 +1,7 @@
-"""Options from the table: for the fluids and observables whose errors, noise and times were measured.
+"""Options from the table, for fluids and observables whose errors, noise and times were measured.
 
-A row of the table is a pilot that was kept: its noise is that of a pilot, in contacts instead of time, and
-its processor time that of the machine of the table. Nothing is run or compiled for a look-up.
+A row of the table is a stored pilot: its noise is in contacts instead of time, and its CPU time holds for the
+machine of the table. Nothing is run or compiled for a look-up.
 """
 
 from __future__ import annotations
@@ -27,12 +27,13 @@ from gaspart.theory.dsmc import step_factor
 
 
 def model_error(packing_fraction: float, dimension: int, equation: str, observable: str) -> float:
-    """|error| of an observable by the equation that an engine solves (`Engine.equation`), relative to hard
-    spheres or discs; inf where one of them has none, as of D of discs.
+    """Return the |error| of an observable due to the equation that an engine solves.
 
-    The Boltzmann equation has a contact value of 1, and no virial. The Enskog model is given the contact
-    value of Carnahan and Starling, in two dimensions that of Henderson. D of neither has the memory of
-    correlated collisions [Erpenbeck 1991], whose uncertainty is added.
+    The equation is `Engine.equation`; the error is relative to hard spheres or discs, inf where either of
+    them has no value, like D of discs. The Boltzmann equation has a contact value of 1, and no virial. The
+    Enskog model is given the contact value of Carnahan and Starling, in two dimensions the value of
+    Henderson. In neither does D have the memory of correlated collisions [Erpenbeck 1991], whose uncertainty
+    is added.
     """
     if equation == bulk.EXACT:
         return 0.0
@@ -46,20 +47,27 @@ def model_error(packing_fraction: float, dimension: int, equation: str, observab
 
 
 def step_error(packing_fraction: float, step: float) -> float:
-    """By how much steps, in diameters over the thermal speed, make D of spheres too high. The law is stated
-    for a dilute gas; a dense one collides more often by the contact value, as if its free path were shorter
-    by that."""
+    """Compute the relative error of D of spheres due to steps, which make it too high.
+
+    Steps are in diameters divided by the thermal speed. The law is given for a dilute gas; a dense gas
+    collides more often by the contact value, as if its free path were shorter by this factor.
+    """
     path = float(theory.mean_free_path(packing_fraction, 3))
     return float(step_factor("diffusion", step * math.sqrt(2.0) / path)) - 1.0
 
 
 FEWEST = 64
-"""Particles of a gas that is like those of the table, to 1 % of Z - 1: fewer have pilots of their own."""
+"""Minimum number of particles of a gas to which the table applies, to 1 % of Z - 1.
+
+Smaller gases have pilots of their own.
+"""
 
 
 def fluid_of(scene: Scene) -> Gas:
-    """The gas of a scene, a fluid in a periodic container. Raises SceneError for a scene whose errors were
-    not measured."""
+    """Return the gas of a scene, a fluid in a periodic container.
+
+    Raises SceneError for a scene whose errors were not measured.
+    """
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
     gas, container = plain_gas(scene), scene.container
@@ -84,15 +92,17 @@ def fluid_of(scene: Scene) -> Gas:
 
 
 def tabulated_target(scene: Scene, observable: str) -> tuple[Gas, Target]:
-    """The gas of a scene, and what is to be measured of it. Raises SceneError for a scene, and an observable,
-    that the table does not cover."""
+    """Return the gas of a scene, and the target to measure.
+
+    Raises SceneError for a scene, and an observable, that the table does not cover.
+    """
     if observable not in having(tabulated=True):
         raise SceneError("observable", observable, f"must be one of {', '.join(having(tabulated=True))}")
     return fluid_of(scene), Target.named(scene, observable)
 
 
 def is_tabulated(scene: Scene, observable: str) -> bool:
-    """Whether errors and costs of an observable of a scene are in the table."""
+    """Return True if errors and costs of an observable of a scene are in the table."""
     try:
         tabulated_target(scene, observable)
     except SceneError:
@@ -114,7 +124,10 @@ def options_of(target: Target, engines: list[Engine], accuracy: float, budget: f
 
 
 def _option(target: Target, engine: Engine, accuracy: float, budget: float | None, step: float) -> Option:
-    """That of an engine with the settings of a row; step: in the unit of the table."""
+    """Return the option of an engine with the settings of a row of the table.
+
+    `step` is in the unit of the table.
+    """
     gas = fluid_of(target.scene)
     frequency = float(theory.collision_rate(**gas.parameters))
     row = gas.dimension, gas.packing_fraction, engine.timed_as, engine.precision, step
@@ -134,8 +147,10 @@ def _option(target: Target, engine: Engine, accuracy: float, budget: float | Non
 
 
 def _bounded(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate:
-    """With its errors: those that were measured, or by theory those of its equation, and of its cells and
-    steps as the engine states them."""
+    """Return the engine with bounds of its errors, measured or by theory.
+
+    By theory they are the errors of its equation, and of its cells and steps as the engine states them.
+    """
     observable, row = target.observable, (gas.dimension, gas.packing_fraction)
     if table.has_biases(engine.timed_as):
         error = table.bias(*row, engine.precision, step, observable, engine.timed_as)
@@ -146,5 +161,5 @@ def _bounded(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate
 
 
 def value_of(gas: Gas, observable: str) -> float:
-    """An observable by theory."""
+    """Compute an observable by theory."""
     return float(getattr(bulk, OBSERVABLES[observable].bulk)(gas, bulk.EXACT))

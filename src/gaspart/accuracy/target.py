@@ -1,4 +1,4 @@
-"""What is to be measured of a scene, and how often and how long a run of it is sampled for that."""
+"""Observable to measure in a scene, and the schedule of samples that it needs."""
 
 from __future__ import annotations
 
@@ -41,11 +41,13 @@ _FRAMES = 48, 512
 _HELD = 20_000_000
 """Numbers that the frames of a pilot hold, at most, unless there are only few frames."""
 _PLACED = 100_000
-"""Particles in all frames of which pairs are measured, likewise: that takes longer than their run."""
+"""Maximum number of particles in all frames of which pairs are measured, which takes longer than their run.
+
+"""
 _LONGEST_LAG = 10.0
-"""Of correlations, in collisions of a particle."""
+"""Longest lag of correlations, in collisions of a particle."""
 _LEAST_FRAMES = 24
-"""Of a run with correlations: three quarters of them give an error."""
+"""Minimum number of frames of a run with correlations: three quarters of them give an error."""
 _FALL = 8.0
 """Crossings of the container in which particles that start at rest are set in motion."""
 _COLLIDED = 40.0
@@ -54,8 +56,11 @@ _COLLIDED = 40.0
 
 @dataclass(frozen=True)
 class Target:
-    """An observable of `gaspart measure` of a scene; face: of what walls are given, the wall (`x low`), by
-    default each of them; settled: a state in which the scene has become steady, if one is known."""
+    """Observable of `gaspart measure` of a scene.
+
+    face : for observables of walls, the wall (`x low`), by default each of them.
+    settled : state in which the scene has become steady, if one is known.
+    """
 
     scene: Scene
     observable: str
@@ -64,8 +69,11 @@ class Target:
 
     @classmethod
     def named(cls, scene: Scene, name: str) -> Target:
-        """From a name as on the command line: `Z`, or `pressure:x low`. Raises SceneError for an unknown one,
-        one that the scene does not have, and a wall that is not there."""
+        """Return the target of a name as on the command line: `Z`, or `pressure:x low`.
+
+        Raises SceneError for an unknown name, an observable that the scene does not have, and a wall that
+        does not exist.
+        """
         observable, colon, face = str(name).partition(":")
         face = wall_of(face)
         observable = known(observable)
@@ -80,8 +88,10 @@ class Target:
 
     @cached_property
     def start(self) -> State | None:
-        """The state from which pilots start: one that is settled, or that at time 0 of particles that are
-        compressed, which takes long; None of others."""
+        """State from which pilots start; None for the usual start.
+
+        It is a settled state, or the state at time 0 of particles that are compressed, which takes long.
+        """
         if self.settled is not None:
             return self.settled
         compressed = any(kind.arrangement == "compressed" for kind in self.scene.species if kind.count)
@@ -89,7 +99,7 @@ class Target:
 
     @cached_property
     def initial(self) -> State:
-        """That state, or the one at time 0 of the pilots' seed."""
+        """State at the start of pilots, by default the one at time 0 of their seed."""
         return self.start or initial_state(self.scene, SEED)
 
     @cached_property
@@ -99,8 +109,11 @@ class Target:
 
     @cached_property
     def frequency(self) -> float:
-        """Collisions of a particle per time: by theory in a gas as hot as at the start, or in the column that
-        it becomes; or, if its particles start at rest, in the second half of a short run."""
+        """Collisions of a particle per time.
+
+        By theory in a gas as hot as at the start, or in the column that it becomes; or, if its particles
+        start at rest, in the second half of a short run.
+        """
         found = rates(self.scene, dense=True).frequency
         if found > 0.0:
             gas = self.conditions if self.scene.gravity else None
@@ -116,8 +129,10 @@ class Target:
 
     @cached_property
     def crossing(self) -> float:
-        """The time in which a particle crosses the shortest side of the container. Raises SceneError if
-        nothing moves."""
+        """Time in which a particle crosses the shortest side of the container.
+
+        Raises SceneError if nothing moves.
+        """
         scene = self.scene
         squares = [
             kind.temperature / kind.mass if kind.temperature else (kind.speed or 0.0) ** 2
@@ -134,7 +149,7 @@ class Target:
 
     @property
     def declared(self) -> Named:
-        """What is declared of the observable."""
+        """Declaration of the observable."""
         return OBSERVABLES[self.observable]
 
     @property
@@ -144,17 +159,20 @@ class Target:
 
     @property
     def needs_paths(self) -> bool:
-        """Whether frames need displacements."""
+        """True if frames need displacements."""
         return self.declared.needs == "paths"
 
     @property
     def correlated(self) -> bool:
-        """Whether the run accumulates correlations."""
+        """True if the run accumulates correlations."""
         return self.declared.lags > 0
 
     def tallies(self, engine: Engine) -> tuple[ImpulseTally, ...]:
-        """The optional tallies that make the observable more accurate in a run by an engine: impulses along
-        the last axis, or of pressures along the only one that they are asked for across."""
+        """Return the optional tallies that make the observable more accurate in a run by an engine.
+
+        They are impulses along the last axis; for pressures, along the only axis across which they are
+        requested.
+        """
         if not self.declared.by_impulses:
             return ()
         axes = {self.scene.dimension - 1}
@@ -167,15 +185,18 @@ class Target:
 
     @property
     def span(self) -> tuple[float, float]:
-        """The longest time between frames and the longest run from which the observable is measured without
-        loss: of diffusion by the lags of its slope, and by the number of frames that are correlated."""
+        """Maximum time between frames and maximum length of a run without loss of accuracy.
+
+        For diffusion they follow from the lags of its slope, and from the number of frames that are
+        correlated.
+        """
         if self.declared.samples != "paths" or not self.frequency > 0.0:
             return math.inf, math.inf
         interval = 0.5 * LINEAR_FROM / self.frequency
         return interval, interval * MOST_FRAMES / (1.0 - EQUILIBRATION)
 
     def schedule(self, engine: Engine, length: float) -> tuple[float, float, Correlations | None]:
-        """Duration, time between frames and correlations of a run of about a length."""
+        """Return duration, time between frames and correlations of a run of about a length."""
         if self.correlated:
             return self._correlated(engine, length)
         least, most = _FRAMES
@@ -192,7 +213,10 @@ class Target:
         return frames * interval, interval, None
 
     def correlations(self, engine: Engine) -> Correlations:
-        """Those that the observable needs. Raises SceneError for a scene whose particles do not collide."""
+        """Return the correlations that the observable needs.
+
+        Raises SceneError for a scene whose particles do not collide.
+        """
         lags = self.declared.lags
         if not self.frequency > 0.0:
             raise SceneError("observable", self.observable, "needs particles that collide")
@@ -202,7 +226,7 @@ class Target:
         return Correlations(sample, lags, stress=self.declared.needs == "fluxes")
 
     def _correlated(self, engine: Engine, length: float) -> tuple[float, float, Correlations]:
-        """`schedule` with correlations, whose longest lag frames are apart or more."""
+        """Return the `schedule` with correlations; frames are at least the longest lag apart."""
         correlations = self.correlations(engine)
         sample = correlations.interval
         per_frame = max(correlations.lags, round(length / sample / _FRAMES[0]))
@@ -215,7 +239,7 @@ class Target:
 
 
 def _require_defined(scene: Scene, observable: str, name: str) -> None:
-    """Raise SceneError, with the name that was asked for, for an observable that a scene does not have."""
+    """Raise SceneError, with the name on the command line, for an observable that a scene lacks."""
     try:
         require_defined(observable, scene)
         require_steady_value(observable, scene)
@@ -225,7 +249,7 @@ def _require_defined(scene: Scene, observable: str, name: str) -> None:
 
 
 def rounded_to_12_digits(multiple: float) -> float:
-    """A multiple without its rounding error, which a command would show."""
+    """Return a multiple without its rounding error, which a command would show."""
     return float(f"{multiple:.12g}")
 
 
@@ -233,8 +257,10 @@ def rounded_to_12_digits(multiple: float) -> float:
 
 
 def require_steady(scene: Scene) -> None:
-    """Raise SceneError for an empty scene, and for one that cools or heats: its observables depend on the
-    time."""
+    """Raise SceneError for an empty scene, and for a scene that cools or heats.
+
+    The observables of the latter depend on the time.
+    """
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
     law = scene.restitution
@@ -249,19 +275,21 @@ def require_steady(scene: Scene) -> None:
 
 
 def is_driven(scene: Scene) -> bool:
-    """Whether a thermostat, or a face that is at a temperature or moves, exchanges energy with the
-    particles."""
+    """Return True if something exchanges energy with the particles.
+
+    It is a thermostat, or a face that is at a temperature or moves.
+    """
     moves = any(face.moves for face in scene.faces.values())
     return scene.thermostat is not None or moves or at_temperature(scene)
 
 
 def at_temperature(scene: Scene) -> bool:
-    """Whether a face or an interior wall gives particles the velocities of a temperature."""
+    """Return True if a face or an interior wall draws velocities at a temperature."""
     return bool(scene.face_temperatures)
 
 
 def keeps_energy(scene: Scene) -> bool:
-    """Return True if a run keeps the energy of its start, or its enthalpy under a piston with a load."""
+    """Return True if a run keeps its initial energy, or its enthalpy under a loaded piston."""
     loaded = [piston for _, piston in scene.pistons if piston.pressure is not None]
     moved = any(face.moves for face in scene.faces.values() if face not in loaded)
     exchanged = moved or at_temperature(scene) or scene.thermostat is not None or scene.is_open
@@ -275,23 +303,29 @@ def keeps_energy(scene: Scene) -> bool:
 
 
 _COLLISIONS, _CROSSINGS = 200.0, 10.0
-"""Of a particle, in the suggested duration: both."""
+"""Numbers of collisions and of crossings of a particle in the suggested duration; both hold."""
 _MOST_SUGGESTED = 1000  # the most that are suggested
 _KNUDSEN = 10.0
 """Mean free path, in lengths of the shortest side, beyond which a gas is free-molecular."""
 _KINDS = 200
-"""Each pair of so many is evaluated; single particles are one each."""
+"""Maximum number of kinds whose pairs are evaluated; each single particle is a kind."""
 _REDUCED = 1e5
-"""Speeds beyond which, or below its inverse, units are hardly those of the particles."""
+"""Speed beyond which, or below its inverse, the units hardly suit the particles."""
 
 
 @dataclass(frozen=True)
 class Scales:
-    """thermal_speed: sqrt(k_B T / m), 0 if nothing moves at the start; mean_free_path and collision_time, of
-    a particle between two collisions, infinite if there are none; crossing_time: in which a particle crosses
-    the shortest side of the container, as fast as it is or as it falls; packing_fraction; end: the longest
-    run that is suggested, where a piston moves at a stated speed; walled: whether any side is not periodic;
-    attempts: particles of reservoirs that try to enter per time."""
+    """Characteristic scales of a scene.
+
+    thermal_speed : sqrt(k_B T / m), 0 if nothing moves at the start.
+    mean_free_path, collision_time : of a particle between two collisions, infinite without collisions.
+    crossing_time : time in which a particle crosses the shortest side of the container, with its speed or by
+        falling.
+    packing_fraction : packing fraction.
+    end : longest run that is suggested, where a piston moves at a prescribed speed.
+    walled : True if any side is not periodic.
+    attempts : particles of reservoirs that try to enter per time.
+    """
 
     thermal_speed: float
     mean_free_path: float
@@ -310,23 +344,29 @@ class Scales:
 
     @property
     def event_time(self) -> float:
-        """The time between collisions, or, where there are none or a `free_molecular` gas has walls, to cross
-        the container; infinite if nothing moves."""
+        """Time between collisions, or the time to cross the container; infinite if nothing moves.
+
+        The latter holds without collisions, and for a `free_molecular` gas that has walls.
+        """
         collides = math.isfinite(self.collision_time) and not self.free_molecular
         return self.collision_time if collides else self.crossing_time
 
     @property
     def interval(self) -> float | None:
-        """A time between frames, to two digits: the `event_time`, or a longer one, so that the suggested
-        duration has 1000 frames at most; None if nothing moves."""
+        """Suggested time between frames, to two digits; None if nothing moves.
+
+        It is the `event_time`, or a longer time, so that the suggested duration has 1000 frames at most.
+        """
         if not math.isfinite(self.event_time):
             return None
         return two_digits(min(max(self.event_time, self._longest / _MOST_SUGGESTED), 0.1 * self.end))
 
     @property
     def duration(self) -> float | None:
-        """A duration, a multiple of the interval: 200 collisions of a particle and ten crossings, or 200
-        crossings of a `free_molecular` gas."""
+        """Suggested duration, a multiple of the interval.
+
+        It covers 200 collisions of a particle and ten crossings, or 200 crossings of a `free_molecular` gas.
+        """
         if self.interval is None:
             return None
         number = min(
@@ -367,7 +407,10 @@ class Scales:
 
 
 def scales(scene: Scene) -> Scales:
-    """The scales of a scene; collisions of a plain gas by theory, of others by the rates of all kinds."""
+    """Compute the scales of a scene.
+
+    Collisions of a plain gas follow from theory, otherwise from the rates of all kinds.
+    """
     d, found = scene.dimension, rates(scene, True, _few_kinds(scene))
     thermal = found.speed / math.sqrt(8.0 / math.pi if d == 3 else math.pi / 2.0)
     side = min(scene.container.lengths)
@@ -387,8 +430,10 @@ def scales(scene: Scene) -> Scales:
 
 
 def _few_kinds(scene: Scene) -> list[Species | Particle]:
-    """The kinds of particles that move; of very many one that stands for all, of their mean volume, mass and
-    energy."""
+    """Return the kinds of particles that move; one representative for very many kinds.
+
+    The representative has their mean volume, mass and energy.
+    """
     kinds, d = list(scene.moving_kinds), scene.dimension
     if len(kinds) <= _KINDS:
         return kinds
@@ -400,7 +445,10 @@ def _few_kinds(scene: Scene) -> list[Species | Particle]:
 
 
 def collision_frequency(scene: Scene) -> float:
-    """Collisions of a particle of a plain gas per time, by theory; 0 where that does not know it."""
+    """Compute the collisions of a particle of a plain gas per time, by theory.
+
+    It is 0 where theory does not know it.
+    """
     gas = scene.gas
     if gas is None or gas.count < 2 or not gas.temperature > 0.0:
         return 0.0
@@ -411,5 +459,5 @@ def collision_frequency(scene: Scene) -> float:
 
 
 def two_digits(value: float) -> float:
-    """`value`, rounded."""
+    """Round a number to two digits."""
     return float(f"{value:.2g}")

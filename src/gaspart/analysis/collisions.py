@@ -200,7 +200,7 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
     Parameters
     ----------
     data : Dataset
-        Collisions, as of `collision_data`.
+        Collisions, from `collision_data`.
     blocks : int, default 20
         Number of blocks whose scatter is the error.
 
@@ -217,7 +217,7 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
     Notes
     -----
     chi = 2 M / (N t S rho sigma^(d-1) sqrt(kT / (pi m))), with S = 2 pi (2D) or 4 pi (3D), exact in
-    equilibrium [1]_. The temperature is that of the mean approach, sqrt(pi kT / m).
+    equilibrium [1]_. The temperature follows from the mean approach, sqrt(pi kT / m).
 
     References
     ----------
@@ -253,7 +253,7 @@ def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tupl
     Parameters
     ----------
     events : dict of str to ndarray
-        The events, as of `Simulation.events`.
+        The events, from `Simulation.events`.
     last : tuple of ndarray
         Time and velocity of each particle after its last event before these.
     scene : Scene

@@ -34,7 +34,7 @@ _SLIGHT = 1e-6  # of the weight: rounding of the momentum of single-precision ve
 
 
 def compressibility_factor(source: Source, start: float | None = None) -> Observable:
-    """Measure the compressibility factor Z = P V / (N k_B T) of a periodic scene by the virial theorem.
+    """Measure Z = P V / (N k_B T) of a periodic scene by the virial theorem.
 
     Parameters
     ----------
@@ -46,8 +46,8 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
     Returns
     -------
     Observable
-        Z, dimensionless. Theory is that of the fluid, with the correction of first order in 1/N; of mixtures
-        an approximation, without an uncertainty.
+        The compressibility factor Z, dimensionless. Theory is given for the fluid, with the correction of
+        first order in 1/N; of mixtures an approximation, without an uncertainty.
 
     Raises
     ------

@@ -60,8 +60,8 @@ def field(
     Notes
     -----
     The flow of a temperature is taken in these cells, and across faces that slide; before faces that move
-    along their normal in layers of each frame (see `gaspart.analysis.flow`). Errors are as of `profile`, and
-    so is the density along one axis of a run that has stored its impulses.
+    along their normal in layers of each frame (see `gaspart.analysis.flow`). Errors are defined as in
+    `profile`, and so is the density along one axis of a run that has stored its impulses.
 
     Examples
     --------
@@ -155,7 +155,7 @@ def velocity_profile(
     Notes
     -----
     It is the mean velocity of the particles, not of their mass. Of sheared gases and between sliding walls it
-    is in the scene's frame of reference. Uncertainties are as of `field`.
+    is in the scene's frame of reference. Uncertainties are defined as in `field`.
 
     Theory: the flow of sheared images; between sliding plates free flight above a Knudsen number of 100, and
     a linear flow with slip below 0.1, and in the same range the parabola of dilute spheres that a force

@@ -10,8 +10,8 @@ of freedom is spent on u. The group depends on how the gas can move:
 - as a whole: all particles of a frame, along axes on which their momentum is conserved;
 - between faces that slide, under a force along a periodic axis, or in a `wind`: the particles of a cell in
   all frames, a steady flow;
-- before faces that move along their normal, and between open ones: the particles of a cell in one frame, since the
-  flow changes.
+- before faces that move along their normal, and between open ones: the particles of a cell in one frame,
+  since the flow changes.
 
 
 A flow that is known, between sheared faces (`LeesEdwards`), is subtracted before.

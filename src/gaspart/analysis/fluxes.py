@@ -36,7 +36,7 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     -------
     Observable
         Heat that the face takes per time and per area that centres can reach, (face,), in
-        [energy/(length^(d-1) time)]: positive where the gas warms the wall. Areas are those of
+        [energy/(length^(d-1) time)]: positive where the gas warms the wall. Areas are defined by
         `wall_pressure`.
 
     Raises
@@ -47,8 +47,8 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     Notes
     -----
     It is the energy that particles lose there in the frame of the wall: of a wall that slides, the energy
-    that it is given without the work that it does. The mean is that of the steady state: the contributions of
-    the changes of the energy of the gas and of its first moment across the walls, which are bounded, are
+    that it is given without the work that it does. The mean is taken in the steady state: the contributions
+    of the changes of the energy of the gas and of its first moment across the walls, which are bounded, are
     subtracted (`_corrected`).
 
     Theory: 0 in equilibrium; between two plates free flight above a Knudsen number of 100, Fourier's law with
@@ -104,7 +104,7 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
     Notes
     -----
     It is measured by the engines that tally it, where a face slides or a force drives the gas along it. The
-    mean is that of the steady state, as of `heat_flux`, by the change of the momentum of the gas.
+    mean is taken in the steady state, as in `heat_flux`, by the change of the momentum of the gas.
 
     Theory: half of the weight of a gas that a force drives along two equal faces, exactly; between plates
     that slide free flight above a Knudsen number of 100, Enskog's viscosity with slip below 0.1, and between
@@ -263,14 +263,14 @@ def particle_flux(
     Raises
     ------
     SceneError
-        If the axis is periodic, which images pass, or another one than that of open faces, the plane is
+        If the axis is periodic, which images pass, or is not the axis of open faces, the plane is
         outside the container, the file lacks particles, or there are too few frames.
 
     Notes
     -----
     The flux is the change of the number of particles beyond the plane, exactly, however often each particle
     has passed between frames: particles that come back do not count, nor do those that come and go through an
-    open face beyond. The plane is that of the whole container; where interior walls lie in it, all pass their
+    open face beyond. The plane crosses the whole container; where interior walls lie in it, all pass their
     openings.
 
     Theory: 0 in a steady state without interior walls; of free flight through openings of walls in the plane

@@ -214,7 +214,7 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
     Returns
     -------
     Observable
-        Chemical potential beyond that of an ideal gas, dimensionless: a scalar, of a mixture (species,).
+        Chemical potential relative to an ideal gas, dimensionless: a scalar, of a mixture (species,).
         Variables: `probability`, that a random position is free, with its error; `successes`, the number of
         free positions; `frames_with_success`, the number of frames that have any; `resolution`, the
         probability that corresponds to a single success.
@@ -227,7 +227,7 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
 
     Notes
     -----
-    The error is that of the mean over frames, to first order: it is not to be trusted if few frames have a
+    The error applies to the mean over frames, to first order: it is not to be trusted if few frames have a
     success. Theory: by the equation of state, for these numbers of particles.
 
     Examples

@@ -141,8 +141,8 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
 
     Notes
     -----
-    The uncertainty is that of the mean of a correlated series, the growth in equal intervals. It takes some
-    10 microseconds for each event.
+    The uncertainty is the error of the mean of a correlated series, the growth in equal intervals. It takes
+    some 10 microseconds for each event.
 
     Examples
     --------

@@ -64,7 +64,7 @@ def measure(
     source : path, xarray.Dataset or Simulation
         A trajectory, by its path or open, or a simulation.
     observable : str or sequence of str
-        Names as of `gaspart measure`, such as "pressure"; aliases are accepted, such as "viscosity".
+        Names as in `gaspart measure`, such as "pressure"; aliases are accepted, such as "viscosity".
     start : float, [time], optional
         Frames before this time are discarded. Default: the first quarter of the frames.
     end : float, [time], optional
@@ -163,7 +163,7 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
         - `count`, number of moving particles;
         - `temperature` [energy], twice the mean kinetic energy of flight per degree of freedom;
         - `mean_speed` [length/time];
-        - `D` [length^2/time], and the curves `msd` and `vacf` (species, lag), as of `gaspart measure` with a
+        - `D` [length^2/time], and the curves `msd` and `vacf` (species, lag), as by `gaspart measure` with a
           species. NaN where a species cannot have one, such as a D between walls, for the reason in the
           attribute `not_measured`, and where it has fewer lags than others.
 
@@ -278,12 +278,12 @@ def replicas(
     Parameters
     ----------
     name : str
-        Name of the observable as of `gaspart measure`.
+        Name of the observable as in `gaspart measure`.
     sources : sequence of str, Path, Dataset or Simulation
         At least two runs of different seeds or initial states: trajectories, by their paths or open, or
         simulations.
     start : float, [time], optional
-        Frames before this time are discarded, as of the observable's function.
+        Frames before this time are discarded, as by the observable's function.
     end : float, [time], optional
         Frames after this time are discarded. Default: none.
     **selection

@@ -38,7 +38,7 @@ class ByFace(xr.Dataset):
     __slots__ = ()
 
     def sel(self, *given: Any, **named: Any) -> Self:
-        """Select as of a Dataset, a face by either of its names, `x_low` or `x low`.
+        """Select as from a Dataset, a face by either of its names, `x_low` or `x low`.
 
         Parameters
         ----------
@@ -64,17 +64,17 @@ class Observable(ByFace):
     Parameters
     ----------
     data_vars : mapping, optional
-        Variables, as of `xarray.Dataset`.
+        Variables, as for `xarray.Dataset`.
     coords : mapping, optional
-        Coordinates, as of `xarray.Dataset`.
+        Coordinates, as for `xarray.Dataset`.
     attrs : mapping, optional
-        Attributes, as of `xarray.Dataset`.
+        Attributes, as for `xarray.Dataset`.
 
     Notes
     -----
     Variables: the quantity, by the name in the attribute `quantity`; the same with the suffix _error, one
     standard deviation; where theory exists, with the suffixes _theory and _theory_error (NaN if the
-    uncertainty is not known, as of an approximation). A scalar also has `stretches` (time), its means over
+    uncertainty is not known, as for an approximation). A scalar also has `stretches` (time), its means over
     consecutive blocks of the run, and the degrees of freedom of its error as the attribute `freedom`. Every
     variable has `units`.
 
@@ -144,7 +144,7 @@ class Observable(ByFace):
     def deviation(self) -> xr.DataArray | None:
         """Measured minus theory, in standard deviations of the difference; None without theory.
 
-        NaN where the standard deviation is 0, as of a quantity that does not change: nothing states how
+        NaN where the standard deviation is 0, as for a quantity that does not change: nothing states how
         likely a difference is.
 
         Examples
@@ -207,7 +207,7 @@ class Observable(ByFace):
         Parameters
         ----------
         theory : bool, default False
-            Also draw the curve of theory; if there is none for this scene, the legend says so.
+            Also draw the curve of theory; if it does not exist for this scene, the legend says so.
         axis : matplotlib Axes, optional
             Axes to draw in. Default: a new one.
 
@@ -328,7 +328,7 @@ def _plot_field(found: Observable, axis: Axes, cells: list[str]) -> None:
 
 
 def label_of(values: xr.DataArray) -> str:
-    """Return the label of an axis: the meaning of a variable, with its unit, if it has one.
+    """Return the label of an axis: the meaning of a variable, with its unit if any.
 
     Parameters
     ----------

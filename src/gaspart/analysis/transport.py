@@ -187,8 +187,8 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
 
     Notes
     -----
-    The mean is that of the run, of duration T, which makes the value too low by about 2 lag / T of it. Theory
-    as of `shear_viscosity`.
+    The mean is taken over the run, of duration T, which makes the value too low by about 2 lag / T of it.
+    Theory as for `shear_viscosity`.
 
     Examples
     --------
@@ -219,7 +219,7 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     Returns
     -------
     Observable
-        The conductivity, in [1/(length^(d-2) time)] with k_B = 1, and the curves as of `shear_viscosity`.
+        The conductivity, in [1/(length^(d-2) time)] with k_B = 1, and the curves as for `shear_viscosity`.
 
     Raises
     ------
@@ -229,7 +229,7 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     Notes
     -----
     Of a mixture it is the conductivity without diffusion (see `conduction`), from the fluxes between frames,
-    whose interval may not be longer than the lag, without the curves. Theory as of `shear_viscosity`.
+    whose interval may not be longer than the lag, without the curves. Theory as for `shear_viscosity`.
 
     Examples
     --------
@@ -273,7 +273,8 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
 
     Notes
     -----
-    Of a sheared gas it is that of velocities about the flow. Theory: the equation of state, of a gas at rest.
+    Of a sheared gas it is computed from velocities about the flow. Theory: the equation of state, of a gas at
+    rest.
 
     Examples
     --------

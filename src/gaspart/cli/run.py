@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 def accuracy_lines(path: Path) -> list[str]:
-    """What a run with --until was to reach, and what it has reached."""
+    """Describe the required accuracies of a run with --until, and the accuracies reached."""
     from gaspart.accuracy.reached import reached_accuracy
     from gaspart.trajectory.opening import PARTIAL
 
@@ -62,7 +62,7 @@ def accuracy_lines(path: Path) -> list[str]:
 
 
 def other_seeds(scatter: float) -> str:
-    """Return the remark beside the interval of a single run that keeps the energy of its start."""
+    """Return the remark on the interval of a single run that keeps its initial energy."""
     return f"for the energy of this run; other seeds scatter by {100.0 * scatter:.2g} %"
 
 
@@ -89,7 +89,7 @@ def _why_ended(path: Path, reached: list[AccuracyStatus]) -> str:
 
 
 def run_options(path: Path, recipe: Recipe) -> list[str]:
-    """The options with which `gaspart run` has a recipe; of one of several replicas, all of them."""
+    """Return the options of `gaspart run` for a recipe; for a replica, options of all replicas."""
     from gaspart.trajectory.replicas import of_all, path_of_all
 
     path, (recipe, replicas) = path_of_all(path, recipe), of_all(recipe)
@@ -175,7 +175,7 @@ def add_run(parser: Parser) -> None:
 
 
 def _add_ends(group: argparse._ArgumentGroup) -> None:
-    """What ends a run."""
+    """Add the options that end a run."""
     add = group.add_argument
     add("--duration", type=float, metavar="T", help="duration of the run, in the scene's unit")
     text = (
@@ -199,7 +199,7 @@ def _add_ends(group: argparse._ArgumentGroup) -> None:
 
 
 def _add_contents(group: argparse._ArgumentGroup) -> None:
-    """What is in the file."""
+    """Add the options for the contents of the file."""
     add = group.add_argument
     add(
         "--displacements",
@@ -294,7 +294,7 @@ def _run(given: argparse.Namespace) -> None:
 
 
 def _requests(text: str) -> list[tuple[str, float]]:
-    """Observable, perhaps with a face, and accuracy, of each NAME=X between commas."""
+    """Read observable, perhaps with a face, and accuracy, of each NAME=X between commas."""
     requests = []
     for part in text.split(","):
         name, _, accuracy = part.partition("=")
@@ -307,8 +307,11 @@ def _requests(text: str) -> list[tuple[str, float]]:
 
 
 def _until(given: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
-    """What --until asks for. Raises UsageError for options that exclude or need each other, with a duration
-    for the scene where there is none."""
+    """Return the accuracies of --until.
+
+    Raises UsageError for options that exclude or need each other; without a duration it suggests one for the
+    scene.
+    """
     if given.until is not None:
         if given.duration is not None:
             raise UsageError("--duration: excludes --until; the longest duration is --at-most")
@@ -342,7 +345,7 @@ class _Status:
         self._reached = reached
 
     def remark(self) -> str:
-        """The present error that is largest beside the required one."""
+        """Return the error that is largest relative to the required one."""
         known = [one for one in self._reached if one.accuracy < math.inf]
         if not known:
             return ""

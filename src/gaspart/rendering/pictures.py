@@ -38,9 +38,14 @@ MARGIN = 1.04
 
 @dataclass(frozen=True)
 class Camera:
-    """eye (3,); forward, right, up (3,) unit vectors; half_width, half_height: tangents of half the angles of
-    view; near, far: distances along `forward` between which the container is; light (3,), the unit vector
-    to the lamp, at the upper left behind the camera."""
+    """Camera of the ray tracer.
+
+    eye : (3,), position.
+    forward, right, up : (3,), unit vectors.
+    half_width, half_height : tangents of half the angles of view.
+    near, far : distances along `forward` between which the container is.
+    light : (3,), unit vector to the lamp, at the upper left behind the camera.
+    """
 
     eye: np.ndarray
     forward: np.ndarray
@@ -53,11 +58,17 @@ class Camera:
     light: np.ndarray
 
     def pixels_per_length(self, point: np.ndarray, width: int) -> float:
-        """Pixels per length across the view at a point (3,), in a picture `width` pixels wide."""
+        """Return the pixels per length at a point (3,), in a picture `width` pixels wide.
+
+        The length is measured across the view.
+        """
         return 0.5 * width / (self.half_width * float((point - self.eye) @ self.forward))
 
     def pixels(self, points: np.ndarray, size: tuple[int, int]) -> np.ndarray:
-        """Return the columns and rows (M, 2) of points (M, 3) in a picture of a size (W, H)."""
+        """Return the columns and rows (M, 2) of points (M, 3) in a picture.
+
+        The picture has the size (W, H).
+        """
         away = points - self.eye
         slopes = np.column_stack([away @ self.right, -(away @ self.up)]) / (away @ self.forward)[:, None]
         return 0.5 * np.array(size) * (1.0 + slopes / np.array([self.half_width, self.half_height]))
@@ -70,8 +81,11 @@ def camera_for(
     direction: tuple[float, float] = CAMERA,
     reach: float = 0.0,
 ) -> Camera:
-    """The camera for which a container of `lengths` (3,), and what is within `reach` around it, just fills a
-    picture of so many pixels, seen from a direction (azimuth, elevation)."""
+    """Return the camera for which a container just fills a picture.
+
+    The container has `lengths` (3,); objects within `reach` around it are included. The direction is
+    (azimuth, elevation).
+    """
     azimuth, elevation = np.radians(direction)
     outward = np.array(
         [np.cos(azimuth) * np.cos(elevation), np.sin(azimuth) * np.cos(elevation), np.sin(elevation)]
@@ -83,7 +97,7 @@ def camera_for(
     depth = corners @ forward
 
     def seen(distance: float) -> np.ndarray:
-        """(2, 2) the lowest and highest slope, to the right and upwards, at which a corner is seen."""
+        """Return the lowest and highest slope of the corners, to the right and upwards."""
         slopes = np.array([corners @ right, corners @ up]) / (distance + depth)
         return np.array([slopes.min(axis=1), slopes.max(axis=1)])
 
@@ -108,7 +122,7 @@ def camera_for(
 
 
 def edges_of(lengths: np.ndarray) -> np.ndarray:
-    """(12, 7) the container's edges: a corner, the unit vector along, the length."""
+    """Return the edges (12, 7) of the container: a corner, the unit vector along, the length."""
     return np.array(
         [
             [*np.insert(ends, axis, 0.0) * lengths, *np.eye(3)[axis], lengths[axis]]
@@ -119,7 +133,7 @@ def edges_of(lengths: np.ndarray) -> np.ndarray:
 
 
 def segments(lines: np.ndarray) -> np.ndarray:
-    """(M, 7) lines (M, 2, 3), from end to end, in the same form."""
+    """Convert lines (M, 2, 3), from end to end, to the form (M, 7) of edges."""
     along = lines[:, 1] - lines[:, 0]
     lengths = np.linalg.norm(along, axis=1, keepdims=True)
     return np.hstack([lines[:, 0], along / lengths, lengths])
@@ -131,7 +145,7 @@ LARGEST_SIDE = 20_000
 
 
 def checked_size(size: tuple[int, int]) -> tuple[int, int]:
-    """(W, H), or a SceneError."""
+    """Return a valid size (W, H), or raise SceneError."""
     if not isinstance(size, (tuple, list)) or len(size) != 2:
         raise SceneError("size", size, "must be a width and a height in pixels")
     for side in size:
@@ -141,7 +155,7 @@ def checked_size(size: tuple[int, int]) -> tuple[int, int]:
 
 
 def checked_camera(camera: tuple[float, float] | None, dimension: int) -> tuple[float, float]:
-    """Azimuth and elevation in degrees, the default ones for None, or a SceneError."""
+    """Return azimuth and elevation in degrees, by default for None, or raise SceneError."""
     if camera is None:
         return CAMERA
     if dimension == 2:
@@ -154,7 +168,7 @@ def checked_camera(camera: tuple[float, float] | None, dimension: int) -> tuple[
 
 
 def pixels_per_length(particles: DrawnParticles, size: tuple[int, int], camera: tuple[float, float]) -> float:
-    """The scale of a picture; of spheres, in the middle of the container."""
+    """Return the scale of a picture; of spheres, in the middle of the container."""
     lengths = particles.lengths
     if len(lengths) == 2:
         return scale_of(lengths, size)[0]
@@ -169,8 +183,11 @@ def picture(
     paths: Sequence[np.ndarray] = (),
     direction: tuple[float, float] = CAMERA,
 ) -> np.ndarray:
-    """The pixels, uint8 (H, W, 3), of particles in these colours (N, 3); paths, (M, 2) each, lie over
-    discs; direction: azimuth and elevation of the camera that sees spheres, in degrees."""
+    """Draw particles in these colours (N, 3), as pixels, uint8 (H, W, 3).
+
+    paths : arrays (M, 2), drawn over discs.
+    direction : azimuth and elevation of the camera for spheres, in degrees.
+    """
     if particles.dimension == 3:
         camera = camera_for(particles.lengths, *size, direction, particles.reach)
         lengths, walls = particles.lengths, particles.walls
@@ -222,8 +239,10 @@ def _plane(
 
 
 def _images(particles: DrawnParticles) -> tuple[np.ndarray, np.ndarray]:
-    """Indices (M,) of particles and shifts (M, d): all discs, then the periodic images of those that reach
-    over a periodic face."""
+    """Return indices (M,) of particles and shifts (M, d) of their images.
+
+    These are all discs, then the periodic images of discs that cross a periodic face.
+    """
     radii, lengths = particles.radii[:, None], particles.lengths
     steps = [(0, -1, 1) if periodic else (0,) for periodic in particles.periodic[: particles.dimension]]
     indices, shifts = [], []
@@ -246,8 +265,10 @@ _SHADE = (0.88, 0.88, 0.88)
 
 
 def scale_of(lengths: np.ndarray, size: tuple[int, int]) -> tuple[float, np.ndarray]:
-    """Pixels per length of a container of `lengths` (2,) in the middle of a picture of `size` (W, H), and
-    where its corner is (2,)."""
+    """Return the pixels per length of a container, and the pixel (2,) of its corner.
+
+    The container of `lengths` (2,) is in the middle of a picture of `size` (W, H).
+    """
     width, height = size
     margin = max(2.0, _MARGIN * min(size))
     scale = float(min((width - 2 * margin) / lengths[0], (height - 2 * margin) / lengths[1]))
@@ -255,7 +276,7 @@ def scale_of(lengths: np.ndarray, size: tuple[int, int]) -> tuple[float, np.ndar
 
 
 class Canvas:
-    """A white picture of `size` (W, H) pixels, with a container of `lengths` (2,) in the middle."""
+    """White picture of `size` (W, H) pixels, with a container of `lengths` (2,) in the middle."""
 
     def __init__(self, lengths: np.ndarray, size: tuple[int, int]) -> None:
         width, height = size
@@ -264,16 +285,16 @@ class Canvas:
         self._height = height
 
     def _pixels(self, points: np.ndarray) -> np.ndarray:
-        """Points (N, 2) of the container as columns and rows of pixels."""
+        """Convert points (N, 2) of the container to columns and rows of pixels."""
         places = self.corner + self.scale * np.asarray(points, dtype=float)
         return np.column_stack([places[:, 0], self._height - places[:, 1]])
 
     def discs(self, positions: np.ndarray, radii: np.ndarray, colours: np.ndarray) -> None:
-        """Discs, later ones over earlier ones; none smaller than half a pixel in radius."""
+        """Draw discs, later ones over earlier ones; none smaller than half a pixel in radius."""
         draw_discs(self.image, self._pixels(positions), np.maximum(self.scale * radii, 0.5), colours)
 
     def cut(self, periodic: Sequence[bool]) -> None:
-        """Leave white what lies beyond the container along the axes that are periodic."""
+        """Clear the pixels beyond the container along the axes that are periodic."""
         width, height = self.lengths
         low, high = np.rint(self._pixels(np.array([[0.0, height], [width, 0.0]]))).astype(int)
         if periodic[0]:
@@ -282,7 +303,7 @@ class Canvas:
             self.image[: low[1]] = self.image[high[1] :] = 1.0
 
     def line(self, points: np.ndarray, colour: tuple[float, ...] = INK, width: int = 1) -> None:
-        """A line through points (N, 2), `width` pixels wide (odd)."""
+        """Draw a line through points (N, 2), `width` pixels wide (odd)."""
         half = width // 2
         for shift in product(range(-half, half + 1), repeat=2):
             places = self._pixels(points) + np.array(shift)
@@ -307,7 +328,7 @@ class Canvas:
             self.image[max(top, 0) : bottom, max(left, 0) : right] = _SHADE
 
     def surface(self, surface: DrawnSurface) -> None:
-        """Draw a surface in its look: its line, dashes, hatching, arrows and the edge of its well."""
+        """Draw a surface: its line, dashes, hatching, arrows and the edge of its well."""
         start, end = surface.ends
         along = (end - start) / np.linalg.norm(end - start)
         unit = self._thickness / self.scale  # the thickness of the line as a length
@@ -346,7 +367,7 @@ class Canvas:
             self.line(marks[n : n + 2], colour, self._thickness)
 
     def _arrow(self, tail: np.ndarray, head: np.ndarray, colour: tuple[float, ...]) -> None:
-        """Draw an arrow with a bright border, so that it is seen on discs of any colour."""
+        """Draw an arrow with a bright border, which is visible on discs of any colour."""
         back = 0.25 * (tail - head)
         barbs = [head + back + sign * 0.6 * np.array([-back[1], back[0]]) for sign in (-1.0, 1.0)]
         lines = [np.array([tail, head]), *(np.array([barb, head]) for barb in barbs)]
@@ -355,7 +376,10 @@ class Canvas:
                 self.line(line, shade, width)
 
     def path(self, points: np.ndarray) -> None:
-        """A line through points (N, 2) that is seen on discs of any colour: dark, with a bright border."""
+        """Draw a dark line with a bright border through points (N, 2).
+
+        It is visible on discs of any colour.
+        """
         self.line(points, PAPER, 5)
         self.line(points, INK, 3)
 
@@ -380,10 +404,14 @@ def trace(
     size: tuple[int, int],
     lines: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The picture (H, W, 3), from 0 to 1, and the kind of object in the middle of each pixel (H, W).
+    """Trace a picture (H, W, 3), from 0 to 1, and the objects in its pixels.
 
-    positions (N, 3), radii (N,), colours (N, 3); lengths (3,) of the container, whose lower face is the
-    floor; size: (W, H) pixels; lines (M, 2, 3), drawn like the container's edges.
+    positions, radii, colours : (N, 3), (N,), (N, 3).
+    lengths : (3,), sides of the container, whose lower face is the floor.
+    size : (W, H) in pixels.
+    lines : (M, 2, 3), drawn like the edges of the container.
+
+    Returned are the picture and the kind of object in the middle of each pixel (H, W).
     """
     spheres = np.column_stack([positions, radii]).astype(float)
     grid = cells(spheres, np.asarray(lengths, dtype=float))
@@ -403,8 +431,11 @@ def trace(
 
 
 def cells(spheres: np.ndarray, lengths: np.ndarray) -> tuple:
-    """Cubic cells over container and spheres: lowest corner (3,), side, numbers (3,), the lists of the
-    spheres that reach into each (listed[first[c] : first[c + 1]]), and each sphere's lowest cell (N, 3)."""
+    """Divide container and spheres into cubic cells, and list the spheres in each cell.
+
+    Returned are the lowest corner (3,), the side, the numbers (3,), the lists of the spheres that reach into
+    each cell (listed[first[c] : first[c + 1]]), and each sphere's lowest cell (N, 3).
+    """
     low, high = np.zeros(3), lengths.copy()
     side = float(lengths.max())
     if len(spheres):

@@ -1,4 +1,4 @@
-"""Mean velocity of a gas along an axis, and the fluxes to its walls, in a steady state.
+"""Mean velocity of a gas along an axis, and fluxes to its walls, in steady states.
 
 The gas is at rest, sheared, between plates that slide, or driven along plates by a force.
 """
@@ -261,7 +261,7 @@ def _between(what: str) -> str:
 
 
 def _friction(plates: Plates, run: Run) -> Expected | None:
-    """Compute the heat of friction: half the work of the stress for each plate."""
+    """Compute the heat of friction, half the work of the stress for each plate."""
     if not plates.equal or (stress := _sheared(plates, run)) is None:
         return None
     value, error, source = stress
