@@ -119,7 +119,7 @@ def schema(installed: tuple[tuple[str, str], ...] = ()) -> Kind:
 
 
 def _of_kind(kind: str) -> Kind:
-    """The entry of a figure with a name of one's own."""
+    """Return the entry of a figure with a name of one's own."""
     stated = choice("the kind of a figure with a name of one's own", kind)
     return record({"kind": stated, "experiments": _EXPERIMENTS, **registry.settings_of_kind(kind)})
 

@@ -35,7 +35,7 @@ _KEYS = "A key without a default is required. A default of *none* means that the
 
 
 def documents() -> dict[str, str]:
-    """The text of each generated file, by its path from the folder of the project."""
+    """Return the text of each generated file, by its path from the folder of the project."""
     schemas = {"config": schema(), "scene": scene_schema()}
     texts = {
         f"workflow/schemas/{name}.schema.json": json.dumps(content, indent=1, ensure_ascii=False) + "\n"
@@ -109,7 +109,7 @@ def _models() -> str:
 
 
 def _observables() -> list[str]:
-    """Each named observable, as it is declared."""
+    """Return each named observable, as it is declared."""
     heads = (
         "name",
         "also",
@@ -152,7 +152,7 @@ def _excluded() -> str:
 
 
 def _parts(scene: Kind) -> list[tuple[str, Kind]]:
-    """The mappings inside a scene file, each with its title."""
+    """Return the mappings inside a scene file, each with its title."""
     titled: dict[str, Kind] = {}
     queue = list(scene["properties"].values())
     while queue:
@@ -165,7 +165,7 @@ def _parts(scene: Kind) -> list[tuple[str, Kind]]:
 
 
 def _outline(table: dict[str, Kind]) -> dict[str, Kind]:
-    """A table of keys without those inside their mappings, which have tables of their own."""
+    """Return a table of keys without those inside their mappings, which have tables of their own."""
     return {name: kind.stating(properties={}) for name, kind in table.items()}
 
 

@@ -109,7 +109,7 @@ def axes_of(over: object) -> dict[str, list]:
 
 
 def names_of(observables: object, axes: Mapping[str, list]) -> list[str]:
-    """The observables, each once; a single name counts as a list of one. Raises SceneError."""
+    """Return the observables, each once; a single name counts as a list of one; raise SceneError."""
     given = [observables] if isinstance(observables, str) else observables
     if not isinstance(given, Iterable) or isinstance(given, bytes | Mapping):
         raise SceneError("observables", observables, "must be the names of observables")
@@ -122,7 +122,7 @@ def names_of(observables: object, axes: Mapping[str, list]) -> list[str]:
 
 
 def _values(where: str, given: Any) -> list:
-    """The values of a key. Raises SceneError for too many, or an iterator that fails."""
+    """Return the values of a key; raise SceneError for too many, or an iterator that fails."""
     plain = _plain(given)
     if isinstance(plain, str | bytes | Mapping) or not isinstance(plain, Iterable):
         return [plain]

@@ -84,7 +84,7 @@ class SweepTable(ByFace):
 
 
 def _known(key: str, given: str | None, known: list[str]) -> str:
-    """A name of the table, by default the first. Raises SceneError."""
+    """Return a name of the table, by default the first; raise SceneError."""
     if not known:
         raise SceneError(key, given, "there is nothing to be drawn: the sweep has one point")
     if given is not None and given not in known:
@@ -93,7 +93,7 @@ def _known(key: str, given: str | None, known: list[str]) -> str:
 
 
 def _preferred(values: xr.DataArray) -> list[str]:
-    """The dimensions of an observable, those first that make the best axis."""
+    """Return the dimensions of an observable, those first that make the best axis."""
     dims = [str(dim) for dim in values.dims]
     numbers = [dim for dim in dims if _is_number(values, dim)]
     curves = [dim for dim in numbers if dim.startswith(f"{values.name}_")]
@@ -106,7 +106,7 @@ def _is_number(values: xr.DataArray, dim: str) -> bool:
 
 
 def _label(table: xr.Dataset, chosen: dict[str, int]) -> str:
-    """The label of a curve: what distinguishes it from others."""
+    """Return the label of a curve: what distinguishes it from others."""
     words = []
     for dim, number in chosen.items():
         if table.sizes[dim] > 1:
@@ -208,7 +208,7 @@ def _attributes(scene: Scene, engine: Engine, seed: int) -> dict[str, Any]:
 
 
 def _coordinate(value: Any) -> Any:
-    """A value as a coordinate: of a list, its text."""
+    """Return a value as a coordinate: of a list, its text."""
     return value if isinstance(value, (int, float, str)) else str(value)
 
 

@@ -101,7 +101,7 @@ class Table(_Columns):
         return Table(part, self._over)
 
     def assign(self, **columns: Any) -> Table:
-        """The table with further columns, each (rows,), or one value for all rows."""
+        """Return the table with further columns, each (rows,), or one value for all rows."""
         filled = {
             name: (self._over, values if np.ndim(values) else [values] * len(self))
             for name, values in _spread(columns).items()
@@ -169,7 +169,7 @@ def _plain(value: Any) -> Any:
 
 
 def _spread(row: Mapping[str, Any]) -> dict[str, Any]:
-    """The variables of a row; see `table`."""
+    """Return the variables of a row; see `table`."""
     spread: dict[str, Any] = {}
     for name, value in row.items():
         spread |= entries({name: value}) if isinstance(value, (Estimate, tuple)) else {name: value}

@@ -269,7 +269,7 @@ def sources(run: Finished) -> Iterator[str]:
 
 
 def folders(run: Finished) -> list[str]:
-    """The folders of sources that the project has."""
+    """Return the folders of sources that the project has."""
     return [folder for folder in FOLDERS if (run.root / folder).is_dir()]
 
 
@@ -288,13 +288,13 @@ def _is_kept(name: str) -> bool:
 
 
 def report(run: Finished) -> str:
-    """The report without its pictures for narrow screens, which are not in the archive."""
+    """Return the report without its pictures for narrow screens, which are not in the archive."""
     page = (run.root / run.report).read_text(encoding="utf-8")
     return re.sub(r'<source\b[^>]*\bsrcset="figures/journal/[^>]*>', "", page)
 
 
 def captions(run: Finished) -> dict[str, str]:
-    """{path in the archive: caption} of each figure, with its measured numbers."""
+    """Return {path in the archive: caption} of each figure, with its measured numbers."""
     rows = table.read(run.root / run.results / "tables/claims.csv")
     texts = {figure: _caption(run, figure) for figure in run.figures}
     return {

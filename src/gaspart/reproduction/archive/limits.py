@@ -124,7 +124,7 @@ def digest(file: IO[bytes], copy: IO[bytes] | None = None) -> str:
 
 
 def digest_of_file(path: Path) -> str:
-    """The digest of a file. May raise OSError."""
+    """Return the digest of a file; may raise OSError."""
     with path.open("rb") as file:
         return digest(file)
 

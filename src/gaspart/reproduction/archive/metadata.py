@@ -253,7 +253,7 @@ def _add_workflow(
 
 
 def _version(described: Described) -> str:
-    """The version of gaspart, with the git revision that was run."""
+    """Return the version of gaspart, with the git revision that was run."""
     summary = described.summary
     return f"{summary['gaspart']} ({summary['revision']})" if summary["revision"] else summary["gaspart"]
 

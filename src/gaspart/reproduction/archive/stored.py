@@ -67,11 +67,11 @@ class Stored:
     opener: Callable[[str], IO[bytes]]
 
     def refused(self, rule: str) -> SceneError:
-        """The error about this archive."""
+        """Return the error about this archive."""
         return SceneError("archive", str(self.path), rule)
 
     def open(self, name: str) -> IO[bytes]:
-        """A file of the archive. Raises SceneError for another name, and DAMAGE."""
+        """Return a file of the archive; raise SceneError for another name, and DAMAGE."""
         if name not in self.names:
             raise self.refused(f"has no file {name}")
         return self.opener(name)
@@ -100,7 +100,7 @@ class Stored:
             raise self.refused(f"has a damaged {name}: {_reason(error)}") from None
 
     def rows(self, name: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
-        """The rows of a table that has at least these columns. Raises SceneError."""
+        """Return the rows of a table that has at least these columns; raise SceneError."""
         try:
             return rows_of(self.text(name), columns)
         except SceneError:
@@ -132,7 +132,7 @@ class Stored:
         return dict(found)
 
     def manifest(self) -> dict[str, str]:
-        """{path: digest} as the manifest states them. Raises SceneError for another text."""
+        """Return {path: digest} as the manifest states them; raise SceneError for another text."""
         found: dict[str, str] = {}
         for line in io.StringIO(self.text(MANIFEST)):
             value, gap, name = line.removesuffix("\n").partition("  ")
@@ -401,7 +401,7 @@ def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
 
 
 def _inputs(stored: Stored, name: str) -> list[str]:
-    """The points, or tables of claims, of which a measurement in an archive is made."""
+    """Return the points, or tables of claims, of which a measurement in an archive is made."""
     with TemporaryDirectory(prefix="gaspart-") as folder:
         copy = Path(folder, "measurement.nc")
         stored.copy(name, copy)

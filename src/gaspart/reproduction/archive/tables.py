@@ -77,7 +77,7 @@ class JobTime(NamedTuple):
 
 
 def point_files(run: Finished) -> list[PointFile]:
-    """The files of all points, with their digests; reads all of them."""
+    """Return the files of all points, with their digests; reads all of them."""
     rows = []
     for point in run.points:
         named = point.experiment, point.name, point.job
@@ -94,7 +94,7 @@ def point_files(run: Finished) -> list[PointFile]:
 
 
 def inputs_of(measurement: Path) -> list[str]:
-    """The points, or tables of claims, that a measurement states it is made of."""
+    """Return the points, or tables of claims, that a measurement states it is made of."""
     from netCDF4 import Dataset
 
     with Dataset(measurement) as file:
@@ -135,7 +135,7 @@ def job_times(run: Finished) -> list[JobTime]:
 
 
 def text_of(rows: Iterable[tuple], columns: tuple[str, ...]) -> str:
-    """Rows as CSV."""
+    """Return rows as CSV."""
     text = io.StringIO()
     written = csv.writer(text, lineterminator="\n")
     written.writerow(columns)
@@ -164,7 +164,7 @@ def rows_of(text: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
 
 
 def machine() -> dict[str, Any]:
-    """Processor, memory and system of this machine, and the installed packages."""
+    """Return processor, memory and system of this machine, and the installed packages."""
     packages = {one.name: one.version for one in distributions() if one.name}
     return {
         "processor": _processor(),
@@ -178,7 +178,7 @@ def machine() -> dict[str, Any]:
 
 
 def _processor() -> str:
-    """The model of the processor, as Linux names it."""
+    """Return the model of the processor, as Linux names it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

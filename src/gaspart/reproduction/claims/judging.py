@@ -246,7 +246,7 @@ def family_test(claims: Sequence[Claim]) -> list[Claim]:
 
 
 def judge(claims: Sequence[Claim]) -> list[str]:
-    """Verdicts of one figure's claims, in their order.
+    """Return verdicts of one figure's claims, in their order.
 
     A deviation is significant by Holm's correction for the family of all tests and reproductions with finite
     numbers; identities do not depend on chance, and the joint test stands for all: they are judged by 3 sigma
@@ -266,7 +266,7 @@ def judge(claims: Sequence[Claim]) -> list[str]:
 
 
 def _verdict(claim: Claim, is_significant: bool) -> str:
-    """The verdict of one claim, whose deviation is significant or not."""
+    """Return the verdict of one claim, whose deviation is significant or not."""
     if claim.no_verdict:
         return "no verdict"
     if not claim.is_finite:

@@ -70,7 +70,7 @@ def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
 
 
 def _row(claim: Claim, verdict: str) -> dict[str, str]:
-    """A judged claim by column."""
+    """Return a judged claim by column."""
     lowest, highest = claim.bounds or (math.nan, math.nan)
     return {
         "claim": claim.claim,
@@ -204,7 +204,7 @@ def concise(value: float, error: float) -> str:
 
 
 def literal_copies(caption: str, rows: Iterable[dict[str, Any]]) -> list[str]:
-    """Numbers that a caption states itself although they are measured, "1.34: claim".
+    """Return numbers that a caption states itself although they are measured, "1.34: claim".
 
     A number with a decimal point that is the measured value of a claim, but not its expected one, both
     rounded to as many digits. By chance a few are found that have another origin.

@@ -29,7 +29,7 @@ _PARTS = ("measure", "claims", "figure")
 
 @cache
 def _entry_points() -> dict[str, list[EntryPoint]]:
-    """The entry points of each kind, of which there should be one."""
+    """Return the entry points of each kind, of which there should be one."""
     found: dict[str, list[EntryPoint]] = {}
     for entry_point in entry_points_of(GROUP):
         others = found.setdefault(entry_point.name, [])
@@ -39,7 +39,7 @@ def _entry_points() -> dict[str, list[EntryPoint]]:
 
 
 def kinds() -> list[str]:
-    """The kinds of installed packages, in alphabetical order; no package is imported."""
+    """Return the kinds of installed packages, in alphabetical order; no package is imported."""
     return sorted(_entry_points())
 
 
@@ -64,7 +64,7 @@ def source(kind: str) -> str:
 
 
 def files(family: str) -> list[Path]:
-    """The Python files of the whole package that a family belongs to, in alphabetical order."""
+    """Return the Python files of the whole package that a family belongs to, in alphabetical order."""
     spec = find_spec(family.partition(".")[0])
     folders = (spec.submodule_search_locations if spec else None) or ()
     return sorted(path for folder in folders for path in Path(folder).rglob("*.py"))

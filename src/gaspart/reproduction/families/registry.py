@@ -34,13 +34,13 @@ _OWN = "own"
 
 @cache
 def _packages() -> dict[str, ModuleType]:
-    """The package of each family, in alphabetical order."""
+    """Return the package of each family, in alphabetical order."""
     names = sorted(path.parent.name for path in Path(__file__).parent.glob("*/figure.py"))
     return {name: import_module(f"gaspart.reproduction.families.{name}") for name in names}
 
 
 def titles() -> dict[str, str]:
-    """The title of each family, in alphabetical order of the families."""
+    """Return the title of each family, in alphabetical order of the families."""
     return {name: package.TITLE for name, package in _packages().items()}
 
 
@@ -51,19 +51,19 @@ def title(figure: str, entry: Mapping[str, Any]) -> str:
 
 
 def chapter(family: str) -> str:
-    """The chapter of the report in which a family stands."""
+    """Return the chapter of the report in which a family stands."""
     return str(_packages().get(family, _packages()[_OWN]).CHAPTER)
 
 
 @cache
 def families() -> dict[str, str]:
-    """The family of each figure."""
+    """Return the family of each figure."""
     return {figure: name for name, package in _packages().items() for figure in package.FIGURES}
 
 
 @cache
 def _kinds() -> dict[str, str]:
-    """The family of each kind of figures."""
+    """Return the family of each kind of figures."""
     return {kind: name for name, package in _packages().items() for kind in getattr(package, "KINDS", {})}
 
 
@@ -111,7 +111,7 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
 
 
 def of_claims() -> frozenset[str]:
-    """The figures that are made of the claims of all others."""
+    """Return the figures that are made of the claims of all others."""
     stated = (package for package in _packages().values() if getattr(package, "OF_CLAIMS", False))
     return frozenset(figure for package in stated for figure in package.FIGURES)
 
@@ -123,12 +123,12 @@ def series() -> dict[str, tuple[int, float]]:
 
 
 def costs() -> list[str]:
-    """The figures of the cost of an accuracy."""
+    """Return the figures of the cost of an accuracy."""
     return [figure for package in _packages().values() for figure in getattr(package, "COSTS", [])]
 
 
 def settings() -> dict[str, dict[str, Kind]]:
-    """The settings of each figure's measurement."""
+    """Return the settings of each figure's measurement."""
     return {figure: keys for package in _packages().values() for figure, keys in package.FIGURES.items()}
 
 

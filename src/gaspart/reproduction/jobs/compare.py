@@ -40,12 +40,12 @@ _LISTED_STEPS = 64  # a longer part adds time but little information
 
 
 def engines(point: Point) -> list[Engine]:
-    """The time-stepped engines that are compared with the exact one."""
+    """Return the time-stepped engines that are compared with the exact one."""
     return point.engines
 
 
 def arguments(point: Point) -> dict:
-    """The arguments of `compare`. Raises SceneError."""
+    """Return the arguments of `compare`; raise SceneError."""
     if point.engine.name != "step":
         raise point.refused("engine", "must be step with job: compare")
     return {"scene": point.scene, "engines": point.engines, "seed": point.seed(), **intervals(point)}
@@ -113,7 +113,7 @@ def compare(
 
 
 def _run(scene: Scene, engine: Engine, state: State, duration: float) -> dict:
-    """The results of one engine after a time."""
+    """Return the results of one engine after a time."""
     from gaspart.state.tally import compressibility_factor
 
     dynamics = engine.start(scene, state)

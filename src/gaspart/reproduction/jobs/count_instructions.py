@@ -70,7 +70,7 @@ class Strip(ast.NodeTransformer):
 
 
 def stripped(source: str) -> str:
-    """A module's source without the branches of absent features."""
+    """Return a module's source without the branches of absent features."""
     return ast.unparse(ast.fix_missing_locations(Strip().visit(ast.parse(source))))
 
 
@@ -80,12 +80,12 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """The argument of `count_instructions`. Raises SceneError."""
+    """Return the argument of `count_instructions`; raise SceneError."""
     return {"scene": point.scene}
 
 
 def count_instructions(scene: Scene) -> PointData:
-    """Instructions of each engine's main kernel for a scene, which should be a plain gas.
+    """Return the instructions of each engine's main kernel for a scene, which should be a plain gas.
 
     Returns over engine: `instructions`, and `stripped`, those without the branches of absent features. Both
     are compiled in separate processes with separate caches.

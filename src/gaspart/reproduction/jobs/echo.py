@@ -39,12 +39,12 @@ TANGENT_COLLISIONS = 100.0
 
 
 def engines(point: Point) -> list[Engine]:
-    """The engine that runs forward and back."""
+    """Return the engine that runs forward and back."""
     return [point.engine]
 
 
 def arguments(point: Point) -> dict:
-    """The arguments of `echo`. Raises SceneError."""
+    """Return the arguments of `echo`; raise SceneError."""
     return {"scene": point.scene, "engine": point.engine, "seeds": point.seeds, **intervals(point)}
 
 
@@ -124,7 +124,7 @@ def _exponent(equilibrium: Simulation, interval: float) -> float:
 
 
 def _displaced(state: State, seed: tuple[int, ...]) -> State:
-    """All particles displaced at random, by so little that only touching ones can overlap."""
+    """Return all particles displaced at random, by so little that only touching ones can overlap."""
     import numpy as np
 
     away = np.random.default_rng(seed).standard_normal(state.positions.shape)
@@ -134,7 +134,7 @@ def _displaced(state: State, seed: tuple[int, ...]) -> State:
 
 
 def _distance(one: State, other: State) -> float:
-    """Root-mean-square distance of all particles between walls, in diameters."""
+    """Compute the root-mean-square distance of all particles between walls, in diameters."""
     import numpy as np
 
     apart = ((one.positions - other.positions) ** 2).sum(axis=1)

@@ -29,7 +29,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """The arguments of `fill`. Raises SceneError."""
+    """Return the arguments of `fill`; raise SceneError."""
     if "attempts" not in point.settings:
         raise point.refused("attempts", "is required with job: fill")
     return {"scene": point.scene, "attempts": point.settings["attempts"], "seeds": point.seeds}
@@ -68,7 +68,7 @@ def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData
 
 
 def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int]:
-    """Failures before each particle (N,), -1 for one never placed; and the number of attempts."""
+    """Compute failures before each particle (N,), -1 for one never placed; and the number of attempts."""
     before, used, _ = insert(scene, attempts, seed)
     return before, used
 

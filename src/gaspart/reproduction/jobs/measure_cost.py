@@ -73,7 +73,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """The arguments of `measure_cost`. Raises SceneError."""
+    """Return the arguments of `measure_cost`; raise SceneError."""
     extras = {key: point.settings[key] for key in EXTRAS if point.settings.get(key)}
     if "record_events" in extras and not point.engine.records_events:
         raise point.refused("record_events", "has a meaning with job: measure_cost and engine: event only")
@@ -197,7 +197,7 @@ def _in_turn(runs: Sequence[_Run], interval: float, repeats: int) -> tuple[np.nd
 
 
 def _attributes(scene: Scene, engine: Engine) -> dict:
-    """The attributes of a dataset: the gas, and the first engine."""
+    """Return the attributes of a dataset: the gas, and the first engine."""
     settings = engine_to_dict(engine)
     return {
         "count": scene.count,
@@ -268,7 +268,7 @@ def _counted(dynamics: Dynamics) -> dict:
 
 
 def _sides(engine: Engine, dimension: int) -> tuple[int, ...]:
-    """Boxes along each axis; zeros if the engine chooses them itself."""
+    """Return boxes along each axis; zeros if the engine chooses them itself."""
     settings = engine_to_dict(engine)
     if settings.get("search", "boxes") not in ("automatic", "boxes"):
         return (1,) * dimension

@@ -72,5 +72,5 @@ def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
 
 
 def replica_paths(folder: Path, replicas: int) -> list[Path]:
-    """The trajectories of a folder, in the order of the seeds."""
+    """Return the trajectories of a folder, in the order of the seeds."""
     return [folder / f"replica-{replica}.nc" for replica in range(replicas)]

@@ -82,7 +82,7 @@ EXAMINER = "gaspart.accuracy.reached"
 
 
 def engines(point: Point) -> list[Engine]:
-    """The engine of the trajectories."""
+    """Return the engine of the trajectories."""
     return [point.engine]
 
 
@@ -92,7 +92,7 @@ def modules(point: Point) -> list[str]:
 
 
 def arguments(point: Point) -> dict:
-    """The arguments of `simulate`. Raises SceneError."""
+    """Return the arguments of `simulate`; raise SceneError."""
     times, settings = point.schedule, point.settings
     given = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
     if "until" in settings:
@@ -120,7 +120,7 @@ def arguments(point: Point) -> dict:
 
 
 def _frame_interval(point: Point) -> float:
-    """The time between two frames that are kept. Raises SceneError."""
+    """Compute the time between two frames that are kept; raise SceneError."""
     times, settings = point.schedule, point.settings
     if "frames" in settings:
         if "lags" not in settings:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def engine(point: Point) -> Engine:
-    """The engine that the settings describe. Raises SceneError."""
+    """Return the engine that the settings describe; raise SceneError."""
     return _made(point, point.settings)
 
 
@@ -63,7 +63,7 @@ def boxes_per_side(
 
 
 def _made(point: Point, settings: dict) -> Engine:
-    """The engine of some settings, with the particles and the container of a point."""
+    """Return the engine of some settings, with the particles and the container of a point."""
     name = settings.get("engine", "event")
     _check(point, name, settings)
     fields = {key: settings[key] for key in ENGINE_KEYS[name] if key in settings}
@@ -151,7 +151,7 @@ class Schedule:
 
 
 def schedule(point: Point) -> Schedule:
-    """Duration and sampling of a point's runs, in the scene's time.
+    """Return duration and sampling of a point's runs, in the scene's time.
 
     The length is divided into ``samples`` intervals (whole time steps with the step engine); the
     equilibration, rounded up to complete intervals, precedes it, with ``frames`` to those between frames.
@@ -209,7 +209,7 @@ def _unit_of_time(point: Point, unit: str) -> float:
 
 
 def _mean_rate(mixture: Mixture) -> float:
-    """The mean collision rate of its particles; of many sizes by a part of them."""
+    """Compute the mean collision rate of its particles; of many sizes by a part of them."""
     from gaspart import theory
 
     few = mixture.thinned(_SIZES)

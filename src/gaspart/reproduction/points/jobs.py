@@ -36,7 +36,7 @@ class Job(Protocol):
         """The engines whose kernels it compiles; none where particles are only placed."""
 
     def arguments(self, point: Point) -> dict:
-        """The arguments of its function. Raises SceneError."""
+        """Return the arguments of its function; raise SceneError."""
 
 
 JOBS: Mapping[str, Job] = {

@@ -48,7 +48,7 @@ def _tables(folder: Path) -> frozenset[Path]:
 
 @cache
 def imported(path: Path) -> frozenset[Path]:
-    """Files of the package that a file imports itself, and the packages that hold them."""
+    """Return files of the package that a file imports itself, and the packages that hold them."""
     text = _TYPES.sub("", path.read_text(encoding="utf-8"))
     names = set(_PLAIN.findall(text))
     for base, items in _FROM.findall(text):
@@ -63,7 +63,7 @@ def imported(path: Path) -> frozenset[Path]:
 
 @cache
 def _homes(package: str) -> dict[str, str]:
-    """The module of each name that a package loads when it is used."""
+    """Return the module of each name that a package loads when it is used."""
     stub = PACKAGE.joinpath(*package.split(".")[1:], "__init__.pyi")
     return stated(str(stub)) if stub.is_file() else {}
 

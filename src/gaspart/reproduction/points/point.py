@@ -58,7 +58,7 @@ class Point:
         return self.settings.get("replicas", 1)
 
     def replica_path(self, replica: int) -> str:
-        """The trajectory of one replica (of the job TRAJECTORIES only)."""
+        """Return the trajectory of one replica (of the job TRAJECTORIES only)."""
         return f"{self.path}/replica-{replica}.nc"
 
     @property

@@ -33,12 +33,12 @@ class Extents(NamedTuple):
 
 
 def scene(point: Point) -> Scene:
-    """The point's ``Scene``. Raises SceneError."""
+    """Return the point's ``Scene``; raise SceneError."""
     return _read(point) if "scene" in point.settings else _made(point)
 
 
 def extents(point: Point) -> Extents:
-    """The extents of a point. Raises SceneError.
+    """Return the extents of a point; raise SceneError.
 
     Three of count, radius, packing fraction and side are given and the fourth follows: a count that follows
     is rounded to a whole number; a side that follows is the same on every axis. A scene file states all of
@@ -88,7 +88,7 @@ def _check_gas(point: Point) -> None:
 
 
 def _small_count(point: Point) -> int:
-    """The number of particles of the second species."""
+    """Return the number of particles of the second species."""
     count = int(point.settings["count"])
     return min(max(round(count * point.settings["small_fraction"]), 1), count - 1)
 
@@ -118,7 +118,7 @@ def _mean_volume(point: Point) -> float:
 
 
 def _made(point: Point) -> Scene:
-    """The scene of one species, or of two sizes, that the settings describe."""
+    """Return the scene of one species, or of two sizes, that the settings describe."""
     from gaspart.scene.container import Container
     from gaspart.scene.scene import Scene
     from gaspart.scene.species import Species
@@ -169,7 +169,7 @@ def _read(point: Point) -> Scene:
 
 
 def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
-    """The content of the scene file of a point, and its scene without changes."""
+    """Return the content of the scene file of a point, and its scene without changes."""
     try:
         changed = Path(path).stat().st_mtime_ns
     except OSError as error:
@@ -181,7 +181,7 @@ def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
 
 @cache
 def _file(path: str, changed: int) -> tuple[Any, Scene]:
-    """The content of a scene file, and its scene. Read again when it has changed."""
+    """Return the content of a scene file, and its scene; read it again when it has changed."""
     from gaspart.scene.scene import Scene
 
     content = read_yaml(path)

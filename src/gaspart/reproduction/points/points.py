@@ -59,7 +59,7 @@ def _of_any_engine() -> dict[str, Kind]:
 
 
 def _of_any_job() -> dict[str, Kind]:
-    """The keys of all jobs, each with its meaning for every job that has it."""
+    """Return the keys of all jobs, each with its meaning for every job that has it."""
     kinds: dict[str, Kind] = {}
     meanings: dict[str, dict[str, list[str]]] = {}  # of each key: meaning, jobs
     for job, module in JOBS.items():
@@ -242,7 +242,7 @@ def figure_points(config: dict, figure: str, planned: Mapping[str, Mapping[str, 
 
 
 def _combinations(grid: Any, where: str) -> list[dict]:
-    """The product of a mapping's lists; of a list of mappings, one after the other."""
+    """Return the product of a mapping's lists; of a list of mappings, one after the other."""
     if isinstance(grid, list):
         if not grid:
             raise SceneError(where, grid, "must not be empty")

@@ -27,7 +27,7 @@ _STEPS = 100
 
 
 def states(paths: Mapping[str, str]) -> list[dict[str, Any]]:
-    """`series` of the measurements of figures, {figure: path}, that are equations of state."""
+    """Return `series` of the measurements of figures, {figure: path}, that are equations of state."""
     import xarray as xr
 
     stated = {figure: one for figure, one in registry.series().items() if figure in paths}
@@ -71,7 +71,7 @@ def series(
 
 
 def engines(dataset: xr.Dataset) -> dict[str, Any]:
-    """Costs and errors of all engines, from a dataset of `families.tradeoff.maps`.
+    """Return the costs and errors of all engines, from a dataset of `families.tradeoff.maps`.
 
     `count` of particles; `accuracies`; `engines`: name and colour of each; `parts`: what makes errors;
     `observables`: of each its name, its packing fractions and over packing fraction, accuracy and engine
@@ -172,7 +172,7 @@ def read_references(path: str | Path) -> dict[str, Reference]:
 
 
 def cited(citation: re.Match[str], references: Mapping[str, Reference]) -> Reference | None:
-    """The reference that a match of `CITATION` cites; None for other texts in square brackets."""
+    """Return the reference that a match of `CITATION` cites; None for other texts in square brackets."""
     key = " ".join(citation[1].split())
     return references.get(key) or references.get(key[0].lower() + key[1:])
 
@@ -186,7 +186,7 @@ def used(texts: Iterable[str], references: Mapping[str, Reference]) -> dict[str,
 
 
 def linked(text: str, references: Mapping[str, Reference]) -> str:
-    """HTML in which each citation has become names and a numbered link into the list."""
+    """Return HTML in which each citation has become names and a numbered link into the list."""
 
     def link(citation: re.Match[str]) -> str:
         reference = cited(citation, references)

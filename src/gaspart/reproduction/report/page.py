@@ -53,7 +53,7 @@ def deviation(row: dict[str, Any]) -> float:
 
 
 def dots(rows: Iterable[dict[str, Any]]) -> list[Dot]:
-    """The dots of some claims, from the lowest deviation to the highest."""
+    """Return the dots of some claims, from the lowest deviation to the highest."""
     last = [-math.inf] * _LEVELS
     placed = []
     for row in sorted(rows, key=deviation):
@@ -98,7 +98,7 @@ class Caption:
 
 
 def divided(text: str) -> Caption:
-    """The parts of a caption.
+    """Return the parts of a caption.
 
     Raises ValueError if it does not begin with words in bold, and as `html_of`.
     """
@@ -121,7 +121,7 @@ def divided(text: str) -> Caption:
 
 
 def html_of(text: str) -> str:
-    """reStructuredText as a fragment of HTML.
+    """Return reStructuredText as a fragment of HTML.
 
     Raises ValueError for marks that are not closed and other faults, and for an address whose scheme is not
     one of the web or of mail: `javascript:` would run where the report is read.
@@ -210,7 +210,7 @@ class Section:
 
 
 def by_chapter(sections: Iterable[Section]) -> dict[str, list[Section]]:
-    """The sections of each chapter, in the order of the figures."""
+    """Return the sections of each chapter, in the order of the figures."""
     of_chapter: dict[str, list[Section]] = {title: [] for title in CHAPTERS}
     for section in sections:
         of_chapter[chapter(section.family_name)].append(section)
@@ -277,7 +277,7 @@ def picture(path: Path, one_file: bool) -> Picture:
 
 
 def _size(path: Path) -> tuple[int, int]:
-    """Width and height of a PNG, in pixels of the page."""
+    """Return the width and height of a PNG, in pixels of the page."""
     from PIL import Image
 
     with Image.open(path) as image:
@@ -303,7 +303,7 @@ def _data(kind: str, content: bytes) -> str:
 
 
 def _webp(path: Path, width: int) -> str:
-    """The address that holds a picture of this width in pixels at most."""
+    """Return the address that holds a picture of this width in pixels at most."""
     from PIL import Image
 
     content = BytesIO()
@@ -315,5 +315,5 @@ def _webp(path: Path, width: int) -> str:
 
 
 def captioned(text: str, rows: list[dict[str, Any]]) -> Caption:
-    """The caption of a figure with its measured numbers."""
+    """Return the caption of a figure with its measured numbers."""
     return divided(filled(text, rows))

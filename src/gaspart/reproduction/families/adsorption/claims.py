@@ -49,7 +49,7 @@ def _ideal(wells: Table) -> list[Claim]:
 
 
 def _slopes(well: Table, depth: float) -> list[Claim]:
-    """Dependence on temperature of one well."""
+    """Return the claims on dependence on temperature of one well."""
     slope = fit_polynomial(1.0 / well.temperature, well.log_ratio)
     planck = planck_constant(1.0, well.mass, well.temperature) * well.length
     power = fit_power_law(well.temperature, planck)

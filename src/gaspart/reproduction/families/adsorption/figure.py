@@ -35,7 +35,7 @@ def adsorption(dataset: xr.Dataset) -> Figure:
 
 
 def _ratios(top: Axes, bottom: Axes, wells: Table) -> None:
-    """Adsorbed over free particles against 1 / kT, and the deviation from the exact ratio."""
+    """Draw adsorbed over free particles against 1 / kT, and the deviation from the exact ratio."""
     style.level(bottom, 0.0)
     inverse = np.linspace(0.0, 1.05 / wells.temperature.min(), 50)
     for kind, (depth, width, well) in enumerate(wells.by("depth", "width")):
@@ -65,7 +65,7 @@ def _lengths(axis: Axes, wells: Table) -> None:
 
 
 def _isotherm(axis: Axes, layers: Table) -> None:
-    """Coverage of a layer against the activity of the gas."""
+    """Draw the coverage of a layer against the activity of the gas."""
     eta = np.linspace(1e-3, 0.52, 300)
     axis.plot(scaled_particle_activity(eta), eta, color=style.REFERENCE, label="hard discs (SPT)")
     activity = np.geomspace(0.01, 100.0, 200)
@@ -79,7 +79,7 @@ def _isotherm(axis: Axes, layers: Table) -> None:
 
 
 def _sticky_coverage(axis: Axes, walls: Table) -> None:
-    """Coverage of a sticky wall against the density of the gas."""
+    """Draw the coverage of a sticky wall against the density of the gas."""
     density, middle = walls.gas_density.value, len(walls) // 2
     style.points(axis, density, walls.coverage, kind=1, label="sticky wall")
     line = np.geomspace(0.8 * density.min(), 1.25 * density.max(), 50)

@@ -153,7 +153,7 @@ def _speeds(settings: dict) -> Grid:
 
 
 def _measured(point: Point, settings: dict) -> dict[str, Any]:
-    """The values of one point."""
+    """Return the values of one point."""
     holder = Holder.of(point)
     slow = holder.momentum / np.sqrt(holder.mass * holder.temperature) or 1.0
     layer = holder.kind == "layer"

@@ -19,7 +19,7 @@ STATISTICAL = "the statistical error of the direct simulation"
 
 
 def _name(row: Row) -> str:
-    """The particle that a row describes."""
+    """Return the particle that a row describes."""
     gas = ", gas of equal speeds" if row.equal_speeds else ""
     steps = "time-stepped, " if row.stepped else ""
     return f"{steps}mass {row.mass / row.gas_mass:g} times a gas particle's{gas}"
@@ -33,7 +33,7 @@ def _source(row: Row) -> str:
 
 
 def brownian_paths(ds: xr.Dataset) -> list[Claim]:
-    """Distances from the start at the end of the paths."""
+    """Return the claims on distances from the start at the end of the paths."""
     return [
         Claim.chi_square(
             claim=f"ends of {row.replicas} paths over their variance from rest, {_name(row)}",

@@ -20,7 +20,7 @@ MOST = 10
 
 
 def brownian_paths(ds: xr.Dataset) -> Figure:
-    """Paths from above, a panel for each point; in the middle, the sphere to scale."""
+    """Draw paths from above, a panel for each point; in the middle, the sphere to scale."""
     from matplotlib.patches import Circle
 
     spheres = Table(ds, "point")
@@ -71,7 +71,7 @@ def brownian_msd(ds: xr.Dataset) -> Figure:
 
 
 def _langevin(time: np.ndarray) -> np.ndarray:
-    """The mean-squared displacement in reduced units."""
+    """Compute the mean-squared displacement in reduced units."""
     return np.asarray(theory.langevin_msd(time, 1.0 / 6.0, 1.0))
 
 

@@ -39,7 +39,7 @@ NAMES = {
 
 
 def _followed(point: Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Times (T,) of each replica, displacements and velocities of its first particle (T, 1, 3)."""
+    """Yield times (T,) of each replica, displacements and velocities of its first particle (T, 1, 3)."""
     if not point.settings.get("displacements", False):
         raise SceneError(f"experiments.{point.experiment}.displacements", False, "must be true")
     for run in runs(point, first=0):
@@ -73,7 +73,7 @@ def _ends(point: Point, paths: int) -> dict[str, Any]:
 
 
 def _end_variance(point: Point, motion: BrownianMotion, duration: float) -> float:
-    """Expected mean square of a component of the displacement at the end."""
+    """Compute the expected mean square of a component of the displacement at the end."""
     if motion.is_light:
         return float(np.mean([(moved[-1] ** 2).mean() for _, moved, _ in light_paths(point, motion)]))
     rest = 1.0 - motion.share
@@ -169,7 +169,7 @@ def _curves(
 
 
 def _facts(point: Point, motion: BrownianMotion) -> dict[str, Any]:
-    """The columns of every row."""
+    """Return the columns of every row."""
     return {
         "equal_speeds": point.scene.species[0].speed is not None,
         "stepped": point.settings.get("engine") == "step",

@@ -27,7 +27,7 @@ def buoyancy(ds: xr.Dataset) -> list[Claim]:
 
 
 def _fixed(discs: Table) -> list[Claim]:
-    """The force on fixed discs."""
+    """Return the claims on the force on fixed discs."""
     of_all = discs.force_radius.weights @ discs.radius_expected
     return [
         *each(
@@ -63,7 +63,7 @@ def _fixed(discs: Table) -> list[Claim]:
 
 
 def _nearer(radius: float | np.ndarray) -> np.ndarray:
-    """R or R + r, as 0 or 1, whichever is nearer."""
+    """Compute R or R + r, as 0 or 1, whichever is nearer."""
     return np.where(radius < 0.5, 0.0, 1.0)
 
 
@@ -82,7 +82,7 @@ def _free(disc: Row, largest: float) -> Claim:
 
 
 def _floating(disc: Row, name: str) -> Claim:
-    """The mean height of a disc that floats."""
+    """Return the claim on the mean height of a disc that floats."""
     return Claim(
         claim=f"mean height of {name} of mass {disc.mass:g}",
         measured=disc.height,

@@ -48,7 +48,7 @@ def _displaced(top: Axes, middle: Axes, discs: Table, ratio: float) -> None:
 
 
 def _heights(axis: Axes, discs: Table, fluid: Table) -> None:
-    """Free discs: mean heights and their fluctuations, with theory."""
+    """Draw free discs: mean heights and their fluctuations, with theory."""
     axis.plot(fluid.displaced, fluid.height, color=style.DATA, label=r"displaces $M$", zorder=2)
     for disc in discs:
         label = "fluctuates" if disc.mass == discs.mass[0] else None

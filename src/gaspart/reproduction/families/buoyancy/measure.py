@@ -78,7 +78,7 @@ def _mass(point: Point) -> float:
 
 
 def _of_blocks(function: Callable[..., Any], *samples: np.ndarray) -> Estimate:
-    """A function of means over blocks, with its error from their scatter."""
+    """Compute a function of means over blocks, with its error from their scatter."""
     return Estimate(*jackknife(function, *samples), len(samples[0]) - 1)
 
 
@@ -152,13 +152,13 @@ def _fixed(point: Point, settings: dict) -> dict:
 
 
 def _disc(radius: float, points: int = 400) -> tuple[np.ndarray, np.ndarray]:
-    """Strips of a disc: area and height above its centre, (points,) each."""
+    """Compute strips of a disc: area and height above its centre, (points,) each."""
     up = radius * ((np.arange(points) + 0.5) * 2.0 / points - 1.0)
     return 2.0 * np.sqrt(radius**2 - up**2) * 2.0 * radius / points, up
 
 
 def _inside(place: Field, stretch: Stretch, height: float, radius: float) -> float:
-    """Mean number of small discs within `radius` of the large one's centre."""
+    """Compute the mean number of small discs within `radius` of the large one's centre."""
     across = np.abs(stretch.positions[:, 1:, 0] - stretch.positions[:, :1, 0])
     across = np.minimum(across, place.width - across)
     square = across**2 + (stretch.heights[:, 1:] - height) ** 2

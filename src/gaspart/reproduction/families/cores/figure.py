@@ -36,7 +36,7 @@ def cores(dataset: xr.Dataset) -> Figure:
 
 
 def _by_count(axis: Axes, runs: Table, models: Table, fractions: list[float]) -> None:
-    """The runs of an engine, by the colours of their packing fractions."""
+    """Draw the runs of an engine, by the colours of their packing fractions."""
     named: set[str] = set()  # each in the legend once
     for engine, fraction, copies, gas in runs.by("engine", "packing_fraction", "copies"):
         kind = fractions.index(fraction)

@@ -53,7 +53,7 @@ def couette(ds: xr.Dataset) -> list[Claim]:
 
 
 def _named(gas: Row) -> str:
-    """Engine and gap or density of a gas."""
+    """Return the name of a gas: its engine and gap, or its density."""
     if gas.packing_fraction < DILUTE_SLIP:
         return f"dilute spheres, mean free path {gas.knudsen:.2g} of the gap, {gas.engine} engine"
     return f"spheres at packing fraction {gas.packing_fraction:.2f}"
@@ -91,7 +91,7 @@ def _dilute(dilute: Table) -> list[Claim]:
 
 
 def _dense(dense: Table) -> list[Claim]:
-    """The viscosity of dense gases, against Enskog."""
+    """Return the claims on the viscosity of dense gases, against Enskog."""
     return each(
         dense,
         "stress over gradient, over Enskog's viscosity, {gas}",
@@ -148,7 +148,7 @@ def _uniform(sheared: Table, still: Table) -> list[Claim]:
 
 
 def _pressure(slow: Table) -> list[Claim]:
-    """The pressure on the walls against density and temperature in the middle."""
+    """Return the claims on the pressure on the walls against density and temperature in the middle."""
     normal = NORMAL_STRESSES[0] * slow.reduced_rate.value**2
     return each(
         slow,
@@ -179,7 +179,7 @@ def _free(narrow: Table) -> list[Claim]:
 
 
 def _heating(flow: Row) -> Claim:
-    """The parabola of the temperature."""
+    """Return the claim on the parabola of the temperature."""
     return Claim(
         claim=f"-dT/du^2 over half of viscosity over conductivity, walls of speed {flow.speed:g}",
         measured=flow.heating / float(theory.viscous_heating(flow.packing_fraction, 3)),

@@ -35,7 +35,7 @@ def couette(ds: xr.Dataset) -> Figure:
 
 
 def _velocity(axis: Axes, slow: Table) -> None:
-    """The velocity across the gap: free flight, a dilute and a dense gas."""
+    """Draw the velocity across the gap: free flight, a dilute and a dense gas."""
     kinds = {
         "free flight": slow[slow.knudsen > FREE],
         "dilute": slow[(slow.knudsen < SLIP_FLOW) & (slow.packing_fraction < DILUTE_SLIP)],
@@ -54,7 +54,7 @@ def _velocity(axis: Axes, slow: Table) -> None:
 
 
 def _temperature(axis: Axes, wide: Table) -> None:
-    """The temperature against the square of the velocity, with the slope of viscous heating."""
+    """Draw the temperature against the square of the velocity, with the slope of viscous heating."""
     kinds = {"fast walls": wide[wide.speed > FAST], "slow walls": wide[wide.speed < FAST]}
     for kind, (name, flows) in enumerate(kinds.items()):
         if flows:
@@ -83,7 +83,7 @@ def _stress(axis: Axes, dilute: Table) -> None:
 
 
 def _viscosity(axis: Axes, slow: Table, gases: Table) -> None:
-    """The viscosity over Enskog's by density, from the response and from equilibrium."""
+    """Draw the viscosity over Enskog's by density, from the response and from equilibrium."""
     for kind, engine in enumerate((DSMC, EVENT)):
         own = slow[slow.engine == engine]
         style.points(axis, own.packing_fraction, own.viscosity, kind=kind, label=f"response, {engine}")
@@ -98,7 +98,7 @@ def _viscosity(axis: Axes, slow: Table, gases: Table) -> None:
 
 
 def _slip(axis: Axes, slow: Table) -> None:
-    """The slip in mean free paths by density."""
+    """Draw the slip in mean free paths by density."""
     for kind, engine in enumerate((DSMC, EVENT)):
         own = slow[slow.engine == engine]
         style.points(axis, own.packing_fraction, own.slip, kind=kind, label=engine)

@@ -57,7 +57,7 @@ def couette(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _row(gas: tuple[str, Point], settings: dict) -> dict[str, Any]:
-    """The numbers of a point of this part."""
+    """Return the numbers of a point of this part."""
     part, point = gas
     row = {"part": part, "engine": point.engine.title}
     if part == "flows":
@@ -109,7 +109,7 @@ def _speed(scene: Scene) -> float:
 
 
 def _path(density: float, diameter: float, dilute: bool) -> float:
-    """The mean free path, of spheres that take no room if `dilute`."""
+    """Compute the mean free path, of spheres that take no room if `dilute`."""
     eta = float(theory.packing_fraction(density, 3, diameter))
     path = float(theory.mean_free_path(eta, 3, diameter))
     return path * float(theory.contact_value(eta, 3)) if dilute else path
@@ -145,7 +145,7 @@ class Averages:
 
 
 def _blocks(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
-    """Averages over the measured part of all replicas, each cut into `blocks`."""
+    """Return averages over the measured part of all replicas, each cut into `blocks`."""
     found = [_blocks_of(run, gap, blocks, bins) for run in runs(point)]
     return Averages(*(np.concatenate([getattr(one, key) for one in found]) for key in vars(found[0])))
 
@@ -173,7 +173,7 @@ def _blocks_of(run: Run, gap: Gap, blocks: int, bins: int) -> Averages:
 
 
 def _flow(point: Point, settings: dict) -> dict[str, Any]:
-    """The numbers of one flow."""
+    """Return the numbers of one flow."""
     setting = FlowBetweenPlates.of(point, settings)
     gap, speed = setting.gap, setting.speed
     blocks = _blocks(point, gap, settings["blocks"], settings["bins"])
@@ -210,7 +210,7 @@ def _profile(
 
 
 def _numbers(setting: FlowBetweenPlates, stress: float, pressure: float, *averages: np.ndarray) -> np.ndarray:
-    """The stress and `NUMBERS`, from averages over a run.
+    """Compute the stress and `NUMBERS`, from averages over a run.
 
     Across the gap T + b u^2 is constant (`theory.viscous_heating`), and the viscosity grows like the root of
     T: u = g x (1 + c x^2) with c = b g^2 / 6 T to first order in c, g the gradient in the middle.

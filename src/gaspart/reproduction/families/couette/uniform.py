@@ -45,7 +45,7 @@ def _blocks(run: Run, blocks: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _numbers(pressures: np.ndarray, expected: float) -> np.ndarray:
-    """The numbers of `uniform`, from averages over stretches."""
+    """Compute the numbers of `uniform`, from averages over stretches."""
     along = np.diag(pressures)
     mean, stress = along.mean(), -pressures[1, 0]
     return np.array([stress / expected, stress / mean, *(along[list(_AXES.values())] / mean - 1.0)])

@@ -44,7 +44,7 @@ def msd_spheres(ds: xr.Dataset) -> list[Claim]:
 
 
 def infinite(points: Table) -> Estimate:
-    """D in an infinite container."""
+    """Compute D in an infinite container."""
     return points.diffusion + Estimate(points.correction, points.correction_uncertainty)
 
 
@@ -76,7 +76,7 @@ def _size_slope(points: Table) -> Claim:
 
 
 def msd_discs(ds: xr.Dataset) -> list[Claim]:
-    """The slope of D(t) against ln t; no D, since none exists."""
+    """Return the claims on the slope of D(t) against ln t; no D, since none exists."""
     points = Table(ds, "point")
     long = points[np.isfinite(points.logarithmic_slope.value)]
     return [

@@ -32,7 +32,7 @@ def msd_spheres(ds: xr.Dataset) -> Figure:
 
 
 def msd_discs(ds: xr.Dataset) -> Figure:
-    """The msd; D(t), which does not converge; its slope against ln t, by packing fraction."""
+    """Draw the msd; D(t), which does not converge; its slope against ln t, by packing fraction."""
     figure, axes = style.new((2.6,), (2.2,), (2.2,))
     points = Table(ds, "point")
     _displacement(axes[0], points)
@@ -50,7 +50,7 @@ def _fractions(points: Table) -> np.ndarray:
 
 
 def _spread(first: int, last: int) -> np.ndarray:
-    """Indices from first to last - 1, about eight in each decade."""
+    """Compute indices from first to last - 1, about eight in each decade."""
     number = int(np.ceil(8.0 * np.log10(last / first))) + 1
     return np.unique(np.geomspace(first, max(last - 1, first), number).round().astype(int))
 
@@ -67,7 +67,7 @@ def _pieces(points: Table, eta: float) -> Iterator[tuple[Row, np.ndarray]]:
 
 
 def _displacement(axis: Axes, points: Table) -> None:
-    """The msd against time, both in reduced units, with Enskog's curves and the ballistic limit."""
+    """Draw the msd against time, both in reduced units, with Enskog's curves and the ballistic limit."""
     longest, dimension = 0.0, points.dimension
     for kind, eta in enumerate(_fractions(points)):
         for number, (run, lags) in enumerate(_pieces(points, eta)):
@@ -115,12 +115,12 @@ def _running(axis: Axes, points: Table) -> None:
 
 
 def _enskog(eta: float, dimension: int) -> tuple[float, float]:
-    """D and the collision rate."""
+    """Compute D and the collision rate."""
     return float(theory.enskog_diffusion(eta, dimension)), float(theory.collision_rate(eta, dimension))
 
 
 def _predicted(axis: Axes, run: Row, eta: float, kind: int) -> None:
-    """The logarithm's predicted slope over the fitted interval, through D(t) in its middle."""
+    """Draw the logarithm's predicted slope over the fitted interval, through D(t) in its middle."""
     enskog, rate = _enskog(eta, 2)
     ends, known = np.array([run.fit_from, run.fit_to]), np.isfinite(run.time)
     middle = np.sqrt(ends.prod())

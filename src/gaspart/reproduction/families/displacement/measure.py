@@ -228,7 +228,7 @@ def _discs(point: Point) -> dict[str, Any]:
 
 
 def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict[str, Estimate]:
-    """The integral of the velocity autocorrelation, and how far it is from the msd's slope.
+    """Compute the integral of the velocity autocorrelation, and how far it is from the msd's slope.
 
     `integral_difference`: (slope of the twice integrated correlation) / (slope of the msd over 2d) - 1, both
     by a line from GREEN_KUBO_FROM to GREEN_KUBO_TO collisions per particle; the first from velocities alone,
@@ -249,5 +249,5 @@ def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict[str, 
 
 
 def _mean(samples: Sequence[Any]) -> Estimate:
-    """Mean over replicas."""
+    """Compute the mean over replicas."""
     return Estimate(*means_of(samples), len(samples) - 1)

@@ -29,7 +29,7 @@ def means(run: Run) -> dict[str, float]:
 
 
 def driven_gas(points: list[Point], settings: dict) -> xr.Dataset:
-    """The steady temperature and the fourth cumulant of driven gases.
+    """Return the steady temperature and the fourth cumulant of driven gases.
 
     Returns over `gas`: dimension, restitution, packing_fraction, count, power; temperature, cumulant, given
     and lost (see `means`), with their errors from replicas.

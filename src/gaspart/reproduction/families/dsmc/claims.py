@@ -46,12 +46,12 @@ def dsmc_convergence(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _predicted(gases: Table, quantity: str) -> np.ndarray:
-    """(points,) a transport coefficient over the exact one, by cells and steps."""
+    """Compute a transport coefficient over the exact one, by cells and steps, shape (points,)."""
     return np.asarray(cell_factor(quantity, gases.width) * step_factor(quantity, gases.step))
 
 
 def _limit(quantity: str, gases: Table) -> Claim:
-    """The coefficient of narrow cells and short steps."""
+    """Return the claim on the coefficient of narrow cells and short steps."""
     fine = gases[_predicted(gases, quantity) < 1.0 + SEEN]
     return Claim(
         claim=f"{quantity} over Chapman and Enskog's, with narrow cells and short steps",

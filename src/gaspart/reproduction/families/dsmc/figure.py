@@ -63,7 +63,7 @@ def _plates(axis: Axes, gases: Table) -> None:
 
 
 def _dense(axis: Axes, model: Table, spheres: Table) -> None:
-    """The Enskog model over Enskog's theory, and what spheres do."""
+    """Draw the Enskog model over Enskog's theory, and what spheres do."""
     eta = model.packing_fraction
     style.points(axis, eta - 0.004, model.excess, kind=0, label="$Z-1$, DSMC")
     style.points(axis, eta, model.rate, kind=1, label="collision rate, DSMC")

@@ -90,14 +90,14 @@ def _narrow(gases: Table) -> dict[str, Estimate]:
 
 
 def _dilute_path(point: Point) -> float:
-    """The mean free path l of the dilute gas."""
+    """Compute the mean free path l of the dilute gas."""
     gas = plain_gas(point.scene)
     path = theory.mean_free_path(gas.packing_fraction, 3, gas.diameter)
     return float(path * theory.contact_value(gas.packing_fraction, 3))
 
 
 def _resolution(point: Point) -> dict[str, float]:
-    """Width of the cells and length of a step."""
+    """Compute the width of the cells and length of a step."""
     gas, path = plain_gas(point.scene), _dilute_path(point)
     engine = asdict(point.engine.resolved(point.scene, point.schedule.sample_interval))
     sides = np.array(point.scene.container.lengths) / np.array(engine["cells_per_side"])
@@ -143,7 +143,7 @@ def _running_diffusion(point: Point) -> np.ndarray:
 
 
 def _paths(point: Point, settings: dict) -> dict[str, Any]:
-    """D of a dilute gas."""
+    """Return D of a dilute gas."""
     return {**_resolution(point), "diffusion": mean_of(_running_diffusion(point))}
 
 
@@ -166,7 +166,7 @@ def _dense(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _event_paths(point: Point, settings: dict) -> dict[str, Any]:
-    """D of the event-driven engine in an infinite container, over Enskog's."""
+    """Return D of the event-driven engine in an infinite container, over Enskog's."""
     row = spheres(point)
     enskog = float(theory.enskog_diffusion(row["packing_fraction"], 3))
     infinite = row["diffusion"] + Estimate(row["correction"], row["correction_uncertainty"])

@@ -41,7 +41,7 @@ def stability_extremes(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _exact(event: Table) -> list[Claim]:
-    """Errors of the event-driven engine, over all rows that pass."""
+    """Return the claims on errors of the event-driven engine, over all rows that pass."""
     passed = event[event.verdict == "passes"]
     return [
         Claim.at_most(

@@ -111,14 +111,14 @@ def _cell(outcome: Row, name: str, wide: bool) -> tuple[str, Any, str]:
 
 
 def _reason(message: str) -> tuple[str, str]:
-    """The letter and the text of a refusal's reason."""
+    """Return the letter and the text of a refusal's reason."""
     return next(
         ((letter, text) for letter, text, parts in REASONS if any(part in message for part in parts)), OTHER
     )
 
 
 def _key(scenes: Table, columns: int) -> str:
-    """The reasons that occur, with their letters, a few in a line."""
+    """Return the reasons that occur, with their letters, a few in a line."""
     found = sorted({_reason(message) for message in scenes.message[scenes.verdict == "refused"]})
     texts = [f"{letter}: {text}" for letter, text in found]
     lines = ["; ".join(texts[n : n + columns]) for n in range(0, len(texts), columns)]

@@ -47,7 +47,7 @@ def _galperin(ratio: float, duration: float, time_step: float) -> Row:
 
 
 def _speed(speed: float, text: str) -> Row:
-    """Twenty diameters of flight, in steps of a thousandth of a diameter."""
+    """Return twenty diameters of flight, in steps of a thousandth of a diameter."""
     moderate = 1e-100 < speed < 1e100
     scale = 1.0 / speed if moderate else 1.0
     return Row(
@@ -57,7 +57,7 @@ def _speed(speed: float, text: str) -> Row:
 
 
 def _bounce(gravity: float) -> Row:
-    """A hundred periods of a fall from a height of 2, and a quarter."""
+    """Return a hundred periods of a fall from a height of 2, and a quarter."""
     period = 2.0 * math.sqrt(4.0 / gravity)
     return Row(
         f"gravity {gravity:g}: 100 bounces", "gravity",

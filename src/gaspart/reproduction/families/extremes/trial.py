@@ -108,7 +108,7 @@ def _advance(simulation: Simulation, until: float) -> bool:
 
 
 def _faults(row: Row, engine: Engine, found: dict, expected: int | None) -> dict:
-    """The verdict, if any of the numbers shows that the run is incorrect."""
+    """Return the verdict, if any of the numbers shows that the run is incorrect."""
     drift = ENERGY_DRIFT[engine.precision]
     allowed = 0.0
     if row.chaotic and engine.name == "step" and expected:
@@ -139,7 +139,7 @@ def momentum_drift(before: State, after: State) -> float:
 
 
 def deepest_overlap(state: State, periodic: tuple[bool, ...]) -> float:
-    """The deepest overlap of any pair, in contact distances, from a look at all pairs."""
+    """Compute the deepest overlap of any pair, in contact distances, from a look at all pairs."""
     deepest = 0.0
     for n in range(state.count - 1):
         apart = state.positions[n + 1 :] - state.positions[n]

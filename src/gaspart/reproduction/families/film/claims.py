@@ -51,7 +51,7 @@ def _contact(slits: Table) -> list[Claim]:
 
 
 def _of_density(function: Callable[[float], float], density: Estimate) -> Estimate:
-    """A function of the density, at one that was measured."""
+    """Compute a function of the density, at one that was measured."""
     step = 1e-4
     here, above = function(density.value), function(density.value + step)
     return Estimate(here, (above - here) / step * density.error, density.freedom)

@@ -64,7 +64,7 @@ def freezing_spheres(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _runs(side: Row) -> Table:
-    """The packing fractions at which there is a run of this start."""
+    """Return the packing fractions at which there is a run of this start."""
     states = Table(side.dataset, "packing_fraction")
     return states[np.isfinite(states.order.value)]
 

@@ -61,7 +61,7 @@ def freezing_spheres(dataset: xr.Dataset) -> Figure:
 
 
 def _starts(dataset: xr.Dataset) -> dict[str, Table]:
-    """The packing fractions at which there is a run of each start."""
+    """Return the packing fractions at which there is a run of each start."""
     starts = {}
     for side in Table(dataset, "start"):
         states = Table(side.dataset, "packing_fraction")
@@ -70,7 +70,7 @@ def _starts(dataset: xr.Dataset) -> dict[str, Table]:
 
 
 def _points(axis: Axes, states: Table, y: Estimate, kind: int, label: str | None = None) -> None:
-    """Filled symbols in equilibrium, hollow ones not."""
+    """Draw filled symbols in equilibrium, hollow ones not."""
     equilibrated = states.disagreement <= EQUILIBRATED
     for chosen, hollow in ((equilibrated, False), (~equilibrated, True)):
         if chosen.any():
@@ -122,7 +122,7 @@ def _order(axis: Axes, starts: dict[str, Table], dimension: int) -> None:
 
 
 def _snapshot(axis: Axes, picture: Row, label: str) -> None:
-    """Discs coloured by the orientation of their bonds, which has a period of 60 degrees."""
+    """Draw discs coloured by the orientation of their bonds, which has a period of 60 degrees."""
     from matplotlib.collections import EllipseCollection
 
     x, y = picture.x, picture.y
@@ -137,7 +137,7 @@ def _snapshot(axis: Axes, picture: Row, label: str) -> None:
 
 
 def _scattering(axis: Axes, picture: Row) -> None:
-    """S(k) in grey levels, black where it is large."""
+    """Draw S(k) in grey levels, black where it is large."""
     from matplotlib.colors import LogNorm
 
     waves, factor, norm = (picture.wave_x, picture.wave_y), picture.structure_factor.T, LogNorm(0.1, 100.0)
@@ -179,7 +179,7 @@ def _residuals(axis: Axes, starts: dict[str, Table]) -> None:
 
 
 def _profiles(axis: Axes, halves: Table) -> None:
-    """Local order (left) and density (right) along the container, in both halves of the run."""
+    """Draw local order (left) and density (right) along the container, in both halves of the run."""
     other = axis.twinx()
     for half, line in zip(halves, (":", "-"), strict=True):
         axis.plot(half.position, half.slab_order, linestyle=line, color=style.COLOURS[1])

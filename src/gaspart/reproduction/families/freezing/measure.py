@@ -76,7 +76,7 @@ def freezing_spheres(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _of_start(points: list[Point], start: str) -> dict[float, Point]:
-    """Points of one start by packing fraction, ascending."""
+    """Compute points of one start by packing fraction, ascending."""
     found = {
         round(point.scene.packing_fraction, 9): point
         for point in points
@@ -86,7 +86,7 @@ def _of_start(points: list[Point], start: str) -> dict[float, Point]:
 
 
 def _disc(point: Point) -> dict[str, Any]:
-    """The columns of a point of discs."""
+    """Return the columns of a point of discs."""
     return _state(point, lambda frame, lengths: abs(structure.hexatic(frame, lengths).mean()))
 
 
@@ -113,7 +113,7 @@ def _sphere(point: Point) -> dict[str, Any]:
 
 
 def _state(point: Point, order: Order) -> dict[str, Any]:
-    """Pressure and order of a point, and how far its halves differ."""
+    """Return the pressure and order of a point, and how far its halves differ."""
     scene = point.scene
     density = scene.number_density * (2.0 * scene.largest_radius) ** scene.dimension
     pressures, orders = [], []
@@ -169,7 +169,7 @@ def _disagreement(dataset: xr.Dataset) -> xr.DataArray:
 
 
 def _compared(points: list[Point]) -> xr.Dataset:
-    """The pressures of points that are compared with published ones."""
+    """Return the pressures of points that are compared with published ones."""
     names = [f"pressure{name}" for name in ("", "_error", "_drift", "_drift_error")]
     new = {name: f"compared_{name}" for name in (*names, "packing_fraction")}
     return _states(points, _disc)[names].rename(new)
@@ -192,7 +192,7 @@ def _plateau(side: Row) -> dict[str, Any]:
 
 
 def _pictures(chosen: dict[float, Point], settings: dict) -> xr.Dataset:
-    """Structure at some packing fractions; lengths in diameters."""
+    """Return structure at some packing fractions; lengths in diameters."""
     shown = [x for x in chosen if any(abs(x - y) < 1e-6 for y in settings["shown"])]
     rows = [_picture(chosen[x], settings) for x in shown]
     # Wave vectors are those of each container, which shrinks with the packing fraction: kept by number.
@@ -233,7 +233,7 @@ def _picture(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _middle(values: np.ndarray, *most: int) -> np.ndarray:
-    """The middle element along each axis, and as many on both sides of it."""
+    """Compute the middle element along each axis, and as many on both sides of it."""
     sizes = zip(values.shape, most, strict=True)
     return values[tuple(slice(size // 2 - n, size // 2 + n + 1) for size, n in sizes)]
 

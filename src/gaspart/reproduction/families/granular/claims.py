@@ -42,7 +42,7 @@ def equipartition(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _steady(gas: Row) -> Claim:
-    """The ratio of the temperatures of discs that cool."""
+    """Return the claim on the ratio of the temperatures of discs that cool."""
     q, tangential = gas.cooling_inertia, gas.tangential
     known = [line for line in theory.rough_cooling() if np.allclose(line[:3], (q, tangential, 1.0))]
     ratio, error = known[0][3:] if known else (theory.rough_ratio(q, tangential), 0.0)
@@ -120,7 +120,7 @@ def _at_walls(gas: Row) -> list[Claim]:
 
 
 def cooling(dataset: xr.Dataset) -> list[Claim]:
-    """Haff's law, its rate and exponent; clusters that end it."""
+    """Return the claims on Haff's law, its rate and exponent; clusters that end it."""
     claims = []
     for gas in Table(dataset, "gas"):
         dimension, e = gas.dimension, gas.restitution

@@ -142,7 +142,7 @@ def _leaving(axis: Axes, gases: Table) -> None:
 
 
 def _picture(axis: Axes, particles: Table) -> None:
-    """The discs of one run at its end, to scale."""
+    """Draw the discs of one run at its end, to scale."""
     from matplotlib.collections import EllipseCollection
 
     side, diameter = particles.side, 2.0 * particles.radius

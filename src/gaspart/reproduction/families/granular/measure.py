@@ -158,7 +158,7 @@ def _walls(point: Point) -> dict[str, Any]:
 
 
 def cooling(points: list[Point], settings: dict) -> xr.Dataset:
-    """Haff's law in dilute inelastic gases, and how a dense and large one leaves it.
+    """Return Haff's law in dilute inelastic gases, and how a dense and large one leaves it.
 
     settings: `clustering`, the experiments of the latter; `cells_per_side`, into which its container is cut.
 
@@ -166,8 +166,8 @@ def cooling(points: list[Point], settings: dict) -> xr.Dataset:
     `gas`: dimension, restitution, rate and its error (-d ln T / ds, per replica between `RELAXED` and the
     end), exponent and its error (of T against 1 + t / t_H). Over `clusters` and `step`: cluster_collisions;
     cluster_excess, T over exp(-rate s) of theory, and its error; variance, of the number of particles in a
-    cell over its mean, and its error; over `clusters`: cluster_restitution. Over `particle`: x, y, at the
-    end of one run of the least restitution; attrs side, radius.
+    cell over its mean, and its error; over `clusters`: cluster_restitution. Over `particle`: x, y, at the end
+    of one run of the least restitution; attrs side, radius.
     """
     apart = [point for point in points if point.experiment in settings["clustering"]]
     dilute = [point for point in points if point not in apart]

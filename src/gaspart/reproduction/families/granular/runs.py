@@ -24,7 +24,7 @@ class Temperatures:
 
 
 def temperatures(run: Run, first: int) -> Temperatures:
-    """Temperatures in all frames of a run of like particles from number `first` on."""
+    """Return the temperatures in all frames of a run of like particles from number `first` on."""
     count, dimension, mass = run.count, run.dimension, run.scene.species[0].mass
     translation, rotation = run.temperatures, np.zeros(len(run.time))
     if run.scene.rough:  # of smooth particles the file may lack all but one
@@ -40,7 +40,7 @@ def temperatures(run: Run, first: int) -> Temperatures:
 
 
 def read(point: Point) -> list[Temperatures]:
-    """Temperatures in all replicas of a point, without their equilibration."""
+    """Return the temperatures in all replicas of a point, without their equilibration."""
     first = point.schedule.equilibration_frames
     return [temperatures(run, first) for run in runs(point, first=0)]
 

@@ -160,7 +160,7 @@ def _at(row: Row) -> str:
 
 
 def _slope(one: Row, name: str, at: str, required: float) -> Claim:
-    """The slope of the chemical potential of one species."""
+    """Return the claim on the slope of the chemical potential of one species."""
     return Claim(
         claim=f"slope of the chemical potential of the {name} over -m g / kT, {at}",
         measured=one.slope_ratio,
@@ -172,7 +172,7 @@ def _slope(one: Row, name: str, at: str, required: float) -> Claim:
 
 
 def _mean_height(one: Row, name: str, at: str) -> Claim:
-    """The mean height of one species."""
+    """Return the claim on the mean height of one species."""
     return Claim(
         claim=f"mean height of the {name} over the ideal gas's, {at}",
         measured=one.mean_height_ratio,
@@ -212,7 +212,7 @@ def _balance(row: Row, at: str) -> Claim:
 
 
 def heat_capacity(ds: xr.Dataset) -> list[Claim]:
-    """Heat capacity from neighbouring energies and from fluctuations."""
+    """Return the claims on the heat capacity from neighbouring energies and from fluctuations."""
     return [claim for pair in Table(ds, "pair") for claim in _capacities(pair)]
 
 

@@ -52,7 +52,7 @@ def barometric(ds: xr.Dataset) -> Figure:
 
 
 def _source_columns(top: Axes, bottom: Axes, columns: list[Row]) -> None:
-    """Density and temperature of the source's column, in the source's sample and later."""
+    """Draw the density and temperature of the source's column, in the source's sample and later."""
     for kind, row in enumerate(columns, start=2):
         name = {"later": "later", "source": "source's sample"}[row.column]
         _density(top, row, kind, None if kind > 2 else "hydrostatics", name)
@@ -115,7 +115,7 @@ def _shares(axis: Axes, row: Row) -> None:
 
 
 def _named(ds: xr.Dataset, *names: str) -> list[Row]:
-    """The columns of these names, in this order; those that there are."""
+    """Return the columns of these names, in this order; those that there are."""
     columns = {row.column: row for row in Table(ds, "point")}
     return [columns[name] for name in names if name in columns]
 
@@ -179,7 +179,7 @@ def _ideal(row: Row, kind: int) -> np.ndarray:
 
 
 def _percent(axis: Axes, x: np.ndarray, ratio: Estimate, kind: int) -> None:
-    """The distance of a ratio from 1 in per cent, with its zero line."""
+    """Draw the distance of a ratio from 1 in per cent, with its zero line."""
     style.level(axis, 0.0)
     style.points(axis, x, 100.0 * (ratio - 1.0), kind=kind, hollow=True, markersize=2.5)
     axis.set_ylim(-4.5, 4.5)

@@ -133,7 +133,7 @@ class Bins:
         return pressure / (energy * compressibility_factor(self.packing_fraction(density), 2))
 
     def slope_ratio(self, density: np.ndarray, temperature: float) -> np.ndarray:
-        """(S,) slopes of ln eta_i + mu_excess(eta) over -m_i g / T."""
+        """Compute slopes of ln eta_i + mu_excess(eta) over -m_i g / T, shape (S,)."""
         volume = particle_volume(2, self.place.diameter)
         excess = excess_chemical_potential(self.packing_fraction(density), 2)
         with np.errstate(divide="ignore"):
@@ -141,12 +141,12 @@ class Bins:
         return -np.array(slopes) * temperature / (self.masses * self.place.strength)
 
     def log_ratio(self, density: np.ndarray) -> np.ndarray:
-        """(B,) ln of the last over the first species' density."""
+        """Compute ln of the last over the first species' density, shape (B,)."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.log(density[-1] / density[0])
 
     def exchange_ratio(self, density: np.ndarray, temperature: float) -> float:
-        """Slope of `log_ratio` over -(M - m) g / T; NaN for one species."""
+        """Compute the slope of `log_ratio` over -(M - m) g / T; NaN for one species."""
         if self.masses.size < 2:
             return np.nan
         slope = self._slope(self.log_ratio(density), density[0] * density[-1] / density.sum(axis=0))
@@ -187,7 +187,7 @@ class Bins:
 
 
 def _column(point: Point, settings: dict) -> dict[str, Any]:
-    """The numbers of one point."""
+    """Return the numbers of one point."""
     place, found = field(point), stretches(point, settings["blocks"])
     bins = Bins.of(place, settings["bins"], settings["clear"])
     parts = [profile(place, stretch, settings["bins"]) for stretch in found]
@@ -258,7 +258,7 @@ def heat_capacity(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _pair(ends: tuple[dict, dict]) -> dict[str, Any]:
-    """The variables of two runs at two energies, and C = dE/dT from both."""
+    """Return the variables of two runs at two energies, and C = dE/dT from both."""
     cold, warm = ends
     both = {
         name: np.array([end[name] for end in ends]) for name in ("energy", "temperature_expected", "run_x")

@@ -19,7 +19,7 @@ _FALL = 0.3
 
 
 def collisions(point: Point) -> float:
-    """Collisions and hits of walls before the sample, which the source counts alike."""
+    """Compute collisions and hits of walls before the sample, which the source counts alike."""
     with open_trajectory(point.replica_path(0)) as trajectory:
         frame = trajectory.isel(frame=point.schedule.equilibration_frames)
         return float(frame["collisions"] + frame["wall_hits"].sum())

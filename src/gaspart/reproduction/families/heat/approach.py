@@ -66,6 +66,6 @@ def expected_approach(time: np.ndarray, slab: Slab, density: float, diameter: fl
 
 
 def _average(slab: Slab, side: np.ndarray) -> float:
-    """The mean temperature of the particles of one half."""
+    """Compute the mean temperature of the particles of one half."""
     place, number = slab.position[side], slab.density[side]
     return float(np.trapezoid(number * slab.temperature[side], place) / np.trapezoid(number, place))

@@ -44,7 +44,7 @@ def heat_conduction_gas(ds: xr.Dataset) -> Figure:
 
 
 def _fluxes(axis: Axes, gases: Table) -> None:
-    """Flux against density, with both limits."""
+    """Draw the flux against density, with both limits."""
     first, number = gases[0], np.geomspace(5e-4, 0.08, 100)
     free, fourier = number / first.number * first.full, first.fourier
     axis.plot(number, 1e3 * free, color=style.GREY, label="free flight")
@@ -92,7 +92,7 @@ def _shares(axis: Axes, gases: Table) -> None:
 
 
 def _approach(axis: Axes, gas: Row) -> None:
-    """The difference of temperature between the halves of one gas, from the start on."""
+    """Draw the difference of temperature between the halves of one gas, from the start on."""
     look: dict[str, Any] = {"hollow": True, "markersize": 2.5, "label": rf"$l/L = {gas.knudsen:.2g}$"}
     style.points(axis, gas.approach_time, gas.approach, **look)
     theory: dict[str, Any] = {"color": style.DATA, "zorder": 4, "label": "heat equation"}

@@ -41,7 +41,7 @@ class Gap:
         return cls(upper[0] - lower[0], area, hot, cold, scene.dimension)
 
     def grid(self, bins: int) -> Grid:
-        """Equal bins across the gap."""
+        """Return equal bins across the gap."""
         return Grid.line(0.0, self.length, bins)
 
 

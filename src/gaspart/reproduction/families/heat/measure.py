@@ -34,26 +34,25 @@ INNER = dict.fromkeys(_PROFILES, ("bin",)) | {name.removesuffix("_error"): ("fra
 
 
 def heat_conduction_gas(points: list[Point], settings: dict) -> xr.Dataset:
-    """Flux through gases of one kind of particles, and their profiles.
+    """Return the heat flux through gases of one kind of particles, and their profiles.
 
     settings: `bins` across the gap; `blocks` of each replica; `clear`, the mean free paths next to the walls
     that are left out where profiles are compared with Fourier's law.
 
     Dimensions point, bin; `_error` and `_freedom`, the degrees of freedom of the error. `flux` is the steady
     flux through both walls, `wall_ratio` cold over hot, `half_ratio` the second over the first half of the
-    run; `free` and `fourier` theory's fluxes for particles that collide
-    with nothing but walls, and for a gas so dilute that only its conductivity counts. Where the Knudsen
-    number is below FLUID, three dimensions, walls of full accommodation: `slab_flux` of Fourier's law with
-    jumps, its profiles, `profile_ratio` the mean of T over it, and `jump`, the temperature jumps in units of
-    the mean free path times the slope: T^(3/2), a straight line away from the walls, continued to both of
-    them. Of these gases, over `frame`, how they come to the steady state (see `approach`): approach_time,
-    approach, and expected_approach.
+    run; `free` and `fourier` theory's fluxes for particles that collide with nothing but walls, and for a gas
+    so dilute that only its conductivity counts. Where the Knudsen number is below FLUID, three dimensions,
+    walls of full accommodation: `slab_flux` of Fourier's law with jumps, its profiles, `profile_ratio` the
+    mean of T over it, and `jump`, the temperature jumps in units of the mean free path times the slope:
+    T^(3/2), a straight line away from the walls, continued to both of them. Of these gases, over `frame`, how
+    they come to the steady state (see `approach`): approach_time, approach, and expected_approach.
     """
     return table("point", points, _gas, settings, inner=INNER)
 
 
 def _gas(point: Point, settings: dict) -> dict[str, Any]:
-    """The numbers of one point."""
+    """Return the numbers of one point."""
     scene = point.scene
     gap, diameter = Gap.of(scene), 2.0 * scene.smallest_radius
     found = averages(point, gap, settings["blocks"], settings["bins"])
@@ -150,7 +149,7 @@ def heat_conduction_metal(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _metal(point: Point, settings: dict) -> dict[str, Any]:
-    """The numbers of one point."""
+    """Return the numbers of one point."""
     scene = point.scene
     gap, fixed = Gap.of(scene), per_particle(scene, "fixed").astype(bool)
     bins, blocks = settings["bins"], settings["blocks"] if point.replicas == 1 else 1

@@ -47,7 +47,7 @@ class Fill:
         return float(self.attempts.min()) * self.particle
 
     def packing_fraction(self, times: np.ndarray) -> np.ndarray:
-        """(replica, times): packing fraction at the times t."""
+        """Compute (replica, times): packing fraction at the times t."""
         attempts = times / self.particle
         placed_at = [np.cumsum(one[one >= 0] + 1) for one in self.failures]
         return self.particle * np.array([np.searchsorted(one, attempts, side="right") for one in placed_at])

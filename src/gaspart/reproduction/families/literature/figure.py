@@ -21,7 +21,7 @@ LABELS = {
 
 
 def literature(dataset: xr.Dataset) -> Figure:
-    """Ratios to the values of others, less 1: pressures, and transport coefficients."""
+    """Draw ratios to the values of others, less 1: pressures, and transport coefficients."""
     figure, (static, transport) = style.new((2.4,), (2.4,))
     values = Table(dataset, "value")
     for axis, wanted in ((static, True), (transport, False)):

@@ -103,7 +103,7 @@ def _of_infinite_system(point: Point, gas: Gas) -> Iterator[dict[str, Any]]:
 
 
 def _of_as_many(point: Point, gas: Gas) -> dict[str, Estimate]:
-    """The quantities of a point of finite numbers, by name."""
+    """Compute the quantities of a point of finite numbers, by name."""
     if gas.dimension == 2:
         return {"pressure": gas.packing_fraction * 4.0 / np.pi * pressure(point).z}
     if point.settings.get("stress"):

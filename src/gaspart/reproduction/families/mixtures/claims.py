@@ -119,7 +119,7 @@ def _virial(gas: Row) -> Claim:
 
 
 def deviations(gases: Table, theory: str) -> Estimate:
-    """(points,) Z / Z_theory - 1."""
+    """Compute Z / Z_theory - 1, shape (points,)."""
     return gases.Z / getattr(gases, theory) - 1.0
 
 

@@ -44,7 +44,7 @@ def mixture_state(dataset: xr.Dataset) -> Figure:
 
 
 def _densest_grid(gases: Table, dimension: int) -> Table:
-    """The points of a dimension at the packing fraction that most of them have."""
+    """Return the points of a dimension at the packing fraction that most of them have."""
     part = gases[gases.dimension == dimension]
     if not part:
         return part

@@ -113,7 +113,7 @@ def theories(gas: Mixture) -> dict[str, Any]:
 
 
 def _unit_of_rate(gas: Mixture) -> float:
-    """sqrt(k_B T / m) over the larger diameter."""
+    """Compute sqrt(k_B T / m) over the larger diameter."""
     return math.sqrt(gas.temperature / gas.masses[0]) / gas.diameters[0]
 
 

@@ -73,7 +73,7 @@ def _other(point: Point, points: list[Point], against: str) -> str:
 
 
 def _numbers(replicas: list[Observable]) -> dict[str, Any]:
-    """The entries of a row for the mean of independent runs."""
+    """Return the entries of a row for the mean of independent runs."""
     row: dict[str, Any] = {}
     for name, part in _PARTS.items():
         values = mean_of(replicas, part)

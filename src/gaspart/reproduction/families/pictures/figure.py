@@ -21,7 +21,7 @@ HIGHEST = 4.2
 
 
 def gas_render(dataset: xr.Dataset) -> Figure:
-    """The gas, coloured by speed."""
+    """Draw the gas, coloured by speed."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
@@ -37,7 +37,7 @@ def gas_render(dataset: xr.Dataset) -> Figure:
 
 
 def brownian_render(dataset: xr.Dataset) -> Figure:
-    """The large sphere and its gas, coloured by species."""
+    """Draw the large sphere and its gas, coloured by species."""
     return _shown(Table(dataset, "particle"), "species")[0]
 
 

@@ -23,12 +23,12 @@ def gas_render(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def brownian_render(points: list[Point], settings: dict) -> xr.Dataset:
-    """The last frame of the large sphere in its gas, and counts; see `_scene`."""
+    """Return the last frame of the large sphere in its gas, and counts; see `_scene`."""
     return _scene(points[0])
 
 
 def _scene(point: Point) -> xr.Dataset:
-    """Particles of one frame, and counts over replicas.
+    """Return the particles of one frame, and counts over replicas.
 
     `overlaps`: pairs that overlap by more than rounding. `resolved`: with the time-stepped engine, the
     collisions of the step before each frame, overlaps that it found and put right; with the other none.

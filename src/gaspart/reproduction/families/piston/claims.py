@@ -28,7 +28,7 @@ def exponents(path: Row) -> np.ndarray:
 
 
 def piston(ds: xr.Dataset) -> list[Claim]:
-    """Adiabatic exponents, states at constant pressure, and free expansions."""
+    """Return the claims on adiabatic exponents, states at constant pressure, and free expansions."""
     paths, states, gases = (Table.prefixed(ds, kind) for kind in ("path", "state", "expansion"))
     return [
         *(claim for path in paths for claim in _of_path(path)),

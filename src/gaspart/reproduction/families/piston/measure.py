@@ -84,7 +84,7 @@ def _heating(
 
 
 def _length(run: Run) -> np.ndarray:
-    """(frame,) the distance of the piston from the wall opposite."""
+    """Compute the distance of the piston from the wall opposite, shape (frame,)."""
     ((number, _),) = run.scene.pistons
     place = run.data["piston_position"].values
     return place if number % 2 else run.scene.container.lengths[number // 2] - place

@@ -42,7 +42,7 @@ def price_of_features(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _row(jobs: list[dict]) -> dict:
-    """The row of several jobs of one feature; NaN errors for a single one."""
+    """Return the row of several jobs of one feature; NaN errors for a single one."""
     return {
         "engine": jobs[0]["engine"],
         "feature": jobs[0]["feature"],
@@ -68,7 +68,7 @@ def _job(point: Point) -> dict:
 
 
 def _feature(scene: Scene, extras: list[str]) -> str:
-    """The feature of a scene that a plain periodic gas of equal spheres lacks."""
+    """Return the feature of a scene that a plain periodic gas of equal spheres lacks."""
     has = {
         "recording": "record_events" in extras,
         "stress": "stress" in extras,

@@ -16,7 +16,7 @@ RADIUS = "radius (container: side 16)"
 
 
 def radius_grid(dataset: xr.Dataset) -> Figure:
-    """Z, its residuals, and the counted work, against the radius."""
+    """Draw Z, its residuals, and the counted work, against the radius."""
     figure, (upper, middle, lower) = style.new((2.2, 1.2), (2.8,))
     table = Table(dataset, "point").sorted_by("radius")
     event, step = (table[table.engine == name] for name in ("event", "step"))

@@ -34,14 +34,14 @@ from gaspart.scene.scene import Scene
 
 
 def radius_grid(points: list[Point], settings: dict) -> xr.Dataset:
-    """Z and counted work of periodic points, of both engines.
+    """Return Z and the counted work of periodic points, of both engines.
 
     An experiment whose points have one packing fraction is the series "packing fraction", else "count".
 
     Returns over `point`: series, engine ("event" or "step"), radius, count, packing_fraction, boxes_per_side.
     Event-driven points: Z, Z_error (corrected to the infinite system), finite_size, reference and its error;
-    crossings, per particle and time over the kinetic theory's, and its error; pair_tests, box_visits
-    and crossings_counted, per collision; crossings_expected, the same from kinetic theory and Enskog's rate.
+    crossings, per particle and time over the kinetic theory's, and its error; pair_tests, box_visits and
+    crossings_counted, per collision; crossings_expected, the same from kinetic theory and Enskog's rate.
     Time-stepped points: pair_tests and box_visits per particle and step, pair_tests_expected. NaN elsewhere.
     """
     experiments = {point.experiment for point in points}
@@ -96,7 +96,7 @@ def _row(point: Point) -> dict[str, Any]:
 
 
 def _crossings(replicas: list[Series], scene: Scene, per_side: int) -> Estimate:
-    """Crossings per particle and time over the kinetic theory's."""
+    """Compute crossings per particle and time over the kinetic theory's."""
     between = scene.dimension * (per_side - 1) / scene.container.lengths[0] * math.sqrt(2.0 / math.pi)
     between *= scene.count
     ratios = [one.counters["crossings"] / (one.interval * between * one.speed) for one in replicas]

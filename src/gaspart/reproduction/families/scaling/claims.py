@@ -110,7 +110,7 @@ def _counts(scan: Table) -> list[Claim]:
 
 
 def _round_widths(powers: Table) -> list[Claim]:
-    """The source's explanation of its plateaus, tested."""
+    """Return the claims on the source's explanation of its plateaus, tested."""
     return each(
         powers.assign(width=powers.container_side[0] / powers.round_per_side),
         "ln of time saved by boxes of width {width:g} for being a power of two",

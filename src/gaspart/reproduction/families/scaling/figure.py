@@ -121,7 +121,7 @@ def _sectors(axis: Axes, scan: Table) -> None:
 
 
 def ideal_boxes(ds: xr.Dataset) -> Figure:
-    """The ideal number of boxes against N; and the time around its minimum."""
+    """Draw the ideal number of boxes against N; and the time around its minimum."""
     figure, (top, bottom) = style.new((2.8,), (2.8,))
     gases = Table(ds, "gas")
     line = np.geomspace(0.7 * gases.count.min(), 1.5 * gases.count.max(), 50)
@@ -148,12 +148,12 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
 
 
 def _thousands(number: float) -> str:
-    """A whole number with thin spaces, for mathematical text."""
+    """Return a whole number with thin spaces, for mathematical text."""
     return f"{int(number):,}".replace(",", r"\,")
 
 
 def _ideal(axis: Axes, gases: Table, kind: int, label: str) -> None:
-    """Ideal numbers with 95 % intervals.
+    """Draw ideal numbers with 95 % intervals.
 
     Hollow: without an interval; with an arrow where the time still falls at the finest partition timed.
     """
@@ -243,5 +243,5 @@ def event_scaling(ds: xr.Dataset) -> Figure:
 
 
 def _guide(axis: Axes, count: np.ndarray, values: np.ndarray, power: float, kind: int) -> None:
-    """The power law that the search should follow, through the last point."""
+    """Draw the power law that the search should follow, through the last point."""
     axis.plot(count, values[-1] * (count / count[-1]) ** power, color=style.COLOURS[kind], lw=0.8, zorder=1)

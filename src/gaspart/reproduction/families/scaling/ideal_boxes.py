@@ -11,7 +11,7 @@ from gaspart.reproduction.table import Table, table
 
 
 def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
-    """The ideal number of boxes of many gases.
+    """Return the ideal number of boxes of many gases.
 
     settings: ``rule``, source A's boxes per particle; ``source_numbers``, those that it found for the largest
     gas of its figures 5, 6 and 7 (each with ``count``, ``radius``, ``boxes_per_particle``);

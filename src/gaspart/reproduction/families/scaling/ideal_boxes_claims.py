@@ -16,7 +16,7 @@ _INTERVAL = 2.0 * 1.96  # a 95 % interval in standard errors
 
 
 def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
-    """The source's numbers of boxes per particle, and how much they matter."""
+    """Return the claims on the source's numbers of boxes per particle, and how much they matter."""
     gases, sources = Table(ds, "gas"), Table(ds, "source")
     return [
         Claim.at_most(
@@ -46,7 +46,7 @@ def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
 
 
 def _work_over_time(gases: Table) -> Estimate:
-    """Mean and scatter of ln(model / ideal) of the gases with a minimum."""
+    """Compute the mean and scatter of ln(model / ideal) of the gases with a minimum."""
     ratio = np.log(gases.model / gases.ideal)
     ratio = ratio[gases.ideal_interior.astype(bool) & np.isfinite(ratio)]
     if ratio.size < 2:

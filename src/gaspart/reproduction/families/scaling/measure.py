@@ -170,7 +170,7 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _regime(part: dict, gases: Table) -> dict[str, Any]:
-    """The exponent of the time per step in one of source A's figures, for `linear_scaling`."""
+    """Return the exponent of the time per step in one of source A's figures, for `linear_scaling`."""
     low, high = part["counts"]
     own = gases[(gases.radius == part["radius"]) & (low <= gases.count) & (gases.count <= high)]
     exponent = trend(own.count, own.count * own.seconds.value)
@@ -227,7 +227,7 @@ def _names(prefix: str, costs: xr.Dataset) -> dict[str, Any]:
 
 
 def _expected(run: xr.Dataset) -> dict:
-    """Expected counts per particle of a scan, for `box_count`."""
+    """Return the expected counts per particle of a scan, for `box_count`."""
     gas = {"dimension": run.dimension, "side": run.side, "radius": run.radius}
     count, sides = run.attrs["count"], run.boxes_per_side.values
     tests = np.array([theory.expected_pair_tests(count, int(n), **gas) for n in sides]) / count

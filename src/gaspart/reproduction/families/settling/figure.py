@@ -27,7 +27,7 @@ def settling(dataset: xr.Dataset) -> Figure:
 
 
 def _piles(energies: Axes, contacts: Axes, piles: Table) -> None:
-    """The first pile of each duration of contacts; a cross where all comes to rest."""
+    """Draw the first pile of each duration of contacts; a cross where all comes to rest."""
     style.level(contacts, 2.0)
     for kind, (duration, alike) in enumerate(piles.by("duration")):
         pile, colour = alike[0], style.COLOURS[kind]

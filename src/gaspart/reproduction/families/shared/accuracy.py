@@ -17,7 +17,7 @@ def setting_name(rewind: bool, passes: int, precision: str) -> str:
 
 
 def errors(point: Point) -> dict:
-    """Errors over the accepted time steps of a `compare` point, the longest first."""
+    """Return the errors over the accepted time steps of a `compare` point, the longest first."""
     run = xr.load_dataset(point.path)
     run = run.isel(setting=np.flatnonzero(run.refused == 0)).sortby("time_step", ascending=False)
     contacts = run.exact_collisions.sum("snapshot").values

@@ -42,7 +42,7 @@ class Field:
 
 
 def field(point: Point) -> Field:
-    """The field and the container of a point."""
+    """Return the field and the container of a point."""
     scene = point.scene
     radius = scene.smallest_radius
     lower, upper = scene.reach(radius)

@@ -69,7 +69,7 @@ def series_of(run: Run) -> Series:
 
 
 def pressure(point: Point) -> Pressure:
-    """Z and the collision rate of a periodic point, from all its replicas."""
+    """Return Z and the collision rate of a periodic point, from all its replicas."""
     return combine([series_of(run) for run in runs(point)])
 
 
@@ -90,5 +90,5 @@ def combine(replicas: list[Series]) -> Pressure:
 
 
 def totals(replicas: list[Series]) -> dict[str, float]:
-    """Sums of the counters over all replicas, by name."""
+    """Compute the sums of the counters over all replicas, by name."""
     return {name: float(sum(one.counters[name].sum() for one in replicas)) for name in replicas[0].counters}

@@ -26,7 +26,7 @@ SYSTEMATIC = 0.02
 
 
 def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Median over the last axis, and its standard error.
+    """Compute the median over the last axis, and its standard error.
 
     The error of a median is sqrt(pi/2) standard errors of the mean; the spread is 1.4826 times the median
     deviation, so that one disturbed repeat in five changes neither.
@@ -37,7 +37,7 @@ def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def per_particle(run: xr.Dataset) -> xr.Dataset:
-    """Costs per particle and step, over the partitions of one time-stepped gas.
+    """Return the costs per particle and step, over the partitions of one time-stepped gas.
 
     ``boxes_per_side``, ``boxes_per_particle``; ``seconds`` with ``seconds_error``; ``pair_tests``,
     ``box_visits`` and ``boxes_emptied``.
@@ -98,7 +98,7 @@ def weights(seconds: Estimate, *work: float | np.ndarray) -> statistics.Fit:
 
 
 def _spread(seconds: Estimate) -> np.ndarray:
-    """The errors of times in a fit."""
+    """Compute the errors of times in a fit."""
     return np.asarray(np.hypot(seconds.error, SYSTEMATIC * seconds.value))
 
 

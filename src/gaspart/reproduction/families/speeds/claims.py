@@ -88,17 +88,17 @@ def _collisions(last: Row, by: str, relaxation: Relaxation) -> Claim:
 
 
 def speed_distribution_spheres(dataset: xr.Dataset) -> list[Claim]:
-    """Maxwell's distribution at each packing fraction, in 3D."""
+    """Return the claims on Maxwell's distribution at each packing fraction, in 3D."""
     return distribution(dataset)
 
 
 def speed_distribution_discs(dataset: xr.Dataset) -> list[Claim]:
-    """Maxwell's distribution in 2D."""
+    """Return the claims on Maxwell's distribution in 2D."""
     return distribution(dataset)
 
 
 def distribution(dataset: xr.Dataset) -> list[Claim]:
-    """Chi-square, Kolmogorov's distance, kurtosis and temperature of every point."""
+    """Return the claims on chi-square, Kolmogorov's distance, kurtosis and temperature of every point."""
     return [claim for gas in Table(dataset, "point") for claim in _equilibrium(gas)]
 
 

@@ -57,7 +57,7 @@ def read(point: Point, first: int | None = None) -> list[Velocities]:
 
 
 def kurtosis(speeds: np.ndarray) -> np.ndarray:
-    """<u^4> / <u^2>^2 over the last axis (exact definition); 1 for equal speeds."""
+    """Compute <u^4> / <u^2>^2 over the last axis (exact definition); 1 for equal speeds."""
     square = speeds**2
     return (square**2).mean(axis=-1) / square.mean(axis=-1) ** 2
 
@@ -85,7 +85,7 @@ def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def shared_means(samples: list[np.ndarray]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """The mean over axis 0 of each group of runs, and its error; see `shared_error`."""
+    """Compute the mean over axis 0 of each group of runs, and its error; see `shared_error`."""
     return [(group.mean(axis=0), error) for group, error in zip(samples, shared_error(samples), strict=True)]
 
 
@@ -149,7 +149,7 @@ def _relaxing(run: Velocities, grid: Grid, shown: np.ndarray) -> dict[str, Any]:
 
 
 def _bins(grid: Grid) -> dict[str, Any]:
-    """The coordinates of a histogram."""
+    """Return the coordinates of a histogram."""
     edges, units = grid.edges[0], {"units": "root-mean-square speed"}
     return {"lower": ("bin", edges[:-1], units), "upper": ("bin", edges[1:], units)}
 
@@ -207,12 +207,12 @@ def _initial_slope(s: np.ndarray, values: np.ndarray) -> float:
 
 
 def speed_distribution_spheres(points: list[Point], settings: dict) -> xr.Dataset:
-    """Maxwell's distribution in 3D; see `distribution`."""
+    """Return Maxwell's distribution in 3D; see `distribution`."""
     return distribution(points, settings)
 
 
 def speed_distribution_discs(points: list[Point], settings: dict) -> xr.Dataset:
-    """Maxwell's distribution in 2D; see `distribution`."""
+    """Return Maxwell's distribution in 2D; see `distribution`."""
     return distribution(points, settings)
 
 

@@ -112,7 +112,7 @@ def _potential(upper: Axes, ratio: Axes, fluids: Table, kind: int) -> None:
 
 
 def _chance(axis: Axes, fluids: Table, kind: int) -> None:
-    """The chance, its theory, and the smallest that could be measured."""
+    """Draw the chance, its theory, and the smallest that could be measured."""
     dimension, colour = fluids.dimension[0], style.COLOURS[kind]
     eta = np.linspace(0.0, fluids.packing_fraction.max(), 200)
     axis.plot(eta, np.exp(-theory.excess_chemical_potential(eta, dimension)), color=colour)

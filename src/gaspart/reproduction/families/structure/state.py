@@ -39,7 +39,7 @@ class MeasuredState:
         return Estimate(reference + parts @ self.fit.values, error, self.fit.freedoms.min())
 
     def inverse_compressibility(self, eta: float) -> Estimate:
-        """d(eta Z) / d eta."""
+        """Compute d(eta Z) / d eta."""
         z = float(theory.compressibility_factor(eta, self.dimension))
         slope = 1.0 / float(theory.reduced_compressibility(eta, self.dimension))
         return self._estimate(slope, [eta**n * (slope + n * z) for n in POWERS])
@@ -52,7 +52,7 @@ class MeasuredState:
         return float(0.5 * eta * weights @ (z * inner ** (power - 1)))
 
     def free_energy(self, eta: float) -> Estimate:
-        """F_excess / (N k_B T), the integral of (Z - 1) / eta."""
+        """Compute f_excess / (N k_B T), the integral of (Z - 1) / eta."""
         reference = float(theory.excess_free_energy(eta, self.dimension))
         return self._estimate(reference, [self._integral(eta, n) for n in POWERS])
 

@@ -76,5 +76,5 @@ def required(variance: float, accuracy: float, bias: float, least: float = 0.0) 
 
 
 def cheapest(choices: Sequence[Choice], accuracy: float) -> Choice:
-    """The choice that costs least, or the least biased one where none reaches the accuracy."""
+    """Return the choice that costs least, or the least biased one where none reaches the accuracy."""
     return min(choices, key=lambda one: (one.cost(accuracy), one.bias))

@@ -88,7 +88,7 @@ def flux_of(point: Point, blocks: int) -> Flow:
 
 
 def relaxation_of(point: Point) -> Flow:
-    """The time in which speeds, equal at first, become Maxwell's, over the mean free time.
+    """Return the time in which speeds, equal at first, become Maxwell's, over the mean free time.
 
     It is the integral of the kurtosis' part that is still to come, (K_end - K) / (K_end - 1), up to
     `FREE_TIMES`, of the mean over replicas. In a uniform gas steps and cells of the DSMC engine change
@@ -122,7 +122,7 @@ def relaxation_of(point: Point) -> Flow:
 
 
 def fraction_of(point: Point) -> float:
-    """The packing fraction, to two digits."""
+    """Compute the packing fraction, to two digits."""
     return float(f"{point.scene.packing_fraction:.2g}")
 
 
@@ -132,7 +132,7 @@ def engine_of(point: Point) -> str:
 
 
 def _step(point: Point) -> float:
-    """The length of a step, 0 of the event-driven engine."""
+    """Compute the length of a step, 0 of the event-driven engine."""
     return point.engine.resolved(point.scene, point.schedule.sample_interval).quantum or 0.0
 
 

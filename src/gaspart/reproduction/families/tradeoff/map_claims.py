@@ -26,7 +26,7 @@ def of_map(ds: xr.Dataset) -> list[Claim]:
 
 
 def _by_engine(at: Row, name: str) -> dict[str, Estimate]:
-    """A column over the engines."""
+    """Compute a column over the engines."""
     return dict(zip(at.solver.tolist(), at[name], strict=True))
 
 

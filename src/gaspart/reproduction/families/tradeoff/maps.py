@@ -85,7 +85,7 @@ def _enter(costs: np.ndarray, parts: np.ndarray, made: list[Choice], accuracies:
 
 
 def _flows(points: Sequence[Point], settings: dict) -> list[flows.Flow]:
-    """All flows that were measured."""
+    """Return all flows that were measured."""
     plates = [point for point in points if point.experiment in settings["plates"]]
     relaxing = [point for point in points if point.experiment in settings["relaxation"]]
     return [
@@ -95,7 +95,7 @@ def _flows(points: Sequence[Point], settings: dict) -> list[flows.Flow]:
 
 
 def _speeds_between(points: Sequence[Point], experiments: Sequence[str]) -> dict[float, dict[str, Estimate]]:
-    """Processor time per time of simulation between plates, by packing fraction and engine."""
+    """Compute the CPU time per time of simulation between plates, by packing fraction and engine."""
     found: dict[float, dict[str, Estimate]] = {}
     for point in points:
         if point.experiment in experiments:
@@ -141,7 +141,7 @@ def _compared(measured: list[flows.Flow], fractions: list[float]) -> xr.Dataset:
 
 
 def _speeds(timed: list[dict], cells: dict[float, uniform.Cells], fractions: list[float]) -> xr.Dataset:
-    """Processor time per contact, and the collision rate in cells."""
+    """Return the CPU time per contact, and the collision rate in cells."""
     each = np.full((2, len(fractions), len(ENGINES)), np.nan)
     found = [cells.get(eta) for eta in fractions]
     rates = [one.rate if one else Estimate(np.nan, np.nan, np.nan) for one in found]

@@ -237,7 +237,7 @@ def _model(timings: tuple[dict, dict], cells: dict[float, Cells]) -> dict[str, A
 
 
 def _timed(run: dict) -> dict[str, Any]:
-    """The time of a collision of the event-driven engine, in the gas of a timing."""
+    """Return the time of a collision of the event-driven engine, in the gas of a timing."""
     dimension, fraction = run["gas"]
     return {
         "timed_dimension": dimension,

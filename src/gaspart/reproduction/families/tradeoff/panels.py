@@ -90,12 +90,12 @@ def map_of(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _fraction(value: float) -> str:
-    """A packing fraction, a small one as a power of ten."""
+    """Return a packing fraction, a small one as a power of ten."""
     return rf"$10^{{{round(math.log10(value))}}}$" if value < 0.005 else f"{value:g}"
 
 
 def places(ds: xr.Dataset) -> list[Row]:
-    """The `PLACES`, or the measured ones nearest to them, each once."""
+    """Return the `PLACES`, or the measured ones nearest to them, each once."""
     found: dict[tuple[str, float, float], Row] = {}
     for quantity, fraction, accuracy in PLACES:
         of = ds.sel(quantity=quantity)
@@ -113,7 +113,7 @@ def _nearest(values: xr.DataArray, wanted: float) -> int:
 
 
 def breakdown(axis: Axes, ds: xr.Dataset) -> None:
-    """Errors over the required accuracy of every engine at the `PLACES`, by what makes them."""
+    """Draw errors over the required accuracy of every engine at the `PLACES`, by what makes them."""
     rows: list[tuple[float, str]] = []
     for p, at in enumerate(places(ds)):
         top = -(len(ENGINES) + 1.5) * p

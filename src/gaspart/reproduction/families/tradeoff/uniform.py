@@ -179,7 +179,7 @@ def each_of(timed: dict, rate: float) -> Estimate:
 
 
 def compared(points: list[Point], timed: list[dict]) -> list[dict]:
-    """Errors of time steps with their costs, see `shared.accuracy`."""
+    """Return the errors of time steps with their costs, see `shared.accuracy`."""
     rows = [errors(point) for point in points if point.job == "compare"]
     for row in rows:
         add_costs(row, timed)

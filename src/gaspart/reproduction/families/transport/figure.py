@@ -61,7 +61,7 @@ def _figure(ds: xr.Dataset, name: str) -> Figure:
 
 
 def _density(axis: Axes, gases: Table) -> None:
-    """Both forms against the packing fraction."""
+    """Draw both forms against the packing fraction."""
     eta, shift = gases.packing_fraction, 0.004
     style.points(axis, eta - shift, gases.value, kind=0, label="Green-Kubo")
     style.points(axis, eta + shift, gases.growth, kind=1, hollow=True, label="Helfand")
@@ -73,7 +73,7 @@ def _density(axis: Axes, gases: Table) -> None:
 
 
 def _running(axis: Axes, gases: Table) -> None:
-    """The integral of the correlation until each time."""
+    """Draw the integral of the correlation until each time."""
     for kind, gas in enumerate(gases[:: max(1, len(gases) // 4)]):
         style.points(axis, gas.time, gas.running, kind=kind, label=rf"$\phi={gas.packing_fraction:.3g}$")
     axis.axhline(1.0, color=style.GREY, lw=0.8)

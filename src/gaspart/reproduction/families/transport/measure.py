@@ -41,7 +41,7 @@ def viscosity(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def conductivity(points: list[Point], settings: dict) -> xr.Dataset:
-    """Conductivity of heat; see `coefficient`."""
+    """Return the thermal conductivity; see `coefficient`."""
     of = "heat", theory.enskog_conductivity
     return table("point", points, coefficient, *of, inner=("lag",), units=UNITS)
 
@@ -105,7 +105,7 @@ def end(lags: np.ndarray) -> np.ndarray:
 
 
 def _half(lags: np.ndarray) -> int:
-    """The lag from which on the growth counts."""
+    """Return the lag from which on the growth counts."""
     return round(LATE * (len(lags) - 1))
 
 

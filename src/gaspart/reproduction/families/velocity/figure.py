@@ -32,13 +32,13 @@ def _name(gas: Row) -> str:
 
 
 def _lags(gas: Row) -> Table:
-    """The lags after 0 that a gas has."""
+    """Return the lags after 0 that a gas has."""
     lags = Table(gas.dataset, "lag")
     return lags[np.isfinite(lags.correlation.value)][1:]
 
 
 def _tails(axis: Axes, gases: Table) -> None:
-    """Measured C, the initial exponentials exp(-2 s / d), and mode coupling's tails."""
+    """Draw measured C, the initial exponentials exp(-2 s / d), and mode coupling's tails."""
     s = np.linspace(0.5, 9.0, 100)
     for dimension, line in ((2, "--"), (3, ":")):
         label = rf"$\mathrm{{e}}^{{-2s/{dimension}}}$"
@@ -57,7 +57,7 @@ def _tails(axis: Axes, gases: Table) -> None:
 
 
 def _starts(axis: Axes, gases: Table) -> None:
-    """ln C against collisions, and the exact initial slopes."""
+    """Draw ln C against collisions, and the exact initial slopes."""
     s = np.linspace(0.0, 2.0, 50)
     for kind, gas in enumerate(gases):
         axis.plot(s, np.exp(-2.0 / gas.dimension * s), color=style.COLOURS[kind], zorder=1)

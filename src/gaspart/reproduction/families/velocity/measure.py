@@ -30,7 +30,7 @@ from gaspart.reproduction.table import table
 
 
 def velocity_autocorrelation(points: list[Point], settings: dict) -> xr.Dataset:
-    """C(t) of every point, the rate of its start and the amplitude of its tail.
+    """Return C(t) of every point, the rate of its start and the amplitude of its tail.
 
     settings: `start_to`, collisions of a particle up to which -ln C is fitted by a line and a parabola, where
     it is sampled that often; `tail`, from and to which the tail is fitted of all other points.
@@ -84,5 +84,5 @@ def _tail(collisions: np.ndarray, values: np.ndarray, modes: np.ndarray) -> np.n
 
 
 def _initial_rate(collisions: np.ndarray, values: np.ndarray) -> float:
-    """-d ln C / ds at s = 0, of a parabola through 0."""
+    """Compute -d ln C / ds at s = 0, of a parabola through 0."""
     return float(fit_polynomial(collisions, -np.log(values), powers=(1, 2)).values[0])

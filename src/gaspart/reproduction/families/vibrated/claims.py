@@ -20,12 +20,12 @@ BALANCE = (
 
 
 def small_parameter(beds: Table) -> np.ndarray:
-    """The power that each bed would lose over its weight and the speed sqrt(T)."""
+    """Compute the power that each bed would lose over its weight and the speed sqrt(T)."""
     return np.asarray(theory.bed_loss(beds.layers, beds.restitution, beds.packing_fraction))
 
 
 def expected_temperature(beds: Table) -> np.ndarray:
-    """The temperature of each bed where that parameter is small."""
+    """Compute the temperature of each bed where that parameter is small."""
     of = beds.layers, beds.restitution, beds.packing_fraction
     sawtooth, sine = theory.sawtooth_temperature(*of), theory.sine_temperature(*of)
     return np.where(beds.sine == 1, sine, sawtooth) * beds.speed**2

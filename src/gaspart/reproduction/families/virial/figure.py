@@ -21,7 +21,7 @@ Lines = dict[str, tuple[np.ndarray, dict]]
 
 
 def virial_discs(dataset: xr.Dataset) -> Figure:
-    """Z of discs, with Henderson's equation, van der Waals's and the partial sums."""
+    """Draw Z of discs, with Henderson's equation, van der Waals's and the partial sums."""
     return _draw(dataset, "$B_{10}$ and tail", {"Henderson": theory.henderson}, ceiling=7.0, percent=0.6)
 
 
@@ -90,7 +90,7 @@ def _residuals(
     sums: dict,
     percent: float,
 ) -> None:
-    """100 (Z / Z_reference - 1), with one standard error."""
+    """Draw 100 (Z / Z_reference - 1), with one standard error."""
     style.level(axis, 0.0)
     for order, curve in sums.items():
         excess = 100.0 * (curve / reference - 1.0)

@@ -99,7 +99,7 @@ def _fit(pair: tuple[dict, Table], dimension: int) -> dict:
 
 
 def _no_fits(highest: int) -> xr.Dataset:
-    """The columns that are drawn, without a row."""
+    """Return the columns that are drawn, without a row."""
     names = ("coefficient", "coefficient_error", "held_error")
     return xr.Dataset({name: (("fit", "order"), np.zeros((0, highest - 1))) for name in names})
 

@@ -57,7 +57,7 @@ def _densities(axis: Axes, table: Table) -> None:
 
 
 def _residuals(axis: Axes, table: Table) -> None:
-    """100 (P / theory - 1) of every container, with both uncertainties."""
+    """Draw 100 (P / theory - 1) of every container, with both uncertainties."""
     style.level(axis, 0.0)
     for kind, (dimension, part) in enumerate(table.by("dimension")):
         for closed, containers in part.by(part.axes == dimension):
