@@ -16,7 +16,7 @@ from gaspart.reproduction.table import Row, Table
 LONGEST = 3.2
 """Friction times up to which the velocity autocorrelation is drawn: noise dominates beyond."""
 MOST = 10
-"""About so many of its points are drawn of each sphere."""
+"""Approximate number of points that are drawn for each sphere."""
 
 
 def brownian_paths(ds: xr.Dataset) -> Figure:
@@ -42,8 +42,11 @@ def brownian_paths(ds: xr.Dataset) -> Figure:
 
 
 def brownian_msd(ds: xr.Dataset) -> Figure:
-    """Mean-squared displacement and velocity autocorrelation, with those of the Langevin equation; below, the
-    deviations from it, with those that theory expects of a light particle as lines."""
+    """Draw mean-squared displacement and velocity autocorrelation, with the Langevin equation.
+
+    Below are the deviations from the Langevin equation, with the expected deviations of a light particle as
+    lines.
+    """
     figure, (far, ratio, memory, difference) = style.new((2.4, 1.1), (2.4, 1.1))
     spheres = Table(ds, "point")
     t = np.geomspace(0.05, 1.05 * np.nanmax(spheres.time), 300)
@@ -76,7 +79,7 @@ def _langevin(time: np.ndarray) -> np.ndarray:
 
 
 def _displacement(axis: Axes, residual: Axes, sphere: Row, label: str, look: dict) -> None:
-    """The mean-squared displacement of one sphere, and its ratio to that of the Langevin equation."""
+    """Draw the mean-squared displacement of one sphere, and its ratio to the Langevin equation."""
     time = sphere.time[np.isfinite(sphere.time)]
     shown = np.unique(np.round(np.geomspace(1, time.size - 1, 16)).astype(int))
     msd = sphere.msd[shown]
@@ -88,7 +91,7 @@ def _displacement(axis: Axes, residual: Axes, sphere: Row, label: str, look: dic
 
 
 def _memory(axis: Axes, residual: Axes, sphere: Row, label: str, look: dict) -> None:
-    """The velocity autocorrelation of one sphere, and its difference from that of the Langevin equation."""
+    """Draw the velocity autocorrelation of one sphere, less that of the Langevin equation."""
     early = np.flatnonzero(sphere.time < LONGEST)
     if sphere.is_light:
         expected = sphere.expected_vacf[early] - np.exp(-sphere.time[early])

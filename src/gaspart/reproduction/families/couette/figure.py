@@ -17,8 +17,10 @@ DSMC, EVENT = "DSMC", "event-driven"
 
 
 def couette(ds: xr.Dataset) -> Figure:
-    """Profiles of velocity and temperature; the stress by the Knudsen number; viscosity, slip and normal
-    stresses."""
+    """Draw profiles of velocity and temperature, the stress, and viscosity, slip and normal stresses.
+
+    The stress is drawn against the Knudsen number.
+    """
     figure, axes = style.new(*[(2.4,)] * 6)
     gases = Table(ds, "point")
     flows = gases[gases.part == "flows"]
@@ -69,7 +71,7 @@ def _temperature(axis: Axes, wide: Table) -> None:
 
 
 def _stress(axis: Axes, dilute: Table) -> None:
-    """The shear stress over that of free flight by the Knudsen number."""
+    """Draw the shear stress, divided by that of free flight, against the Knudsen number."""
     for kind, engine in enumerate((DSMC, EVENT)):
         own = dilute[dilute.engine == engine]
         style.points(axis, own.knudsen, own.stress, kind=kind, hollow=kind == 1, label=engine)
@@ -109,7 +111,7 @@ def _slip(axis: Axes, slow: Table) -> None:
 
 
 def _normal(axis: Axes, dilute: Table) -> None:
-    """The normal stresses of dilute gases over their mean, by the square of the reduced rate."""
+    """Draw the normal stresses of dilute gases over their mean, against the squared reduced rate."""
     square = dilute.reduced_rate.value**2
     fine = np.linspace(0.0, 1.1 * square[dilute.knudsen < SLIP_FLOW].max(), 2)
     names = {
