@@ -32,13 +32,16 @@ FEATURES = {
     "ramp", "record", "reservoirs", "row", "rules", "shear", "sliding", "sticky", "stress",
     "support", "velocity", "vibrations", "viscous", "walls", "warm",
 }  # fmt: skip
-"""Arguments of the kernels that are None for a plain gas."""
+"""Arguments of the kernels that have the value None for a plain gas."""
 COUNTED_ENGINES = ("event", "step")
 _PACKAGE = Path(__file__).parents[2]
 
 
 class Strip(ast.NodeTransformer):
-    """Resolves every test of whether a feature is None as if it is, and removes what follows a return."""
+    """Transformer that removes the branches of features that are None.
+
+    Every test of such a feature is resolved, and code after a return is removed.
+    """
 
     def _known(self, test: ast.expr) -> bool | None:
         match test:
@@ -75,7 +78,7 @@ def stripped(source: str) -> str:
 
 
 def engines(point: Point) -> list[Engine]:
-    """The event-driven engine; the other one's kernel is compiled within the job."""
+    """Return the event-driven engine; the other one's kernel is compiled within the job."""
     return [point.engine]
 
 
@@ -85,10 +88,12 @@ def arguments(point: Point) -> dict:
 
 
 def count_instructions(scene: Scene) -> PointData:
-    """Return the instructions of each engine's main kernel for a scene, which should be a plain gas.
+    """Return the instructions of each engine's main kernel for a scene.
 
-    Returns over engine: `instructions`, and `stripped`, those without the branches of absent features. Both
-    are compiled in separate processes with separate caches.
+    The scene should be a plain gas.
+
+    Returns over engine: `instructions`, and `stripped`, the instructions without the branches of absent
+    features. Both are compiled in separate processes with separate caches.
     """
     counts = []
     with tempfile.TemporaryDirectory() as folder:

@@ -23,9 +23,11 @@ _NONE: Mapping = MappingProxyType({})
 class PointData(NamedTuple):
     """Variables, coordinates and attributes, as xarray.Dataset takes them: `xr.Dataset(*data)`.
 
-    variables, coordinates: by name, their dimensions (one name, or several), values (numbers or words), and
-    attributes if there are any. Jobs neither make nor write data sets of xarray, which takes a quarter of a
-    second to load: most of them are short timings, beside which nothing may run.
+    variables, coordinates : by name, their dimensions (one name, or several), values (numbers or words), and
+        attributes if there are any.
+
+    Jobs neither make nor write data sets of xarray, which takes a quarter of a second to load: most of them
+    are short timings, at the same time as which nothing may run.
     """
 
     variables: Mapping[str, tuple]
@@ -70,7 +72,10 @@ SCAN_TIME_STEPS = listed(
 
 
 def intervals(point: Point) -> dict:
-    """The arguments of a job that divides its run after the equilibration into `samples` intervals."""
+    """Return the arguments of a job that divides its run into `samples` intervals.
+
+    The run follows the equilibration.
+    """
     times = point.schedule
     return {
         "equilibration": times.equilibration,
@@ -101,16 +106,19 @@ _FORMS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     "until": (asdict, Until.from_dict),
     "rival": (lambda rival: to_plain(rival), lambda values: from_plain(values)),
 }
-"""By the name of an argument: into plain values, and back. All other arguments are plain."""
+"""Conversions to plain values, and back, by the name of an argument; other arguments are plain."""
 
 
 def to_plain(arguments: dict[str, Any]) -> dict[str, Any]:
-    """Numbers, text, lists and mappings in place of scenes, engines, tuples and what ends a run."""
+    """Convert scenes, engines, tuples and endings to numbers, text, lists and mappings."""
     return _converted(arguments, 0)
 
 
 def from_plain(values: dict[str, Any]) -> dict[str, Any]:
-    """The inverse of `to_plain`. Raises SceneError for a scene or an engine that another version made."""
+    """Convert the result of `to_plain` back.
+
+    Raises SceneError for a scene or an engine that another version made.
+    """
     return _converted(values, 1)
 
 

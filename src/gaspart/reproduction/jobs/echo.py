@@ -1,9 +1,10 @@
-"""Loschmidt's echo: run a gas, reverse all velocities, run it back, and measure the distance from its initial
-state.
+"""Loschmidt's echo: a gas is run, all velocities are reversed, and it is run back.
+
+The distance from its initial state is measured.
 
 Exact mechanics returns. Rounding errors grow by exp(lambda) with every collision of a particle, in both
-directions, so the echo's distance shows how long the memory of the initial state lasts, and its growth
-is the largest Lyapunov exponent, which the linearised dynamics of the same gas give without rounding.
+directions, so the echo's distance shows how long the memory of the initial state lasts, and its growth is the
+largest Lyapunov exponent, which the linearised dynamics of the same gas give without rounding.
 
 Planning reads this module, so slow imports are made inside functions.
 """
@@ -56,14 +57,14 @@ def echo(
     interval: float,
     samples: int,
 ) -> PointData:
-    """Echoes from equilibrium states of a scene, one for each seed.
+    """Measure echoes from equilibrium states of a scene, one for each seed.
 
     Returns over ``seed`` and ``sample``, of runs of 1 ... `samples` intervals: ``collisions`` per particle
-    before the reversal, twice the number of contacts over that of particles; ``echo``, the root-mean-square
-    distance from the initial state after the return, in diameters; ``divergence``, that of two event-driven
-    runs which start `DISPLACEMENT` apart, at the reversal. Over ``seed``: ``exponent``, the largest Lyapunov
-    exponent per collision of a particle, of the event-driven engine; NaN of others. Attributes: the gas
-    (`side` in diameters) and engine.
+    before the reversal, twice the number of contacts over the number of particles; ``echo``, the
+    root-mean-square distance from the initial state after the return, in diameters; ``divergence``, the
+    distance of two event-driven runs which start `DISPLACEMENT` apart, at the reversal. Over ``seed``:
+    ``exponent``, the largest Lyapunov exponent per collision of a particle, of the event-driven engine; NaN
+    of others. Attributes: the gas (`side` in diameters) and engine.
     """
     import numpy as np
 
@@ -111,7 +112,10 @@ def echo(
 
 
 def _exponent(equilibrium: Simulation, interval: float) -> float:
-    """The Lyapunov exponent of the run, continued by intervals of time until `TANGENT_COLLISIONS`."""
+    """Measure the Lyapunov exponent of the run, continued until `TANGENT_COLLISIONS`.
+
+    It is continued by intervals of time.
+    """
     from gaspart.analysis.lyapunov import lyapunov_exponent  # loads xarray, which other jobs do not need
 
     equilibrium.reset_tally()

@@ -23,7 +23,7 @@ GROWTH = 2.0**-6
 
 
 def engines(point: Point) -> list[Engine]:
-    """None: growth has kernels that all scenes share."""
+    """Return no engine: growth has kernels that all scenes share."""
     return []
 
 
@@ -35,8 +35,10 @@ def arguments(point: Point) -> dict:
 
 
 def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> PointData:
-    """Pack a scene of one species, once per seed: offer the container `attempts` random positions for each
-    particle, or, with None, let the particles grow until they jam.
+    """Pack a scene of one species, once per seed, by insertion or growth.
+
+    The container is offered `attempts` random positions for each particle, or, with None, the particles grow
+    until they jam.
 
     Returns a dataset: position (replica, particle, axis), NaN for a particle never placed; radius and
     packing_fraction (replica,); pressure (replica,), reduced, NaN for an insertion; length (axis,).

@@ -87,7 +87,10 @@ def engines(point: Point) -> list[Engine]:
 
 
 def modules(point: Point) -> list[str]:
-    """The modules that this one imports by their names: only runs with `until` depend on the analysis."""
+    """Return the modules that this one imports by their names.
+
+    Only runs with `until` depend on the analysis.
+    """
     return [EXAMINER] if "until" in point.settings else []
 
 
@@ -131,7 +134,10 @@ def _frame_interval(point: Point) -> float:
 
 
 def simulate(folder: Path, **arguments: Any) -> None:
-    """Write a trajectory for each seed; see `write_replicas`. The other arguments are those of `recipes`."""
+    """Write a trajectory for each seed; see `write_replicas`.
+
+    The other arguments belong to `recipes`.
+    """
     write_replicas(record, recipes(**arguments), folder, print)
 
 
@@ -150,8 +156,10 @@ def recipes(
     pair_impulses: str | None = None,
     **settings: Any,
 ) -> list[Recipe]:
-    """The recipe of each replica; settings: the other fields of `Recipe`. Raises SceneError for settings
-    that cannot be run."""
+    """Return the recipe of each replica; settings are the other fields of `Recipe`.
+
+    Raises SceneError for settings that cannot be run.
+    """
     from gaspart.state.optional_tallies import impulse_tallies, pair_impulse_tallies
     from gaspart.trajectory.correlator import Correlations
     from gaspart.trajectory.recipe import Recipe

@@ -26,8 +26,11 @@ def engine(point: Point) -> Engine:
 
 
 def scanned(point: Point) -> list[Engine]:
-    """The engine of a point, or, with a scan, one for each of its time steps or partitions; equal partitions
-    are taken once. Parts of a step are of the one that the engine has in the scene. Raises SceneError."""
+    """Return the engine of a point, or an engine for each value of its scan.
+
+    Scans are of time steps or partitions; equal partitions are taken once. Parts of a step refer to the step
+    that the engine has in the scene. Raises SceneError.
+    """
     settings = point.settings
     scans = [key for key in SCANS if key in settings]
     if not scans:
@@ -56,8 +59,10 @@ def scanned(point: Point) -> list[Engine]:
 def boxes_per_side(
     per_particle: float, count: int, radius: float, lengths: tuple[float, ...]
 ) -> tuple[int, ...]:
-    """(d,) boxes per axis: nearly cubic ones, ``per_particle`` for each particle, none smaller than a
-    diameter."""
+    """Return nearly cubic boxes per axis (d,), ``per_particle`` for each particle.
+
+    No box is smaller than a diameter.
+    """
     edge = (math.prod(lengths) / (per_particle * count)) ** (1.0 / len(lengths))
     return tuple(max(1, min(round(length / edge), int(length / (2.0 * radius)))) for length in lengths)
 
@@ -97,9 +102,9 @@ def _check(point: Point, name: str, settings: dict) -> None:
 
 
 def chosen(settings: dict, scene: Scene, where: str) -> dict:
-    """The settings of a point with `engine: auto`, with those of the engine that it stands for.
+    """Return the settings of a point with `engine: auto`, with those for the chosen engine.
 
-    The choice is that of the table's machine, so that a config means the same everywhere. A length is set
+    The choice is made for the table's machine, so that a config means the same everywhere. A length is set
     only if none is given. Raises SceneError.
     """
     from gaspart.accuracy.cost_table import EQUILIBRATION
@@ -133,9 +138,10 @@ _SIZES = 64  # of a polydisperse gas, by which its collision rate is estimated
 
 @dataclass(frozen=True)
 class Schedule:
-    """When a run is sampled, in the scene's time; the first ``equilibration_frames`` frames are dropped.
+    """Schedule of the samples of a run, in the scene's time.
 
-    samples_per_frame: where the run correlates more samples than it keeps frames.
+    The first ``equilibration_frames`` frames are dropped. `samples_per_frame` is set where the run correlates
+    more samples than it stores frames.
     """
 
     duration: float
@@ -183,7 +189,10 @@ def schedule(point: Point) -> Schedule:
 
 
 def _unit_of_time(point: Point, unit: str) -> float:
-    """The scene's time in one ``unit`` of length; for collisions per particle, from Enskog's rate."""
+    """Return the scene's time in one ``unit`` of length.
+
+    For collisions per particle it follows from Enskog's rate.
+    """
     if unit == "duration":
         return 1.0
     if unit == "steps":

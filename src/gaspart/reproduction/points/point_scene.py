@@ -1,4 +1,4 @@
-"""The scene of a point: made of its settings, or read from a scene file in which some values are replaced.
+"""Scene of a point: made of its settings, or read from a scene file with replaced values.
 
 Planning a workflow makes the scene of every point, so slow imports are made inside functions.
 """
@@ -94,7 +94,7 @@ def _small_count(point: Point) -> int:
 
 
 def _mean_volume(point: Point) -> float:
-    """The mean of the radii's power d, over that of the radius in the settings."""
+    """Compute the mean of the radii's power d, over the power of the radius in the settings."""
     from gaspart.scene.sizes import relative_radii
 
     settings = point.settings
@@ -149,7 +149,7 @@ def _made(point: Point) -> Scene:
 
 
 def _read(point: Point) -> Scene:
-    """The scene of the scene file, or of what such a file holds, with the values that settings replace."""
+    """Read the scene of the scene file, or of its content, with the values that settings replace."""
     from gaspart.scene.scene import Scene
 
     settings = point.settings
@@ -181,7 +181,7 @@ def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
 
 @cache
 def _file(path: str, changed: int) -> tuple[Any, Scene]:
-    """Return the content of a scene file, and its scene; read it again when it has changed."""
+    """Return the content of a scene file, and its scene, and read it again if it has changed."""
     from gaspart.scene.scene import Scene
 
     content = read_yaml(path)
@@ -189,8 +189,10 @@ def _file(path: str, changed: int) -> tuple[Any, Scene]:
 
 
 def _replace(content: dict, key: str, point: Point) -> None:
-    """Replace the value at a dotted key, `scene.` and then names in mappings and numbers in lists; what a
-    mapping does not hold yet is added."""
+    """Replace the value at a dotted key; add it if a mapping lacks it.
+
+    The key is `scene.` and then names in mappings and numbers in lists.
+    """
     _, *parents, last = key.split(".")
     block = content
     for part in parents:
@@ -202,7 +204,7 @@ def _replace(content: dict, key: str, point: Point) -> None:
 
 
 def _place(block: object, part: str, key: str, point: Point) -> str | int:
-    """Where `part` of a dotted key leads in a mapping or a list."""
+    """Return the key or index to which `part` of a dotted key leads in a mapping or a list."""
     if isinstance(block, dict):
         block.setdefault(part, None)
         return part

@@ -14,9 +14,12 @@ from gaspart.reproduction.table import table
 
 
 def means(run: Run) -> dict[str, float]:
-    """temperature: m <v^2> / d about the centre of mass, mean over the frames; cumulant: d <v^4> / ((d + 2)
-    <v^2>^2) - 1 of all velocities in these; given, lost: energies per particle and time, of kicks and in
-    contacts."""
+    """Compute averages of a run.
+
+    temperature : m <v^2> / d about the centre of mass, mean over the frames.
+    cumulant : d <v^4> / ((d + 2) <v^2>^2) - 1 of all velocities in these.
+    given, lost : energies per particle and time, of kicks and in contacts.
+    """
     squares, dimension = (run.peculiar**2).sum(axis=2), run.dimension
     second = squares.mean(axis=1)  # by frame, so that a temperature that fluctuates adds no cumulant
     fourth = (squares**2).mean(axis=1)

@@ -25,7 +25,7 @@ EQUILIBRATED = 3.0
 
 
 def freezing_discs(dataset: xr.Dataset) -> Figure:
-    """Pressure with the plateau, psi_6, g(r), and three snapshots with their structure factors."""
+    """Draw pressure with the plateau, psi_6, g(r), and three snapshots with structure factors."""
     shown = Table(dataset, "shown")
     figure, (loop, order, shells, below) = style.new((2.4, 1.5), (2.0,), (1.65 * len(shown),))
     starts = _starts(dataset)
@@ -46,7 +46,7 @@ def freezing_discs(dataset: xr.Dataset) -> Figure:
 
 
 def freezing_spheres(dataset: xr.Dataset) -> Figure:
-    """Pressure of both branches, its residuals, Q_6, and the profiles of coexisting crystal and fluid."""
+    """Draw pressure of both branches, its residuals, Q_6, and profiles of coexistence."""
     figure, axes = style.new((2.4, 1.2), (1.5,), (2.0,))
     upper, middle, order, slab = axes
     starts = _starts(dataset)
@@ -105,7 +105,7 @@ def _loop(axis: Axes, states: Table, starts: dict[str, Table]) -> None:
 
 
 def _published(axis: Axes) -> None:
-    """The pressures of more discs, and of as many as are compared, by programs of others."""
+    """Draw the published pressures of more discs, and of as many as are compared."""
     known = theory.literature("pressure", 2)
     for count, source, container, dashes in PUBLISHED:
         same = (known.source == source) & (known.container == container) & (known["count"] == count)
@@ -163,7 +163,7 @@ def _branches(axis: Axes, eta: np.ndarray, starts: dict[str, Table]) -> None:
 
 
 def _coexistence(axis: Axes, slab: Row) -> None:
-    """The pressure of crystal beside fluid, at the mean of their densities."""
+    """Draw the pressure of crystal coexisting with fluid, at the mean of their densities."""
     pressure = Estimate([slab.slab_pressure], [slab.slab_error])
     style.points(axis, [slab.slab_packing_fraction], pressure, kind=6, label="coexistence")
     style.labelled(axis, y="pressure $P\\sigma^3/k_\\mathrm{B}T$", legend="upper left")

@@ -46,12 +46,15 @@ def read(point: Point) -> list[Temperatures]:
 
 
 def law(point: Point) -> Restitution:
-    """That of the contacts of a point's scene."""
+    """Return the law of the contacts of a point's scene."""
     return point.scene.restitution or Restitution()
 
 
 def inertia(point: Point) -> float:
-    """q = I / (m R^2) of a point's only species; by default that of a uniform disc or sphere."""
+    """Return q = I / (m R^2) of a point's only species.
+
+    The default is that for a uniform disc or sphere.
+    """
     kind = point.scene.species[0]
     if kind.moment_of_inertia is None:
         return {2: 0.5, 3: 0.4}[point.scene.dimension]

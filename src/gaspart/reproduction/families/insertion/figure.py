@@ -23,7 +23,10 @@ SOURCE = 0.52
 
 
 def fill_failures(dataset: xr.Dataset) -> Figure:
-    """Failures per particle, to saturation and at low density; packing fraction against attempts^(-1/d)."""
+    """Draw failures per particle, and packing fraction against attempts^(-1/d).
+
+    Failures are drawn to saturation and at low density.
+    """
     figure, (upper, middle, lower) = style.new((3.4,), (1.6,), (2.2,))
     containers = Table(dataset, "container")
     for kind, ((dimension, rule), label) in enumerate(SERIES.items()):

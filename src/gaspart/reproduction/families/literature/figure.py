@@ -1,4 +1,4 @@
-"""Our values over those of others."""
+"""Figure of our values divided by values of others."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def literature(dataset: xr.Dataset) -> Figure:
 
 
 def _ratios(axis: Axes, values: Table) -> None:
-    """Ours as points with their errors, those of others as wide pale bars about 0."""
+    """Draw our values as points with their errors, others' as wide pale bars about 0."""
     style.level(axis, 0.0)
     for kind, (name, label) in enumerate(LABELS.items()):
         part = values[values.quantity == name]

@@ -13,7 +13,7 @@ from gaspart.rendering.pictures import picture
 from gaspart.reproduction.table import Table
 
 DOTS = 300
-"""Pixels per inch of the pictures, as those of a saved figure."""
+"""Pixels per inch of the pictures, equal to those in a saved figure."""
 HEIGHT = 0.75
 """Height of a picture, over its width."""
 HIGHEST = 4.2
@@ -42,7 +42,10 @@ def brownian_render(dataset: xr.Dataset) -> Figure:
 
 
 def _shown(spheres: Table, colour: str, bar: float = 0.0) -> tuple[Figure, Axes]:
-    """A figure filled by a picture of the spheres; bar: height in inches of what is below."""
+    """Return a figure filled by a picture of the spheres.
+
+    `bar` is the height in inches of the space below.
+    """
     particles = DrawnParticles(
         positions=spheres.position,
         radii=spheres.radius,

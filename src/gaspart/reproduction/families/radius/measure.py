@@ -104,17 +104,20 @@ def _crossings(replicas: list[Series], scene: Scene, per_side: int) -> Estimate:
 
 
 def crossings_per_collision(packing_fraction: float, width: float, per_side: int, dimension: int) -> float:
-    """Boundaries between boxes that are crossed for each collision; width of a box in diameters.
+    """Compute the crossed boundaries between boxes for each collision.
 
-    2 d sqrt(2 / pi) (n - 1) / (n w nu), nu Enskog's rate of one particle with k_B T = m = sigma = 1.
+    The width of a box is in diameters. It is 2 d sqrt(2 / pi) (n - 1) / (n w nu), nu Enskog's rate of one
+    particle with k_B T = m = sigma = 1.
     """
     rate = float(theory.collision_rate(packing_fraction, dimension))
     return 2.0 * dimension * math.sqrt(2.0 / math.pi) * (per_side - 1) / (per_side * width * rate)
 
 
 def expected_pair_tests(count: int, per_side: int, packing_fraction: float, dimension: int) -> float:
-    """Pair tests per particle and step of the time-stepped engine in a periodic container (see the
-    module)."""
+    """Compute the pair tests per particle and step of the time-stepped engine.
+
+    The container is periodic (see the module).
+    """
     share = (3.0 / per_side) ** dimension if per_side > 3 else 1.0
     compressibility = float(theory.reduced_compressibility(packing_fraction, dimension))
     return 0.5 * (share * count + (compressibility - 1.0) - share * compressibility)

@@ -169,7 +169,7 @@ def _ideal(axis: Axes, gases: Table, kind: int, label: str) -> None:
 
 
 def linear_scaling(ds: xr.Dataset) -> Figure:
-    """Time of a step with one box, the cheapest partition and a neighbour list; time, work per particle."""
+    """Draw time of a step with one box, the cheapest partition and a list; time, work per particle."""
     figure, (top, middle, bottom) = style.new((3.0,), (1.9, 1.7))
     gases, naive, lists = Table(ds, "gas"), Table(ds, "naive"), Table(ds, "listed")
     _extrapolated(top, naive)
@@ -201,7 +201,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
 
 
 def _extrapolated(axis: Axes, naive: Table) -> None:
-    """What one box takes with many more particles; nothing if noise makes that negative."""
+    """Draw the time of one box with many more particles; nothing if noise makes it negative."""
     far, carried = float(naive.extrapolated_count), naive.extrapolated_seconds.value
     line = np.array([naive.naive_count.min(), far])
     lines = (_SCAN, _SOURCE, "one box, 27 scans (F & M)"), (1.0, style.COLOURS[1], None)
@@ -213,7 +213,7 @@ def _extrapolated(axis: Axes, naive: Table) -> None:
 
 
 def _duration(seconds: float) -> str:
-    """A time in hours, minutes, seconds or milliseconds."""
+    """Format a time in hours, minutes, seconds or milliseconds."""
     for unit, length in (("h", 3600.0), ("min", 60.0), ("s", 1.0)):
         if seconds >= length:
             return f"{seconds / length:.2g} {unit} a step"

@@ -87,9 +87,10 @@ def _plateaus(plateaus: Table) -> list[Claim]:
 
 
 def _source_numbers(source: Row, origin: str) -> list[Claim]:
-    """Whether the source's number for one gas is the ideal one, and how much slower it is.
+    """Return the claims on the source's number for one gas: ideality, and slowdown.
 
-    If no minimum lies between the timed partitions, its interval is infinite and the claim inconclusive."""
+    If no minimum lies between the timed partitions, its interval is infinite and the claim inconclusive.
+    """
     number, gas = source.source_number, f"N = {source.source_count}, r = {source.source_radius:g}"
     interval = source.source_ideal_high - source.source_ideal_low
     return [

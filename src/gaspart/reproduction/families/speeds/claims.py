@@ -18,7 +18,10 @@ KOLMOGOROV_LIMIT, KOLMOGOROV_SCATTER = 1.818, 0.26
 
 
 def speed_relaxation(dataset: xr.Dataset) -> list[Claim]:
-    """Kurtosis, never-hit fraction and collisions at each time of source A's figure 11, for each engine."""
+    """Return the claims on kurtosis, never-hit fraction and collisions, for each engine.
+
+    They are at each time of source A's figure 11.
+    """
     claims = []
     for gas in Table(dataset, "engine"):
         by, relaxation = f"{ENGINE_TITLES[gas.engine]} engine", theory.relaxation(gas.dimension)
@@ -48,7 +51,7 @@ def speed_relaxation(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _at_time(frame: Row, by: str, relaxation: Relaxation) -> list[Claim]:
-    """The scatter of the runs includes that of the collisions."""
+    """Return the claims at a time; the scatter of the runs includes the collisions'."""
     collisions = frame.collisions.value
     when = f"at t = {frame.time:g} ({by})"
     return [

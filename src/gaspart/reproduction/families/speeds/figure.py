@@ -47,7 +47,7 @@ def speed_relaxation(dataset: xr.Dataset) -> Figure:
 
 
 def _histograms(axis: Axes, engines: Table) -> None:
-    """Densities at the three times: outlines of the time-stepped engine, points of the event-driven."""
+    """Draw densities at the three times: outlines of the time-stepped engine, points of events."""
     edges = np.append(engines.lower, engines.upper[-1])
     middle = 0.5 * (edges[1:] + edges[:-1])
     for kind, frame in enumerate(engines.shown):

@@ -30,7 +30,7 @@ def conductivity(ds: xr.Dataset) -> list[Claim]:
 
 
 def _is_within(gas: Row, packing_fraction: float) -> bool:
-    """Whether a gas is at most so dense, but for rounding."""
+    """Return True if a gas is at most at this packing fraction, but for rounding."""
     return bool(gas.packing_fraction <= packing_fraction * (1.0 + 1e-6))
 
 

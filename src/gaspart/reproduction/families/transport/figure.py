@@ -15,18 +15,23 @@ SHOWN_FROM = 4.0
 
 
 def viscosity(ds: xr.Dataset) -> Figure:
-    """The shear viscosity over Enskog's, and the bulk viscosity, against density, and the integral of the
-    former until each time."""
+    """Draw the shear viscosity over Enskog's and the bulk viscosity, and the running integral.
+
+    The viscosities are against density, the integral of the former is until each time.
+    """
     return _figure(ds, r"$\eta/\eta_\mathrm{Enskog}$")
 
 
 def conductivity(ds: xr.Dataset) -> Figure:
-    """The conductivity of heat over Enskog's, likewise."""
+    """Draw the thermal conductivity over Enskog's against density, and the running integral."""
     return _figure(ds, r"$\lambda/\lambda_\mathrm{Enskog}$")
 
 
 def logarithmic_growth(ds: xr.Dataset) -> Figure:
-    """The integrals of both fluxes of discs against the logarithm of time, in containers of several sizes."""
+    """Draw the integrals of both fluxes of discs against the logarithm of time.
+
+    The containers have several sizes.
+    """
     figure, axes = style.new((2.4,), (2.4,))
     gases = Table(ds, "point")
     late = (gases.time >= SHOWN_FROM).all(axis=0)

@@ -16,7 +16,10 @@ S = r"collisions per particle $s=\nu t$"
 
 
 def velocity_autocorrelation(ds: xr.Dataset) -> Figure:
-    """Three panels: C against collisions per particle, log-log; its start; C - 1/N over the modes."""
+    """Draw C against collisions per particle, its start, and C - 1/N over the modes.
+
+    The first panel is log-log.
+    """
     figure, (upper, middle, lower) = style.new((2.6,), (2.0,), (2.2,))
     gases = Table(ds, "point")
     long = gases[np.isfinite(gases.tail_ratio.value)].sorted_by("dimension", "packing_fraction")
@@ -71,7 +74,10 @@ def _starts(axis: Axes, gases: Table) -> None:
 
 
 def _ratios(axis: Axes, gases: Table) -> None:
-    """C - 1/N over the sum of the container's modes with its fit; marked, when sound has crossed it."""
+    """Draw C - 1/N over the sum of the container's modes, with its fit.
+
+    The time when sound has crossed it is marked.
+    """
     style.level(axis, 1.0)
     for kind, gas in enumerate(gases):
         lags, share = _lags(gas), 1.0 / gas.count

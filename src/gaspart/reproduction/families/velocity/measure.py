@@ -1,16 +1,16 @@
-"""The velocity autocorrelation: its start, exponential, and its long-time tail, a power of time.
+"""Velocity autocorrelation: its exponential start, and its long-time tail, a power of time.
 
 Everything is in reduced units: the particles' diameter, mass and temperature are 1; s is time in Enskog's
 collisions of a particle. The runs' total momentum is subtracted, leaving velocities u relative to the centre
-of mass; where momentum is free (canonical) one has the centre's own beside, which does not decay:
+of mass; where momentum is free (canonical) the centre's own velocity, which does not decay, is added:
 
     C(t) = 1/N + <u(0).u(t)> / (d k_B T),    k_B T = m <u^2> / d * N / (N-1) .
 
 That is exact. C(t) of an infinite fluid differs from it once momentum has come round the container, sound
 first, so that the tail is compared with the modes of the container (`theory.velocity_autocorrelation_modes`).
-These decay with the transport coefficients of long waves; at a time t the waves that matter are some
-sqrt((D + nu) t) long, and the next terms of their decay rates, of order k^4, are of the order of 1/t of the
-first. So the ratio to the modes is fitted by A + B/s, and A compared with 1.
+These decay with the transport coefficients of long waves; at a time t the waves that matter are some sqrt((D
++ nu) t) long, and the next terms of their decay rates, of order k^4, are of the order of 1/t of the first. So
+the ratio to the modes is fitted by A + B/s, and A compared with 1.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def _row(point: Point, settings: dict) -> dict:
 
 
 def _tail(collisions: np.ndarray, values: np.ndarray, modes: np.ndarray) -> np.ndarray:
-    """A and B of values = modes (A + B / s); the noise of C is the same at all lags."""
+    """Fit A and B of values = modes (A + B / s); the noise of C is the same at all lags."""
     return fit_linear(np.stack([modes, modes / collisions], axis=1), values).values
 
 
