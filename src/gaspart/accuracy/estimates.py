@@ -106,7 +106,7 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     The component is "" for a scalar or a curve, whose value and error are root mean squares. Raises
     SceneError as the functions of `gaspart.analysis`.
     """
-    from gaspart.analysis.measure import measure
+    from gaspart.analysis.measuring import measure
     from gaspart.analysis.run import open_run
 
     with open_run(data, start, sheared=True, varying=True) as run:
