@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.engine import Asked, Candidate, Local
+from gaspart.engines.engine import Asked, Candidate
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
+    from gaspart.engines.conditions import Layers
     from gaspart.engines.dsmc.settings import DSMC
 
 DENSEST = 0.4
@@ -51,14 +52,13 @@ def boltzmann_error(asked: Asked) -> float:
     """Bound on the relative error of the Boltzmann equation: pairs in a cell collide as if they were
     points."""
     conditions, scene = asked.conditions, asked.scene
-    error = (conditions.memory if asked.transported else 0.0) + _layers(asked)
+    error = (asked.memory if asked.transported else 0.0) + _layers(asked)
     if asked.observable != "pressure":
         lost = _NORMAL[scene.dimension] * conditions.surfaces
         error += lost / (1.0 - lost) if lost < 1.0 else math.inf
     few = float((conditions.contact_of_few / conditions.contact).max()) - 1.0
-    differing = conditions.of_points(asked.observable, asked.face)
-    if differing is not None:
-        return float(error + few + differing)
+    if asked.points is not None:
+        return float(error + few + asked.points)
     virial = float(conditions.virial.max())
     if math.isinf(virial):
         return math.inf
@@ -72,7 +72,7 @@ def enskog_error(asked: Asked, cells: tuple[int, ...] | None = None) -> float:
     conditions = asked.conditions
     error = _STATIC + _layers(asked)
     if asked.transported:
-        error += conditions.memory
+        error += asked.memory
     error += float((conditions.contact_of_few / conditions.contact).max()) - 1.0
     error += _AT_WALLS * float(conditions.filled.max()) * conditions.surfaces
     if asked.observable == "pressure" and cells is not None:
@@ -98,7 +98,7 @@ def cell_error(engine: DSMC, asked: Asked) -> float:
     return float(error + (_lost(engine, conditions) if dense else 0.0))
 
 
-def require_resolved(engine: DSMC, conditions: Local) -> None:
+def require_resolved(engine: DSMC, conditions: Layers) -> None:
     """Raise SceneError for cells or steps that are longer than a length or a time over which an uneven gas
     changes, or than its shortest free path or time. What an even gas is like does not depend on them."""
     if conditions.axis is None:
@@ -120,7 +120,7 @@ def require_resolved(engine: DSMC, conditions: Local) -> None:
             raise SceneError(key, value, f"{what} {size:.2g}, more than {limit:.2g}, {name}")
 
 
-def cell_widths(engine: DSMC, conditions: Local) -> np.ndarray:
+def cell_widths(engine: DSMC, conditions: Layers) -> np.ndarray:
     """(d,) the sides of a cell, 0 along an axis that has one cell between periodic faces and no profile."""
     cells = np.array(cells_of(engine, conditions))
     around = np.array(conditions.scene.container.periodic)
@@ -130,7 +130,7 @@ def cell_widths(engine: DSMC, conditions: Local) -> np.ndarray:
     return np.where(flat, 0.0, conditions.free / cells)
 
 
-def cells_of(engine: DSMC, conditions: Local) -> tuple[int, ...]:
+def cells_of(engine: DSMC, conditions: Layers) -> tuple[int, ...]:
     """(d,) the cells along each axis, 1 where none are stated."""
     return tuple(np.broadcast_to(np.array(engine.cells_per_side or 1), conditions.free.shape).tolist())
 
@@ -146,7 +146,7 @@ def _layers(asked: Asked) -> float:
     return float(conditions.virial.max()) * math.sqrt(sigma / max(length, sigma))
 
 
-def _lost(engine: DSMC, conditions: Local) -> float:
+def _lost(engine: DSMC, conditions: Layers) -> float:
     """The collisions that the engine loses where fewer particles are in a cell than in the mean, weighted by
     collisions."""
     weights = conditions.share * conditions.contact
