@@ -1,4 +1,4 @@
-"""Arrays that lie well in memory."""
+"""Memory layout of arrays, prefetch, and vector instructions."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 def aligned(shape: tuple[int, ...], dtype: DTypeLike) -> np.ndarray:
-    """An array of zeros that starts on a cache line."""
+    """Return an array of zeros that starts on a cache line."""
     size = int(np.prod(shape)) * np.dtype(dtype).itemsize
     buffer = np.zeros(size + 64, dtype=np.uint8)
     start = -buffer.ctypes.data % 64
     return buffer[start : start + size].view(dtype).reshape(shape)
 
 
-# Fetching from memory what will be read soon, while something else is worked on.
+# Prefetch of data that will be read soon, while the processor does other work.
 
 
 _BYTE, _FLAG, _WORD = ir.IntType(8).as_pointer(), ir.IntType(32), ir.IntType(64)
@@ -32,7 +32,7 @@ _LINE = 64  # bytes
 
 
 def _fetch(context, builder, kind, array, index, offset=0):
-    """Write the instruction that fetches array[index], `offset` bytes on."""
+    """Emit the instruction that prefetches array[index], `offset` bytes on."""
     array = context.make_array(kind)(context, builder, array)
     one_after_other = kind.ndim == 1 and kind.layout == "C"
     stride = _WORD(context.get_abi_sizeof(context.get_data_type(kind.dtype)))
@@ -47,7 +47,7 @@ def _fetch(context, builder, kind, array, index, offset=0):
 
 @intrinsic
 def fetch(typingctx, array, index):
-    """Let the cache line in which array[index] begins be brought near, without waiting for it."""
+    """Prefetch the cache line in which array[index] begins, without waiting for it."""
 
     def generate(context, builder, signature, arguments):
         _fetch(context, builder, signature.args[0], *arguments)
@@ -58,7 +58,7 @@ def fetch(typingctx, array, index):
 
 @intrinsic
 def fetch_two(typingctx, array, index):
-    """The same for that line and the next one."""
+    """Prefetch the cache line in which array[index] begins, and the next one."""
 
     def generate(context, builder, signature, arguments):
         _fetch(context, builder, signature.args[0], *arguments)
@@ -70,8 +70,10 @@ def fetch_two(typingctx, array, index):
 
 @intrinsic
 def fetch_numbered(typingctx, array, numbers, first, mask):
-    """The same for the rows of an array that `TOGETHER` words of 32 bits name, from numbers[first] on, by the
-    bits of a mask."""
+    """Prefetch `TOGETHER` rows of an array, whose numbers are in another array.
+
+    The numbers are words of 32 bits, from numbers[first] on, of which only the bits of a mask count.
+    """
 
     def generate(context, builder, signature, arguments):
         array, numbers, first, mask = arguments
@@ -85,10 +87,10 @@ def fetch_numbered(typingctx, array, numbers, first, mask):
     return types.none(array, numbers, types.uint64, types.uint64), generate
 
 
-# Eight numbers at once, in vector instructions: what the searches of both engines are written in
-# (`event.simd`, `step.neighbour_list`).
+# Eight numbers at once, in vector instructions: the basis of the searches of both engines (`event.simd`,
+# `step.neighbour_list`).
 #
-# LLVM makes of the vectors what the processor has, of whatever width.
+# LLVM maps these vectors to the vectors of the processor, of any width.
 
 
 WIDTH = 8
@@ -97,13 +99,13 @@ _DOUBLE, _INT = ir.DoubleType(), ir.IntType(32)
 
 @dataclass(frozen=True, eq=False)
 class Lanes:
-    """Eight values, and the expressions in them that are written into the machine code."""
+    """Eight values, and the operations on them that are written into the machine code."""
 
     builder: ir.IRBuilder
     value: ir.Value
 
     def all(self, scalar: float | ir.Value) -> Lanes:
-        """The same number in every lane."""
+        """Return a vector with the same number in every lane."""
         if not isinstance(scalar, ir.Value):
             scalar = ir.Constant(_DOUBLE, scalar)
         one = ir.VectorType(scalar.type, WIDTH)
@@ -150,40 +152,43 @@ class Lanes:
         return self._than(">=", other)
 
     def equals(self, other):
-        """Lane by lane."""
+        """Compare lane by lane."""
         return self._than("==", other)
 
     def turned(self, step: int) -> Lanes:
-        """The lanes some steps on."""
+        """Rotate the lanes by some steps."""
         places = ir.Constant(ir.VectorType(_INT, WIDTH), [(n + step) % WIDTH for n in range(WIDTH)])
         return Lanes(self.builder, self.builder.shuffle_vector(self.value, self.value, places))
 
     def plus_product(self, one: Lanes, other: Lanes) -> Lanes:
-        """The sum with a product that is exact, so that it does not matter whether that is rounded."""
+        """Add a product that is exact.
+
+        So it does not matter whether the product is rounded before the addition.
+        """
         kind = ir.FunctionType(self.value.type, [self.value.type] * 3)
         name = f"llvm.fmuladd.v{WIDTH}f64"
         fused = cgutils.get_or_insert_function(self.builder.module, kind, name)
         return Lanes(self.builder, self.builder.call(fused, [one.value, other.value, self.value]))
 
     def sqrt(self):
-        """Lane by lane, rounded as IEEE wants."""
+        """Compute the square root lane by lane, rounded as IEEE requires."""
         kind = ir.FunctionType(self.value.type, [self.value.type])
         root = cgutils.get_or_insert_function(self.builder.module, kind, f"llvm.sqrt.v{WIDTH}f64")
         return Lanes(self.builder, self.builder.call(root, [self.value]))
 
     def where(self, condition: Lanes, other: Lanes | float) -> Lanes:
-        """These where the condition holds, the others elsewhere."""
+        """Select these lanes where the condition holds, the other lanes elsewhere."""
         other = other if isinstance(other, Lanes) else self.all(other)
         return Lanes(self.builder, self.builder.select(condition.value, self.value, other.value))
 
 
 def mask_of(condition: Lanes) -> ir.Value:
-    """A bit for each lane: whether a condition holds."""
+    """Return a bit for each lane that tells whether a condition holds."""
     return condition.builder.bitcast(condition.value, ir.IntType(WIDTH))
 
 
 def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -> dict:
-    """The members of a named tuple by name, those that are tuples as lists."""
+    """Return the members of a named tuple by name, with tuples as lists."""
     members = {}
     for n, (name, member) in enumerate(zip(kind.fields, kind.types, strict=True)):
         part = builder.extract_value(value, n)
@@ -193,7 +198,7 @@ def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -
 
 @intrinsic
 def lowest(typingctx, bits):
-    """The number of the lowest bit that is set, of a word that is not 0."""
+    """Return the index of the lowest bit that is set in a word other than 0."""
 
     def generate(context, builder, signature, arguments):
         return builder.cttz(arguments[0], ir.IntType(1)(1))

@@ -173,7 +173,7 @@ def number_of(candidate):
 
 @inner_helper
 def image_bits(image, first):
-    """Return the bits that represent the image (-1, 0 or 1) of a candidate along an axis.
+    """Return the bits that represent an image, -1, 0 or 1, along an axis.
 
     first : position of the first of these bits
     """

@@ -55,7 +55,7 @@ def without_obstacles(model):
 
 @inner_helper
 def meet_obstacle(particles, i, face, time, model, tally):
-    """Process the hit of a particle at a face, the edge of a well, or an interior wall.
+    """Process the hit of a particle at a face, a well's edge, or an interior wall.
 
     Returns -1 - the number of the face or wall, and whether this is an event of the model. It is no such
     event at a periodic face, or where the particle leaves a wall along which it has slid.
@@ -126,7 +126,7 @@ def leave_box(particles, i, face, time, boxes, space, tally, lists):
 
 @inner_helper
 def enter_opposite_box(particles, i, face, time, boxes, model, tally, lists):
-    """Move a particle that has crossed a periodic face into its new box, or renew its list."""
+    """Update the box or neighbour list of a particle that has crossed a periodic face."""
     if lists is not None:
         renew(particles.flights, i, time, lists, model.space, tally)
     else:

@@ -279,7 +279,10 @@ def centre_on(lists, flights, i, time, lengths):
 
 @inner_kernel
 def renew(flights, i, time, lists, space, tally):
-    """Renew the list of a particle at a time, and its entries in the lists of others."""
+    """Renew the list of a particle, and its entries in the lists of others.
+
+    time : present time
+    """
     tally.counts[CROSSINGS] += 1
     row = i * lists.room
     for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
@@ -314,7 +317,7 @@ def centre_all(lists, flights, time, lengths):
 
 @inner_helper
 def search_list(particles, i, lists, space, tally):
-    """Predict the contact with a particle of the list if it is earlier than the present one."""
+    """Predict the contact with a particle of the list, if it is the earliest."""
     row = uint64(i) * uint64(lists.room)
     count = uint64(lists.candidates[row])
     tally.counts[PAIR_TESTS] += int64(count)

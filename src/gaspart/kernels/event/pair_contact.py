@@ -303,7 +303,7 @@ def record_event(flights, i, j, time, model, record):
 
 @inner_kernel
 def has_collapsed(collapse, i, time):
-    """Count a contact of a particle; return True for too many contacts in too short a time."""
+    """Count a contact of a particle; return True for too many contacts within the interval."""
     if time - collapse.since[i] > collapse.interval:
         collapse.since[i] = time
         collapse.contacts[i] = 0

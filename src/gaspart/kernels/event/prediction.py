@@ -215,7 +215,7 @@ def predict_contact(particles, i, boxes, model, tally, crossed, lists):
 
 @inner_helper
 def predict_face(particles, i, boxes, model, now):
-    """Predict the next hit of a face or interior wall, or the renewal of the neighbour list."""
+    """Predict the next hit of a face or interior wall, or the list's renewal."""
     predictions, space, gravity = particles.predictions, model.space, model.gravity
     time, face = next_renewal(particles.flights, i, boxes.lists)
     if not is_renewed_first(i, time, boxes.lists, space, model.faces):
@@ -310,7 +310,7 @@ def predict_after(particles, pair, queue, boxes, model, tally, event, crossed):
 
 @inner_kernel
 def predict_faces(particles, time, queue, boxes, model, piston):
-    """Predict the hits of faces anew for particles whose next face was or may be the piston."""
+    """Predict face hits anew for particles whose next face was or may be the piston."""
     predictions = particles.predictions
     for i in range(len(predictions)):
         was = predictions[i].face == piston.face
@@ -332,7 +332,7 @@ def predict_walls(particles, time, queue, boxes, model, moving):
 
 @inner_helper
 def predict_after_piston(particles, partner, time, queue, boxes, model, faces, walls):
-    """Predict the hits of other particles anew after a hit that changed a piston or moving wall.
+    """Predict other particles' hits anew after a hit that changed a piston or moving wall.
 
     partner : -1 - number of the face or wall that was hit
     """

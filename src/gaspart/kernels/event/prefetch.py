@@ -70,17 +70,17 @@ def fetch_about(flights, boxes, at, side, members):
 
 @inner_helper
 def crossing_of(face):
-    """Return the step (3,) into the next box at a face of the box with this code."""
+    """Return the step (3,) into the next box for the code of a box's face."""
     axis, step = (face - BOX_FACES) // 2, 1 if face % 2 else -1
     return step if axis == 0 else 0, step if axis == 1 else 0, step if axis == 2 else 0
 
 
 @inner_helper
 def searched(predictions, i):
-    """Return the box (3,) around which a particle will search at its next event, and the side (3,).
+    """Return the box (3,) and the side (3,) of a particle's next search.
 
-    The side is not 0 for the axis along which the particle crosses into the next box: only boxes on that side
-    are searched.
+    The search is around this box. The side is not 0 for the axis along which the particle crosses into the
+    next box: only boxes on that side are searched.
     """
     at, face = predictions[i].box, int64(predictions[i].face)
     side = _BOTH

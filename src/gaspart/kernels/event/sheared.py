@@ -68,7 +68,7 @@ def _search_sheared(particles, i, boxes, space, tally, crossed, shear):
 
 @inner_helper
 def search_sheared(particles, i, boxes, space, tally, crossed, shear):
-    """Predict the contact with a particle across a sheared face if it is the earliest so far.
+    """Predict the contact with a particle across a sheared face, if it is the earliest.
 
     The arguments are explained in `boxes.find_contact`.
     """
@@ -93,9 +93,10 @@ def follow(particles, i, axis, boxes, shear):
 
 @inner_helper
 def unfold(flights, i, j, time, space, shear):
-    """Move the second particle of a contact across a sheared face to its image next to the first.
+    """Move the second particle of a contact across a sheared face to its image.
 
-    Returns whether the image is above (1), below (-1), or neither (0).
+    The image is the one next to the first particle. Returns whether it is above (1), below (-1), or neither
+    (0).
     """
     if shear is None:
         return 0

@@ -122,7 +122,7 @@ def images_of(candidates: Lanes, axes: int) -> list[Lanes]:
 
 
 def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.Value:
-    """Return a bit for each particle, from an array with a byte of 0 or 1 for each."""
+    """Return a bit for each particle, from an array of bytes 0 or 1."""
     found = ir.IntType(WIDTH)(0)
     for n, index in enumerate(indices):
         mark = builder.load(builder.gep(data, [index]))
@@ -239,14 +239,13 @@ def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
 
 @intrinsic
 def nearer(typingctx, pages, page, point, offset, square):
-    """Return a bit for each of the WIDTH points of a page that are nearer than a distance to a point.
+    """Return a bit for each of the WIDTH points of a page near a point.
 
-    The arithmetic is in single precision, and the result is the same from either point. The page is described
-    in `neighbour_lists.page_dtype`.
+    A point is near if the square of its distance is below `square`. The arithmetic is in single precision,
+    and the result is the same from either point. The page is described in `neighbour_lists.page_dtype`.
 
     point : (3,)
     offset : (3,), displacement of the page
-    square : square of the distance
     """
 
     def generate(context, builder, signature, arguments):

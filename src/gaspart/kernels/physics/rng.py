@@ -1,7 +1,7 @@
-"""Random numbers inside kernels: a function of a key, a particle and a number of its own count, and of
-nothing else, so that they do not depend on the order in which events are found.
+"""Random numbers in kernels, which depend only on a key, a particle and a number of its own count.
 
-Everything made of the random words uses +, -, x, / and the square root only, as in `random`.
+So they do not depend on the order in which events are found. All results of the random words use only +, -,
+x, / and the square root, as in `random`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import helper, inner_kernel, kernel
 
-# The constants of the logarithm that is the same bits on every machine; for numpy and for kernels alike.
+# Constants of the logarithm that has the same bits on every machine, for numpy and for kernels.
 
 
 LN2 = 0.6931471805599453
@@ -28,7 +28,7 @@ _SPARE = np.uint64(12)  # bits of a word that a uniform number leaves unused
 
 @helper
 def _product(a, b):
-    """The 128 bits of a b, as (high, low) words."""
+    """Return the 128 bits of a b as (high, low) words."""
     a_high, a_low, b_high, b_low = a >> _HALF, a & _LOW, b >> _HALF, b & _LOW
     low = a_low * b_low
     middle = a_high * b_low + (low >> _HALF)
@@ -38,9 +38,12 @@ def _product(a, b):
 
 @kernel
 def random_words(key, particle, number, block):
-    """Four random words of 64 bits: Philox4x64-10 (Salmon, Moraes, Dror & Shaw, SC11 (2011)).
+    """Return four random words of 64 bits by Philox4x64-10.
 
-    key: (2,) words of the seed; particle, number, block: the counter.
+    The generator is by Salmon, Moraes, Dror & Shaw, SC11 (2011).
+
+    key : (2,), words of the seed
+    particle, number, block : counter
     """
     c0, c1, c2, c3 = np.uint64(block), np.uint64(number), np.uint64(particle), np.uint64(0)
     k0, k1 = key[0], key[1]
@@ -55,13 +58,13 @@ def random_words(key, particle, number, block):
 
 @helper
 def uniform(word):
-    """A number above 0 and below 1, from the 52 highest bits of a word."""
+    """Convert the 52 highest bits of a word to a number above 0 and below 1."""
     return (np.float64(word >> _SPARE) + 0.5) * 2.0**-52
 
 
 @kernel
 def log_of(x):
-    """ln x of a positive number, the same bits as `random.natural_log`."""
+    """Compute ln x of a positive number, to the same bits as `random.natural_log`."""
     mantissa, exponent = frexp(x)
     if mantissa < 0.7071067811865476:
         mantissa = 2.0 * mantissa
@@ -76,16 +79,21 @@ def log_of(x):
 
 @kernel
 def flux_speed(key, particle, number):
-    """The normal speed of a particle that leaves a wall, in units of sqrt(kT/m): of density v exp(-v^2/2)."""
+    """Draw the normal speed of a particle that leaves a wall, in units of sqrt(kT/m).
+
+    Its probability density is v exp(-v^2/2).
+    """
     word, _, _, _ = random_words(key, particle, number, 0)
     return sqrt(-2.0 * log_of(uniform(word)))
 
 
 @kernel
 def normal_pair(key, particle, number, block):
-    """Two standard normal numbers by Marsaglia's polar method, and the first block that they have not used.
+    """Draw two standard normal numbers by Marsaglia's polar method.
 
-    `block`: where to begin, at least 1, since `flux_speed` takes block 0.
+    Also returns the first unused block of random words.
+
+    block : first block to use, at least 1, since `flux_speed` takes block 0
     """
     while True:
         words = random_words(key, particle, number, block)
@@ -98,7 +106,7 @@ def normal_pair(key, particle, number, block):
                 return u * factor, v * factor, block
 
 
-# Sine and cosine that are the same bits on every machine: by +, -, x and / alone.
+# Sine and cosine that have the same bits on every machine: by +, -, x and / alone.
 
 
 TURN = 6.283185307179586
@@ -110,13 +118,18 @@ COSINE_SERIES = (
     1.0, -1.0 / 2.0, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40320.0, -1.0 / 3628800.0, 1.0 / 479001600.0,
     -1.0 / 87178291200.0, 1.0 / 20922789888000.0,
 )  # fmt: skip
-"""Coefficients of the series in even powers, the sine's without its first factor: within an eighth of a turn
-of 0 what they leave out is below 1e-16."""
+"""Coefficients of the series in even powers; the sine's series lacks its first factor x.
+
+Within an eighth of a turn around 0 the truncation error is below 1e-16.
+"""
 
 
 @helper
 def sine_cosine(turns):
-    """sin and cos of 2 pi turns, to 3e-16: the series about the nearest quarter of a turn."""
+    """Compute sin and cos of 2 pi turns, to 3e-16.
+
+    The series is evaluated about the nearest quarter of a turn.
+    """
     quarter = floor(4.0 * turns + 0.5)
     x = TURN * (turns - 0.25 * quarter)
     square = x * x
@@ -136,12 +149,12 @@ def sine_cosine(turns):
     return -cosine, sine
 
 
-# The mass of a particle, whichever entry of the model knows it.
+# Mass of a particle, from the entry of the model that has it.
 
 
 @inner_kernel
 def mass_of(i, masses, law):
-    """The mass of a particle that can move, in the kernel's unit."""
+    """Return the mass of a particle that can move, in the kernel's unit."""
     if law is not None:
         return 1.0 / law.inverse_mass[i]
     if masses is not None:

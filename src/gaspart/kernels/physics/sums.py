@@ -1,10 +1,10 @@
-"""Exact sums of float64 numbers of any size, which do not depend on the order of adding.
+"""Exact sums of float64 numbers of any size, independent of the order of addition.
 
 A sum is a row of whole numbers, the digits of a number in base 2^32 (Kulisch, Computer Arithmetic and
 Validity (2013), ch. 8): digit n counts units of 2^(32 n - 1074), so that the digits hold every float64. Each
-term is added to three of them, without a carry. The last number of a row counts the terms since carries were
-made, which are made in time: nothing overflows, and nothing is rounded. Sums of threads are added digit by
-digit.
+term is added to three of them, without a carry. The last number of a row counts the terms since the last
+carry; carries are made in time, so that nothing overflows and nothing is rounded. Sums of threads are added
+digit by digit.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from gaspart.kernels.compile.policy import inner_helper, kernel
 
 DIGITS = 68
 WIDTH = DIGITS + 1
-"""Whole numbers of a sum: its digits, of which the last has the sign, and the count of terms."""
+"""Number of whole numbers of a sum: its digits, the last of which has the sign, and the count of terms."""
 _BITS, _LOWEST = 32, -1074
 _MASK, _FRACTION, _HIDDEN, _EXPONENT = 2**32 - 1, 2**52 - 1, 2**52, 2**11 - 1
 _MOST_TERMS = 2**29  # a term adds less than 2^33 to a digit
 UNITS = np.array([math.ldexp(1.0, _BITS * n + _LOWEST) if n < 66 else 0.0 for n in range(DIGITS)])
-"""The units of the digits; those of the highest two, which only carries reach, are above any float64."""
+"""Units of the digits; the units of the highest two, which only carries reach, are above any float64."""
 
 
 @inner_helper
 def carry(total):
-    """Bring each digit of a sum but the last into 0 to 2^32 - 1."""
+    """Carry, so that each digit of a sum except the last is from 0 to 2^32 - 1."""
     above = np.int64(0)
     for n in range(DIGITS - 1):
         digit = total[n] + above
@@ -63,7 +63,7 @@ def add_exact(total, x):
 
 @inner_helper
 def _magnitude(total):
-    """Make the digits of a sum those of its absolute value. Returns its sign."""
+    """Replace the digits of a sum by the digits of its absolute value; return its sign."""
     carry(total)
     if total[DIGITS - 1] >= 0:
         return 1.0
@@ -75,7 +75,7 @@ def _magnitude(total):
 
 @inner_helper
 def _two_sum(a, b):
-    """a + b, rounded, and the rounding error."""
+    """Return a + b, rounded, and the rounding error."""
     total = a + b
     added = total - a
     return total, (a - (total - added)) + (b - added)
@@ -83,8 +83,10 @@ def _two_sum(a, b):
 
 @kernel
 def join(parts, total):
-    """total (K, WIDTH) becomes the sum of parts (threads, K, WIDTH), with its carries made: it depends on the
-    value of the sum alone."""
+    """Set total (K, WIDTH) to the sum of parts (threads, K, WIDTH), with carries.
+
+    The digits then depend only on the value of the sum.
+    """
     total[...] = 0
     for part in range(parts.shape[0]):
         for k in range(parts.shape[1]):
@@ -96,8 +98,12 @@ def join(parts, total):
 
 @kernel
 def evaluate(sums, units, found):
-    """found (K, 2) becomes the values of sums (K, WIDTH), whose digits are used up: the nearest float64, and
-    what remains, to 2^-64 of it. units: `UNITS`."""
+    """Set found (K, 2) to the values of sums (K, WIDTH), whose digits are overwritten.
+
+    A value is the nearest float64, and the remainder, to 2^-64 of the value.
+
+    units : `UNITS`
+    """
     for k in range(len(sums)):
         total = sums[k]
         sign, top = _magnitude(total), DIGITS - 1
@@ -115,14 +121,14 @@ def evaluate(sums, units, found):
 
 
 def joined(parts: np.ndarray) -> np.ndarray:
-    """(..., WIDTH) the sum over threads of (threads, ..., WIDTH)."""
+    """Return the sum (..., WIDTH) over threads of (threads, ..., WIDTH)."""
     total = np.empty(parts.shape[1:], np.int64)
     join(parts.reshape(len(parts), -1, WIDTH), total.reshape(-1, WIDTH))
     return total
 
 
 def exact_parts(parts: np.ndarray) -> np.ndarray:
-    """(..., 2) what (threads, ..., WIDTH) have summed: the nearest float64, and what remains."""
+    """Return the values (..., 2) of sums (threads, ..., WIDTH): nearest float64 and remainder."""
     total = joined(parts)
     found = np.empty((*total.shape[:-1], 2))
     evaluate(total.reshape(-1, WIDTH), UNITS, found.reshape(-1, 2))
@@ -131,10 +137,11 @@ def exact_parts(parts: np.ndarray) -> np.ndarray:
 
 # Running sums of the tally: as accurate after 1e10 events as after 1e6.
 #
-# A plain sum in float64 loses digits as it grows. The event-driven engine adds in one fixed order and keeps
-# the rounding error of each addition beside the sum (Neumaier, ZAMM 54, 39 (1974)). The time-stepped engine
-# adds in an order that depends on slots and threads, so it sums integers, for which no order matters.
-# Both forms are two numbers; both belong to the checkpoint, and do not depend on where a run is split.
+# A plain sum in float64 loses digits as it grows. The event-driven engine adds in one fixed order and stores
+# the rounding error of each addition in addition to the sum (Neumaier, ZAMM 54, 39 (1974)). The time-stepped
+# engine adds in an order that depends on slots and threads, so it sums integers, for which the order does not
+# matter. Both forms are two numbers; both belong to the checkpoint, and do not depend on where a run is
+# split.
 
 
 _COARSE, _FINE = 2.0**-28, 2.0**-57  # of the largest term: each holds 2^35 such terms in 64 bits
@@ -142,10 +149,10 @@ _COARSE, _FINE = 2.0**-28, 2.0**-57  # of the largest term: each holds 2^35 such
 
 @inner_helper
 def add(sums, n, x):
-    """Add x to sums (K, 2), at n: the sum, and the sum of its rounding errors, which are exact (Knuth, The
-    Art of Computer Programming 2, 4.2.2).
+    """Add x to sums (K, 2), at n: the sum, and the sum of its rounding errors.
 
-    After M additions the relative error is at most 2^-53 + (M 2^-53)^2 of the sum of all |x|.
+    The rounding errors are exact (Knuth, The Art of Computer Programming 2, 4.2.2). After M additions the
+    relative error is at most 2^-53 + (M 2^-53)^2 of the sum of all |x|.
     """
     before = sums[n, 0]
     after = before + x
@@ -156,10 +163,12 @@ def add(sums, n, x):
 
 @inner_helper
 def add_whole(sum_, x, largest):
-    """Add x to a sum (2,) of integers: multiples of a coarse unit, and of a fine one for the remainder.
+    """Add x to a sum (2,) of integers: multiples of a coarse unit and of a fine unit.
 
-    largest: a power of two that few terms exceed, so that but for rint all here is exact, and the quotient
-    the same for all terms.
+    The fine unit counts the remainder.
+
+    largest : power of two that few terms exceed, so that all operations except rint are exact, and the
+        quotient is the same for all terms
     """
     units = x * (1.0 / largest / _COARSE)
     whole = np.rint(units)
@@ -168,15 +177,18 @@ def add_whole(sum_, x, largest):
 
 
 def values(sums: np.ndarray) -> np.ndarray:
-    """(...) what `add` has summed in (..., 2)."""
+    """Return the values (...) of sums (..., 2) of `add`."""
     return sums[..., 0] + sums[..., 1]
 
 
 def net(*sums: np.ndarray) -> float:
-    """The total of several such sums, rounded once: what remains when large sums cancel is exact."""
+    """Return the total of several sums, rounded once.
+
+    The remainder after large sums cancel is exact.
+    """
     return math.fsum(np.concatenate([one.ravel() for one in sums]))
 
 
 def whole_parts(sums: np.ndarray, largest: float) -> np.ndarray:
-    """(..., 2) what `add_whole` has summed in (..., 2), each part as a float64."""
+    """Convert sums (..., 2) of `add_whole` to float64, part by part."""
     return sums * np.array([largest * _COARSE, largest * _FINE])
