@@ -29,11 +29,11 @@ _numbers = itertools.count(_FIRST + int.from_bytes(os.urandom(7), "big"))
 
 @contextmanager
 def _own_numbers() -> Iterator[None]:
-    """Number the functions compiled meanwhile, functions of numba included, as no other process does.
+    """Give numbers to the functions compiled meanwhile that no other process gives.
 
-    numba numbers the functions of a process, so that functions of the same name get different names in
-    machine code. Translations of several processes meet in one kernel, so no two processes may count from the
-    same number.
+    Functions of numba are included. numba numbers the functions of a process, so that functions of the same
+    name get different names in machine code. Translations of several processes meet in one kernel, so no two
+    processes may count from the same number.
     """
     identity = core.bytecode.FunctionIdentity
     before, identity._unique_ids = identity._unique_ids, _numbers

@@ -47,7 +47,10 @@ def is_resting_on(support, i, row):
 
 @inner_helper
 def rests_on(i, row, gravity):
-    """Return True if a particle rests on, or slides along, a row of a wall under gravity."""
+    """Return True if a particle rests on, or slides along, a row of a wall.
+
+    Without gravity the result is False.
+    """
     if gravity is None:
         return False
     return is_resting_on(gravity.support, i, row)

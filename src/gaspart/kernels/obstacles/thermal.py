@@ -234,7 +234,10 @@ def collide_sticky(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def is_held(flights, i, axis, masses, law, faces, sticky):
-    """Return True if a particle sticks to a face across an axis, which absorbs its velocity there."""
+    """Return True if a particle sticks to a face across an axis.
+
+    The face absorbs its velocity along this axis.
+    """
     place = faces.place[i, axis]
     face = 2 * axis + (1 if place > 0 else 0)
     if place == 0 or not sticky[face]:

@@ -55,7 +55,7 @@ def time_along(gap, speed, pull):
 
 @inner_helper
 def time_to_side(gap, closing, pull):
-    """Return the time until a particle touches the side that it is on; inf if it never does.
+    """Return the time until a particle touches the side that it is on, or inf.
 
     gap : distance to the side
     closing : speed of approach
@@ -72,9 +72,10 @@ def time_to_side(gap, closing, pull):
 
 @inner_helper
 def time_to_far_side(gap, closing, pull):
-    """Return the time until a particle touches the side that it is not on yet (gap < 0).
+    """Return the time until a particle touches the side that it is not on, or inf.
 
-    It must pass the line, turn and come back. The arguments are explained in `time_to_side`.
+    The gap is negative. The particle must pass the line, turn and come back. The arguments are explained in
+    `time_to_side`.
     """
     if closing >= 0.0 or pull <= 0.0:
         return inf

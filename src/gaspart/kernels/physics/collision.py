@@ -153,7 +153,10 @@ def rub(velocity, mobility, lever, tangential, law, tally):
 
 @inner_helper
 def add_spin(flights, i, normal, impulse, law):
-    """Add the spin due to an impulse (3,) at the surface point `normal` (Spencer 2022, Eq. 26)."""
+    """Add the spin due to an impulse (3,) at a surface point (Spencer 2022, Eq. 26).
+
+    normal : unit vector towards the point
+    """
     factor = flights[i].radius * law.inverse_inertia[i]
     law.spins[i, 0] += factor * (normal[1] * impulse[2] - normal[2] * impulse[1])
     law.spins[i, 1] += factor * (normal[2] * impulse[0] - normal[0] * impulse[2])
@@ -264,7 +267,10 @@ def meets_fixed(i, j, law):
 
 @inner_helper
 def exchange_momentum(flights, i, j, rr, rv, model, tally, law):
-    """Apply the collision law to a pair in contact, or an elastic collision; return |r . dp|."""
+    """Apply the collision law to a pair in contact; return |r . dp|.
+
+    Without a law the collision is elastic.
+    """
     if law is None:
         return collide_smooth(flights, i, j, rr, rv, model.space, model.masses)
     return collide_by_law(flights, i, j, rr, rv, model.space, tally, law)

@@ -16,7 +16,7 @@ from gaspart.kernels.physics.sums import add
 
 @helper
 def contact_root(rr, rv, vv, ss):
-    """Return the time of first touch of an approaching pair (rv < 0) on a collision course.
+    """Return the time of first touch of a pair on a collision course (rv < 0).
 
     This is the smaller root of vv t^2 + 2 rv t + (rr - ss) = 0, in the form without cancellation t = c/(-b +
     sqrt(b^2 - ac)) (Spencer 2022, Eq. 21). It is negative for a pair that overlaps already: the touch was
@@ -31,7 +31,7 @@ def time_to_contact(rr, rv, vv, ss):
     """Return the time until a pair touches; inf if it never does.
 
     For a pair that touches or overlaps and approaches it is 0. Overlap due to rounding is never allowed to
-    grow: a touching, approaching pair collides now (Bannerman, Strobl, Formella & Poeschel, Comput. Part.
+    grow. So a touching, approaching pair collides now (Bannerman, Strobl, Formella & Poeschel, Comput. Part.
     Mech. 1, 191 (2014)).
     """
     c = rr - ss
@@ -44,19 +44,20 @@ def time_to_contact(rr, rv, vv, ss):
 
 @helper
 def exchange_equal(rr, rv):
-    """Return the factor k of an elastic contact of equal masses: v1 += k r, v2 -= k r.
+    """Return the factor k of an elastic contact of equal masses.
 
-    It is computed with the true r.r, not sigma^2, so that the energy does not depend on the contact's error.
+    The velocities change by v1 += k r, v2 -= k r. The factor is computed with the true r.r, not sigma^2, so
+    that the energy does not depend on the contact's error.
     """
     return rv / rr
 
 
 @helper
 def exchange(rr, rv, mass1, mass2):
-    """Return the factors k1, k2 of an elastic contact: v1 += k1 r, v2 -= k2 r.
+    """Return the factors k1, k2 of an elastic contact.
 
-    This is Spencer 2022, Eq. 39, for smooth particles, written with 2 m2/(m1 + m2), in which no mass is lost
-    however large the ratio.
+    The velocities change by v1 += k1 r, v2 -= k2 r. This is Spencer 2022, Eq. 39, for smooth particles,
+    written with 2 m2/(m1 + m2), in which no mass is lost however large the ratio.
     """
     k = rv / rr
     total = mass1 + mass2

@@ -184,7 +184,10 @@ def nearest(gap, length, periodic):
 
 @inner_helper
 def row_of(i, row):
-    """Return the row of sums of a particle; `row` (N,) equals None if there is one row."""
+    """Return the row of sums of a particle.
+
+    `row` (N,) has the rows of the particles, or equals None if there is one row.
+    """
     if row is None:
         return 0
     return np.int64(row[i])
@@ -192,9 +195,10 @@ def row_of(i, row):
 
 @inner_helper
 def bin_at(place, bins):
-    """Return the bin of a position, which is counted in bins, and the fraction of the bin below it.
+    """Return the bin of a position, and the fraction of the bin below the position.
 
-    A position outside counts in the last bin on that side, by the same linear formula.
+    The position is counted in bins. A position outside counts in the last bin on that side, by the same
+    linear formula.
     """
     bin_ = min(max(np.int64(place), 0), bins - 1)
     return bin_, place - bin_

@@ -61,7 +61,7 @@ def shift_image(particles, i, axis, upper, model, tally, shear):
 
 @inner_kernel
 def time_of_sheared_contact(flights, i, j, image, offset, space, shear):
-    """Return the time at which two particles touch across a sheared face; inf if they do not.
+    """Return the time at which two particles touch across a sheared face, or inf.
 
     Particle j is in the images above (`image` 1) or below (-1), in any of the images along the flow. No image
     is touched before the distance of the centres across the flow equals the distance at contact. Then it is

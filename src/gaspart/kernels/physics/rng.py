@@ -1,7 +1,7 @@
-"""Random numbers in kernels, which depend only on a key, a particle and a number of its own count.
+"""Random numbers in kernels, functions of a key, a particle and its own count.
 
-So they do not depend on the order in which events are found. All results of the random words use only +, -,
-x, / and the square root, as in `random`.
+So they do not depend on the order in which events are found, nor on anything other than these numbers. All
+results of the random words use only +, -, x, / and the square root, as in `random`.
 """
 
 from __future__ import annotations

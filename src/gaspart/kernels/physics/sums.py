@@ -27,7 +27,7 @@ UNITS = np.array([math.ldexp(1.0, _BITS * n + _LOWEST) if n < 66 else 0.0 for n 
 
 @inner_helper
 def carry(total):
-    """Carry, so that each digit of a sum except the last is from 0 to 2^32 - 1."""
+    """Carry, so that each digit except the last is from 0 to 2^32 - 1."""
     above = np.int64(0)
     for n in range(DIGITS - 1):
         digit = total[n] + above
@@ -149,7 +149,7 @@ _COARSE, _FINE = 2.0**-28, 2.0**-57  # of the largest term: each holds 2^35 such
 
 @inner_helper
 def add(sums, n, x):
-    """Add x to sums (K, 2), at n: the sum, and the sum of its rounding errors.
+    """Add x to sums (K, 2), at n, and its rounding error to their second column.
 
     The rounding errors are exact (Knuth, The Art of Computer Programming 2, 4.2.2). After M additions the
     relative error is at most 2^-53 + (M 2^-53)^2 of the sum of all |x|.
@@ -163,7 +163,7 @@ def add(sums, n, x):
 
 @inner_helper
 def add_whole(sum_, x, largest):
-    """Add x to a sum (2,) of integers: multiples of a coarse unit and of a fine unit.
+    """Add x to a sum (2,) of integers: multiples of a coarse and a fine unit.
 
     The fine unit counts the remainder.
 

@@ -35,9 +35,10 @@ from gaspart.kernels.step.model import LOSS, VIRIAL
 
 @inner_helper
 def place_and_speed(particles, slot, ago, tally, impulses):
-    """Return a particle's position on its flight in the past, and its velocity at the end of the step.
+    """Return a particle's past position, and its velocity at the end of the step.
 
-    Both are along the axis of the impulses; they are 0 if no impulses are tallied.
+    The position is on its present flight. Both are along the axis of the impulses; they are 0 if no impulses
+    are tallied.
 
     ago : time before the end of the step, negative
     """
@@ -130,7 +131,7 @@ class Rules(NamedTuple):
 
 @inner_helper
 def is_free(particles, slot, rules):
-    """Return True if an ordinary particle cannot have hit a face or the edge of a well."""
+    """Return True if an ordinary particle cannot have hit a face or a well's edge."""
     free = True
     for k in range(particles.positions.shape[0]):
         x = particles.positions[k, slot]
@@ -265,9 +266,9 @@ def speed_at_face(flights, i, tally, impulses):
 
 @inner_helper
 def add_impulse_of_face(particles, slot, before, rules, tally, impulses):
-    """Add the impulse of a face that a particle has hit, at the present position of its flight.
+    """Add the impulse of a face at the present position of a particle.
 
-    before : velocity of the particle before the hit
+    before : velocity of the particle before it hit the face
     """
     if impulses is not None:
         flight = rules.flights[particles.index[slot]]

@@ -82,7 +82,7 @@ def gap_squared(particles, slot, boxes, axis, offset):
 
 @inner_kernel
 def is_out_of_reach(particles, slot, boxes, dx, dy, dz):
-    """Return True if a neighbouring box is too far from a particle to hold a partner's centre."""
+    """Return True if a neighbouring box is too far away to hold a partner's centre."""
     square = gap_squared(particles, slot, boxes, 0, dx - 1)
     square += gap_squared(particles, slot, boxes, 1, dy - 1)
     if particles.positions.shape[0] == 3:

@@ -99,7 +99,7 @@ class Search(NamedTuple):
 
 
 class Step(NamedTuple):
-    """One pass of a step.
+    """Pass of a step.
 
     Attributes
     ----------
@@ -189,7 +189,10 @@ class Found(NamedTuple):
 
 @inner_helper
 def part_of(part, parts, count):
-    """Return the first and the last index (exclusive) of one of `parts` equal slices of `count` items."""
+    """Return the first and the last index (exclusive) of an equal slice.
+
+    `count` items are divided into `parts` slices.
+    """
     return part * count // parts, (part + 1) * count // parts
 
 

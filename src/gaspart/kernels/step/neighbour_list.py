@@ -1,9 +1,10 @@
-"""Search of overlapping pairs by a neighbour list: all pairs nearer than a contact and a `skin`.
+"""Search of overlapping pairs by a neighbour list.
 
-The list is renewed when particles may have crossed the skin. An entry of the list is one word: a slot, the
-first of eight others in a row, and a mark for each of these that is near. So it is made, and searched, by
-loading eight particles at once. Entries are always written, and entries without a mark are removed later: a
-position that depends on the entry before would have to wait for it.
+The list has all pairs nearer than a contact and a `skin`. It is renewed when particles may have crossed the
+skin. An entry of the list is one word: a slot, the first of eight others in a row, and a mark for each of
+these that is near. So it is made, and searched, by loading eight particles at once. Entries are always
+written, and entries without a mark are removed later: a position that depends on the entry before would have
+to wait for it.
 """
 
 from __future__ import annotations
@@ -58,10 +59,10 @@ def _size(lanes: Lanes) -> Lanes:
 
 @intrinsic
 def nearer(typingctx, positions, radii, space, slot, skin, first):
-    """Return a bit for each of the eight slots from `first` on, lowest first, for near particles.
+    """Return a bit for each of the eight slots from `first` on.
 
-    A particle is near if its distance from the particle in `slot` is below a contact and the skin. See
-    `resolve.distance_squared`.
+    The lowest bit belongs to the first slot. A bit is set if the distance of the slot's particle from the
+    particle in `slot` is below a contact and the skin. See `resolve.distance_squared`.
     """
 
     def generate(context, builder, signature, arguments):
@@ -97,7 +98,10 @@ def nearer(typingctx, positions, radii, space, slot, skin, first):
 
 @intrinsic
 def equals(typingctx, values, first, value):
-    """Return a bit for each of eight values from `first` on, lowest first, that equals a value."""
+    """Return a bit for each of eight elements that is equal to a value.
+
+    The lowest bit belongs to the element `first`.
+    """
 
     def generate(context, builder, signature, arguments):
         values, first, value = arguments
@@ -114,9 +118,10 @@ def equals(typingctx, values, first, value):
 
 @intrinsic
 def compact_eight(typingctx, words, first, least, kept, number):
-    """Write those of eight words that are not less than `least` into `kept`; return their number.
+    """Write the ones of eight words that are not less than `least` into `kept`.
 
-    The words begin at index `first`, the result at index `number`. There must be space for eight.
+    Returns their number. The words begin at index `first`, the result at index `number`. There must be space
+    for eight.
     """
 
     def generate(context, builder, signature, arguments):

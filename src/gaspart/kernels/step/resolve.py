@@ -192,10 +192,10 @@ def in_order(index, pairs, times):
 
 @inner_helper
 def impulse_factors(rr, rv, mass1, mass2):
-    """Return the factors k1, k2 of an elastic contact (v1 += k1 r, v2 -= k2 r), and |r.p|.
+    """Return the factors k1, k2 of an elastic contact, and |r.p|.
 
-    Here p is the transferred momentum. The velocity of a particle of infinite mass does not change, where
-    `exchange` has no value.
+    The velocities change by v1 += k1 r, v2 -= k2 r, and p is the transferred momentum. The velocity of a
+    particle of infinite mass does not change, where `exchange` has no value.
     """
     if mass1 == np.inf:
         return rr - rr, (rv + rv) / rr, (mass2 + mass2) * abs(rv)

@@ -225,7 +225,7 @@ def is_outdated(particles, cells, space, threads):
 
 @inner_allocating_kernel
 def make_list(particles, cells, pairs, space, tally, threads):
-    """Make the list anew; return its pairs (threads, room), in the old array or a larger one."""
+    """Make the list anew; return its pairs (threads, room) in the same or a larger array."""
     sort_into_cells(particles, cells, threads)
     tests = np.zeros(len(pairs), np.int64)
     while True:
