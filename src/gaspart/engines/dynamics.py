@@ -1,4 +1,4 @@
-"""A scene in progress: what every engine gives, and what all share, checkpoints and optional tallies."""
+"""Interface of a scene in progress, and what all engines share: checkpoints and optional tallies."""
 
 from __future__ import annotations
 
@@ -22,15 +22,14 @@ from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
-# The events of a run as they happened.
+# Record of the events of a run.
 
 
 _ROOM = 4096  # capacity of the record, in events
 
 
 class EventLog:
-    """Events as they happened: particles, and their positions, velocities and, if wanted, spins just
-    after."""
+    """Record of events: particles, and positions, velocities and optionally spins just after them."""
 
     def __init__(self, dimension: int, spins: bool = False) -> None:
         from gaspart.kernels.event.pair_contact import Record
@@ -48,7 +47,7 @@ class EventLog:
         )
 
     def _copy(self, count: int) -> tuple[np.ndarray, ...]:
-        """The first events in the kernel's record; of spins in 2D the component normal to the plane."""
+        """Copy the first events of the kernel's record; in 2D, spins normal to the plane."""
         found = {key: getattr(self.room, key)[:count] for key in self._keys}
         if "spins" in found and self._dimension == 2:
             found["spins"] = found["spins"][..., 2]
@@ -64,22 +63,27 @@ class EventLog:
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """time (M,), particles (M, 2), positions and velocities (M, 2, d), and spins (M, 2) or (M, 2, 3).
+        """Recorded events, as arrays by name.
 
-        The second of `particles` is -1 - face for a hit at a wall, and the values of the second are NaN.
+        time : (M,)
+        particles : (M, 2); the second entry is -1 - face for a hit at a wall
+        positions, velocities : (M, 2, d); the second entry is NaN for a hit at a wall
+        spins : (M, 2) or (M, 2, 3)
         """
         parts = zip(*(self._parts or [self._copy(0)]), strict=True)
         return dict(zip(self._keys, map(np.concatenate, parts), strict=True))
 
 
-# The identity of a checkpoint: which simulation it belongs to, and whether it may be restored.
+# Identity of a checkpoint: the simulation to which it belongs, which decides whether it may be restored.
 
 
 def checkpoint_identity(
     scene: Scene, engine: Engine, seed: int | tuple[int, ...], initial: State | None = None
 ) -> dict[str, np.ndarray]:
-    """All that the results of a simulation depend on, as texts, by the keys of a checkpoint. initial: the
-    state at time 0, if it does not follow from the scene and the seed."""
+    """Return texts of all that the results of a simulation depend on, by checkpoint keys.
+
+    initial : state at time 0, if it does not follow from the scene and the seed
+    """
     settings = {key: x for key, x in engine_to_dict(engine).items() if key not in engine.neutral_settings}
     texts = {
         "version": __version__,
@@ -105,7 +109,7 @@ def _text(value: object) -> str:
 
 
 def check_identity(checkpoint: Any, wanted: Mapping[str, np.ndarray]) -> None:
-    """Raise SceneError, which names the difference, unless a checkpoint belongs to what is `wanted`."""
+    """Raise SceneError, which names the difference, unless a checkpoint has the `wanted` identity."""
     if not isinstance(checkpoint, Mapping) or not all(key in checkpoint for key in wanted):
         raise SceneError("checkpoint", checkpoint, "must be what Simulation.checkpoint has returned")
     for key, text in wanted.items():
@@ -117,7 +121,10 @@ def check_identity(checkpoint: Any, wanted: Mapping[str, np.ndarray]) -> None:
 
 
 def check_parts(parts: Mapping[str, np.ndarray], wanted: Mapping[str, np.ndarray]) -> None:
-    """Raise SceneError unless a checkpoint has all `wanted` arrays, each of its shape and kind of number."""
+    """Raise SceneError unless a checkpoint has all `wanted` arrays.
+
+    Each array must have the shape and the kind of number of the wanted one.
+    """
     for key, array in wanted.items():
         found = parts.get(key)
         alike = isinstance(found, np.ndarray) and found.shape == np.shape(array)
@@ -126,9 +133,9 @@ def check_parts(parts: Mapping[str, np.ndarray], wanted: Mapping[str, np.ndarray
 
 
 class Dynamics(ABC):
-    """A scene in progress under an engine.
+    """Scene in progress under an engine.
 
-    numbers: the attributes that are plain numbers, by their names in a checkpoint, which have no underscore.
+    numbers : names of the plain numbers in a checkpoint; the attributes have an underscore before the name
     """
 
     numbers: ClassVar[tuple[str, ...]]
@@ -138,27 +145,27 @@ class Dynamics(ABC):
     @property
     @abstractmethod
     def time(self) -> float:
-        """The time reached."""
+        """Time reached."""
 
     @property
     @abstractmethod
     def state(self) -> State:
-        """All particles now; a copy."""
+        """Copy of the present state of all particles."""
 
     @property
     @abstractmethod
     def tally(self) -> Tally:
-        """Counters and sums since the last `reset_tally`; a copy."""
+        """Copy of the counters and sums since the last `reset_tally`."""
 
     @property
     @abstractmethod
     def dissipated(self) -> float:
-        """The energy that contacts and thermal walls have taken since time 0, less what kicks have given."""
+        """Energy taken by contacts and thermal walls since time 0, minus the energy of kicks."""
 
     @property
     @abstractmethod
     def exchanged(self) -> float:
-        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
+        """Sum of the absolute energies exchanged by contacts and by each face since time 0."""
 
     @abstractmethod
     def advance(
@@ -168,10 +175,10 @@ class Dynamics(ABC):
         log: EventLog | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Advance to the time `until`, or by so many events or so much work, and record events in `log`.
+        """Advance to the time `until`, or by a number of events or of work.
 
-        Raises SceneError for a limit that the engine does not have, and SimulationError, with the state kept,
-        for a run that cannot go on.
+        Events are recorded in `log`. Raises SceneError for a limit that the engine does not have, and
+        SimulationError, with the state kept, for a run that cannot continue.
         """
 
     @abstractmethod
@@ -179,24 +186,30 @@ class Dynamics(ABC):
         """Begin to count from zero."""
 
     def _tally_part(self, name: str) -> TallyPart | None:
-        """The part of the optional tally of this name; None if it was not asked for."""
+        """Return the part of an optional tally, or None if it was not requested."""
         parts = (part for part in self._parts if isinstance(part, TallyPart))
         return next((part for part in parts if part.name == name), None)
 
     def sums_of(self, tally: str) -> np.ndarray:
-        """The sums of an optional tally, in one array. Raises KeyError if it was not asked for."""
+        """Return the sums of an optional tally in one array.
+
+        Raises KeyError if the tally was not requested.
+        """
         part = self._tally_part(tally)
         if part is None:
             raise KeyError(tally)
         return part.read(self._clock)
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        """All that a continuation to the same bits needs; copies."""
+        """Return copies of all data needed to continue to the same bits."""
         return {key: np.array(value) for key, value in self._kept().items()}
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Go on from a checkpoint of the same scene and engine, to the same bits whatever the settings that
-        change none. Raises SceneError, with nothing changed, for one that lacks an array."""
+        """Continue from a checkpoint of the same scene and engine, to the same bits.
+
+        Settings that change no bit may differ. Raises SceneError, with nothing changed, for a checkpoint that
+        lacks an array.
+        """
         needed = self._needed(checkpoint)
         check_parts(checkpoint, needed)
         for key, array in self._arrays().items():
@@ -207,23 +220,29 @@ class Dynamics(ABC):
         self._go_on(checkpoint)
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        """The arrays that a run changes and that a checkpoint has as they are, by name."""
+        """Return the arrays, by name, that a run changes and that a checkpoint stores unchanged."""
         return arrays_of(self._parts)
 
     def _kept(self) -> dict[str, Any]:
-        """All of a checkpoint."""
+        """Return all data of a checkpoint."""
         return {**{key: getattr(self, f"_{key}") for key in self.numbers}, **self._arrays()}
 
     def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """The arrays that `restore` needs of this checkpoint, of their shapes. Raises SceneError."""
+        """Return arrays of the shapes that `restore` needs from this checkpoint.
+
+        Raises SceneError for a damaged checkpoint.
+        """
         return self.checkpoint()
 
     @abstractmethod
     def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Make what follows from a checkpoint besides its arrays and numbers, which are in place."""
+        """Restore everything that follows from the arrays and numbers of a checkpoint.
+
+        The arrays and numbers are already in place.
+        """
 
 
-# The skeleton of engines that make steps: particles by slots, tallies by threads, whole numbers of steps.
+# Base of engines that make steps: particles by slots, tallies by threads, whole numbers of steps.
 
 
 _MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
@@ -231,11 +250,14 @@ _PLACED = ("slots", "positions", "velocities", "images")
 
 
 class SteppedDynamics(Dynamics):
-    """A scene under way by steps. A *slot* is a particle's present place in memory.
+    """Scene in progress by steps.
 
-    time_step: the length of a step; reference: a state of the same particles, whose time is that of the
-    start; unit_mass: that of the sums of energies. An engine has `_parts` too, and puts the particles into
-    their slots before the first step.
+    A *slot* is a particle's present position in memory. An engine also sets `_parts`, and places the
+    particles into their slots before the first step.
+
+    time_step : length of a step
+    reference : state of the same particles at the start time
+    unit_mass : unit of mass of the sums of energies
     """
 
     numbers: ClassVar[tuple[str, ...]] = ("steps", "since")
@@ -253,27 +275,31 @@ class SteppedDynamics(Dynamics):
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
     ) -> None:
-        """Put the particles into their slots: (N,) which particle is in each; the others (N, d)."""
+        """Place the particles into their slots.
+
+        slots : (N,), number of the particle in each slot
+        positions, velocities, images : (N, d)
+        """
 
     @property
     @abstractmethod
     def _slots(self) -> np.ndarray:
-        """(N,) which particle is in each slot."""
+        """Number of the particle in each slot, shape (N,)."""
 
     @property
     @abstractmethod
     def _positions(self) -> np.ndarray:
-        """(d, N) by slot."""
+        """Positions by slot, shape (d, N)."""
 
     @property
     @abstractmethod
     def _velocities(self) -> np.ndarray:
-        """(d, N) by slot."""
+        """Velocities by slot, shape (d, N)."""
 
     @property
     @abstractmethod
     def _images(self) -> np.ndarray:
-        """(d, N) by particle."""
+        """Periodic images by particle, shape (d, N)."""
 
     @abstractmethod
     def _advance_to(self, step: int) -> None:
@@ -281,42 +307,50 @@ class SteppedDynamics(Dynamics):
 
     @abstractmethod
     def _sums(self) -> dict[str, np.ndarray]:
-        """The arrays (threads, ...) that count, by their names in a checkpoint."""
+        """Return the arrays (threads, ...) with counts by their names in a checkpoint."""
 
     @abstractmethod
     def _counts(self) -> dict[str, Any]:
-        """The values of these sums, by the fields of `Tally`; without time, steps and the energy of faces."""
+        """Return the values of these sums by the fields of `Tally`.
+
+        Time, steps and the energy of faces are left out.
+        """
 
     @property
     @abstractmethod
     def _loss(self) -> np.ndarray:
-        """(K, 2) parts of the energy that contacts have taken since the tally began, in units of the unit
-        mass."""
+        """Energy taken by contacts since the tally began, in parts (K, 2).
+
+        The unit contains the unit mass.
+        """
 
     @property
     @abstractmethod
     def _heat(self) -> np.ndarray:
-        """(2d, 2) what each face was given by particles that left it at its temperature, likewise."""
+        """Energy given to each face by particles that left it at its temperature, shape (2d, 2).
+
+        The unit is the one of `_loss`.
+        """
 
     @property
     def _given(self) -> np.ndarray:
-        """(1, 2) the energy that kicks have given, likewise."""
+        """Energy given by kicks, shape (1, 2), in the unit of `_loss`."""
         return np.zeros((1, 2))
 
     @property
     def _progress(self) -> float:
-        """The number of steps made, with parts of one."""
+        """Number of steps made, including parts of a step."""
         return self._steps
 
     def _by_particle(self, values: np.ndarray, dtype: DTypeLike | None = None) -> np.ndarray:
-        """(N, d) of the particles in their own order, from (d, N) by slot."""
+        """Convert values (d, N) by slot to values (N, d) in the order of the particles."""
         found = np.empty(values.shape[::-1], dtype or values.dtype)
         found[self._slots] = values.T
         return found
 
     @property
     def time(self) -> float:
-        """The time reached, at the end of a step."""
+        """Time reached, at the end of a step."""
         return self._start + self._progress * self.time_step
 
     def advance(
@@ -328,7 +362,7 @@ class SteppedDynamics(Dynamics):
     ) -> None:
         """Step to the last whole step not after `until` (to within 1e-9 of a step).
 
-        Raises SceneError for what only the event-driven engine can do, count or record events, and for a time
+        Raises SceneError for limits or records of events, which need the event-driven engine, and for a time
         that is not within 2^53 steps; SimulationError if the particles are too fast for a step.
         """
         wanted = {
@@ -362,18 +396,18 @@ class SteppedDynamics(Dynamics):
 
     @property
     def dissipated(self) -> float:
-        """The energy that contacts and thermal walls have taken since time 0, less what kicks have given."""
+        """Energy taken by contacts and thermal walls since time 0, minus the energy of kicks."""
         return float(self._lost[0]) + net(self._loss, self._heat, -self._given) * self._unit_mass
 
     @property
     def exchanged(self) -> float:
-        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
+        """Sum of the absolute energies exchanged by contacts and by each face since time 0."""
         gross = net(self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
         return float(self._lost[1]) + gross * self._unit_mass + abs(net(self._given)) * self._unit_mass
 
     @property
     def state(self) -> State:
-        """All particles at the present time, in float64 whatever the precision."""
+        """State of all particles at the present time, in float64 for any precision."""
         state = replace(
             self._reference,
             time=self.time,
@@ -402,11 +436,11 @@ class SteppedDynamics(Dynamics):
         return {**super()._arrays(), "lost": self._lost}
 
     def _all_sums(self) -> dict[str, np.ndarray]:
-        """The arrays (threads, ...) that count, those of parts too."""
+        """Return the arrays (threads, ...) with counts, including the arrays of parts."""
         return {**self._sums(), **sums_of(self._parts)}
 
     def _joined(self, sums: np.ndarray) -> np.ndarray:
-        """The sum over threads, whatever their number, of an array (threads, ...) that counts."""
+        """Return the sum over threads of an array (threads, ...) with counts."""
         return np.asarray(sums.sum(axis=0))
 
     def _kept(self) -> dict[str, Any]:
@@ -426,5 +460,5 @@ class SteppedDynamics(Dynamics):
             sums[0] = checkpoint[key]
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Put the particles where they were; what this counts is overwritten."""
+        """Place the particles in their slots of a checkpoint; counts of this are overwritten."""
         self._place(*(checkpoint[key] for key in _PLACED))
