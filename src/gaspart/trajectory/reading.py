@@ -26,8 +26,10 @@ _REDUCED = {
     "1/picosecond": "1/time",
 }
 _UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum", *amber.INITIAL]
-"""Variables of a file that `open_trajectory` does not read: names of axes, what detects damage, and what
-belongs to its recipe."""
+"""Variables of a file that `open_trajectory` does not read.
+
+These are names of axes, checksums, and variables that belong to the recipe.
+"""
 GIVEN_START = "given_start"
 """Attribute of an open trajectory that starts from a given state."""
 _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "units" in field.metadata} | {
