@@ -371,7 +371,7 @@ class Simulation:
             raise
 
     def _warn_at_rest(self) -> None:
-        """Warn if all particles are at rest and the scene has nothing that sets them in motion."""
+        """Warn if all particles are at rest and nothing in the scene moves them."""
         scene = self.scene
         moved = any(face.moves for face in scene.faces.values()) or scene.is_open or scene.moving_wall
         if self._moving or not scene.moving_count or scene.gravity or scene.thermostat or moved:

@@ -30,7 +30,10 @@ _MERGING = object()  # marks the key <<
 
 
 def read_yaml(path: str | Path) -> Any:
-    """The content of a YAML file. Raises SceneError, naming the file, if it cannot be read."""
+    """Return the content of a YAML file.
+
+    Raises SceneError, naming the file, if it cannot be read.
+    """
     try:
         with open_regular(os.fspath(path)) as file:  # not Path, which accepts `file.yaml/`
             text = file.read(MOST_BYTES + 1).decode("utf-8")
@@ -44,7 +47,10 @@ def read_yaml(path: str | Path) -> Any:
 
 
 def parse_yaml(text: str, name: str = "YAML") -> Any:
-    """The content of a YAML text. Raises SceneError, naming `name`, line and column."""
+    """Return the content of a YAML text.
+
+    Raises SceneError, naming `name`, line and column.
+    """
     import yaml
 
     if not isinstance(text, str):
@@ -79,12 +85,15 @@ def write_yaml(path: str | Path, content: object) -> None:
 
 
 def is_exponential(text: str) -> bool:
-    """Whether this is a number here, but text in YAML 1.1, such as 1e3."""
+    """Return True for a number here that is text in YAML 1.1, such as 1e3."""
     return bool(_NUMBERS.match(text)) and len(text) <= _LONGEST_NUMBER
 
 
 def _with_exponents(base: Any) -> Any:
-    """A loader or dumper that reads 1e3 and 1.5e3 as numbers, which are text in YAML 1.1."""
+    """Return a loader or dumper that reads 1e3 and 1.5e3 as numbers.
+
+    They are text in YAML 1.1.
+    """
     made: Any = type("WithExponents", (base,), {})
     made.add_implicit_resolver(_SCALARS[-1], _NUMBERS, list("-+.0123456789"))
     return made
@@ -109,7 +118,7 @@ def _error(mark: yaml.Mark, value: object, rule: str) -> SceneError:
 
 
 class _Open:
-    """A list or mapping whose end has not been read."""
+    """List or mapping whose end has not been read."""
 
     def __init__(self, content: list | dict, start: yaml.CollectionStartEvent) -> None:
         self.content, self.start = content, start
@@ -118,7 +127,7 @@ class _Open:
         self.merged: dict[str, Any] = {}
 
     def close(self) -> list | dict:
-        """The content; what the mapping itself holds replaces what is merged into it."""
+        """Return the content; the mapping's own entries replace merged entries."""
         return {**self.merged, **self.content} if self.merged else self.content  # type: ignore[dict-item]
 
 
@@ -135,7 +144,7 @@ class _Document:
         self._open: list[_Open] = []
 
     def read(self) -> Any:
-        """The content. Raises SceneError with line and column, or yaml.YAMLError."""
+        """Return the content. Raises SceneError with line and column, or yaml.YAMLError."""
         yaml = self._yaml
         while True:
             event = self._loader.get_event()
@@ -222,7 +231,7 @@ class _Document:
             top.merged.update(part)
 
     def _copy(self, value: Any, depth: int, mark: yaml.Mark) -> Any:
-        """A copy of an alias's value; its values count like written ones."""
+        """Return a copy of an alias's value; its values count like written ones."""
         self._count(depth, mark)
         self._copies += 1
         if self._copies > MOST_COPIES:

@@ -38,7 +38,7 @@ FACES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 COMPONENTS = ("all", "normal")
 WAVEFORMS = ("sine", "sawtooth")
 FLOW, GRADIENT = 0, 1
-"""The axes of the flow of a sheared gas and of its gradient."""
+"""Axes of the flow of a sheared gas and of its gradient."""
 
 
 FACE_KINDS: dict[str, type[Surface]] = {}
@@ -47,7 +47,7 @@ FACE_KINDS: dict[str, type[Surface]] = {}
 
 @dataclass(frozen=True)
 class Surface:
-    """A kind of face; a class derived from it is registered by its `kind`.
+    """Kind of face; a class derived from it is registered by its `kind`.
 
     `moves` is True if the face moves by itself. Only the event-driven engine has such faces.
     """
@@ -703,7 +703,7 @@ SCHEMA = {
         ]
     },
 }
-"""The JSON schema of the faces of a scene, by name."""
+"""JSON schema of the faces of a scene, by name."""
 
 
 def surface_from_dict(mapping: object, where: str) -> Surface:

@@ -1,7 +1,7 @@
-"""The simulated system: a container and its contents, without any computed result.
+"""Simulated system: a container and its contents, without any computed result.
 
-A `Scene` is immutable and validated once, when it is created. Lengths and times are in the scene's own
-units; masses are relative to the reference species; k_B = 1.
+A `Scene` is immutable and validated once, when it is created. Lengths and times are in the scene's own units;
+masses are relative to the reference species; k_B = 1.
 """
 
 from __future__ import annotations
@@ -225,7 +225,10 @@ class Scene(Facts):
         check_room(self.container, self.centres_to_walls, key, thing)
 
     def _check_particle(self, n: int, particle: Particle, earlier: Nearby) -> None:
-        """Raise SceneError for a particle that is not inside, or overlaps a wall or an earlier particle."""
+        """Raise SceneError for a particle that is outside, or overlaps a wall or another particle.
+
+        Only earlier particles count.
+        """
         where = f"particles[{n}]"
         finite_vector(f"{where}.position", particle.position, self.dimension)
         finite_vector(f"{where}.velocity", particle.velocity, self.dimension)

@@ -68,7 +68,10 @@ def _log(x: np.ndarray) -> np.ndarray:
 
 
 def normal_quantile(p: np.ndarray) -> np.ndarray:
-    """The standard normal number below which lies the probability p in (0, 1), by Wichura's AS 241."""
+    """Return the quantile of the standard normal distribution, by Wichura's AS 241.
+
+    p : probability in (0, 1)
+    """
     import numpy as np
 
     def ratio(parts: tuple[tuple[float, ...], tuple[float, ...]], x: np.ndarray) -> np.ndarray:
@@ -83,8 +86,11 @@ def normal_quantile(p: np.ndarray) -> np.ndarray:
 
 @lru_cache(maxsize=16)
 def relative_radii(count: int, polydispersity: float, distribution: str) -> np.ndarray:
-    """(count,) radii over their mean in falling order: the quantiles at (k + 1/2) / count, k = 0, 1 ..., of a
-    distribution of this standard deviation, scaled so that their mean is 1."""
+    """Return the radii (count,) divided by their mean, in falling order.
+
+    They are the quantiles at (k + 1/2) / count, k = 0, 1 ..., of a distribution of this standard deviation,
+    scaled so that their mean is 1.
+    """
     import numpy as np
 
     p = (np.arange(count - 1, -1, -1) + 0.5) / max(count, 1)
