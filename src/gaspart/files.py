@@ -181,7 +181,7 @@ def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = Fa
 
 
 def whole_file(path: str | Path) -> AbstractContextManager[Path]:
-    """`writing` for a declared output of the workflow, which may replace any file."""
+    """Perform `writing` for a declared output of the workflow, which may replace any file."""
     return writing(path, overwrite=True)
 
 

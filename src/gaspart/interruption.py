@@ -47,7 +47,7 @@ class Deferral:
         self.handlers: dict[int, Callable | int] = {}
 
     def receive(self, signum: int, frame: object = None) -> None:
-        """Remember a signal: the handler while the work is under way."""
+        """Record a signal: the handler while the work is in progress."""
         self.pending, self.since = signum, time.monotonic()
 
     def deliver(self) -> None:

@@ -29,7 +29,7 @@ _position = threading.Lock()
 
 
 def memory() -> int | None:
-    """Bytes of this machine's memory; None where the system does not tell, as on Windows."""
+    """Return the bytes of this machine's memory; None if unknown, as on Windows."""
     try:
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, ValueError, OSError):
@@ -106,7 +106,10 @@ def path_for_others(file: IO[bytes]) -> str:
 
 
 def read_at(descriptor: int, size: int, offset: int) -> bytes:
-    """Up to `size` bytes from `offset` on; the position in the file stays. May raise OSError."""
+    """Read up to `size` bytes from `offset` on; the position in the file stays.
+
+    May raise OSError.
+    """
     if hasattr(os, "pread"):
         return os.pread(descriptor, size, offset)
     with _position:
@@ -133,7 +136,7 @@ def write_at(descriptor: int, data: bytes, offset: int) -> None:
 
 
 def rename_to_new(old: Path, new: Path) -> None:
-    """Rename a file or folder without replacing one. Raises FileExistsError where there is one."""
+    """Rename a file or folder without replacing one. Raises FileExistsError if there is one."""
     if not POSIX:  # where this never replaces
         os.rename(old, new)
         return

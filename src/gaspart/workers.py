@@ -107,7 +107,7 @@ class _Worker:
             self.connection.send_bytes(pickle.dumps((function, arguments)))
 
     def receive(self, received: Callable[[int, Any], None] | None) -> bool:
-        """Take what it has sent; returns whether it goes on."""
+        """Receive a message of the process; return False if it has ended."""
         try:
             is_result, content = self.connection.recv()
         except (EOFError, OSError):

@@ -72,7 +72,7 @@ def parse_yaml(text: str, name: str = "YAML") -> Any:
 
 
 def dump_yaml(content: object) -> str:
-    """`content` as YAML text, keys in their own order."""
+    """Return `content` as YAML text, with keys in their own order."""
     import yaml
 
     return yaml.dump(content, Dumper=_dumper(), sort_keys=False, default_flow_style=None)
@@ -223,7 +223,7 @@ class _Document:
 
     @staticmethod
     def _merge(top: _Open, value: Any, mark: yaml.Mark) -> None:
-        """Take over a mapping, or a list of them of which the first ones take precedence."""
+        """Merge a mapping, or a list of mappings of which the first take precedence."""
         parts = value if isinstance(value, list) else [value]
         if top.merged or not all(isinstance(part, dict) for part in parts):
             raise _error(mark, value, "<< must be given once, with a mapping or a list of mappings")

@@ -1,4 +1,4 @@
-"""All functions that numba compiles, and no other code.
+"""Functions compiled by numba, and no other code.
 
 The compile policy and the digest of the cache apply to this folder.
 """

@@ -15,7 +15,7 @@ from gaspart.kernels.obstacles.interior_wall import to_wall
 from gaspart.kernels.physics.flight import box_coordinate
 
 BLOCK = 256  # trials of one block
-PLACES = 4  # of a box, for particles that are read in one go
+PLACES = 4  # particles of a box that are read at once
 _NEAREST = (0, 1, 2, 4, 3, 5, 6, 7)
 """Boxes around the corner nearest to a trial, with a bit for each axis along which a box is not its own box.
 
@@ -209,7 +209,7 @@ def reject_overlapping(count, radius, placed, boxes, block):
                 n = block.remaining[m]
                 block.remaining[kept] = n
                 kept += not overlaps_near(block.places[n], radius, block.box[m], placed, boxes.periods)
-            if kept > 0.9 * number:  # so thin a gas that a complete test of each trial costs less
+            if kept > 0.9 * number:  # in a thin gas a complete test of each trial costs less
                 return kept
             number = kept
     return number

@@ -23,10 +23,10 @@ NONE = -1  # no particle, no face
 BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES more for those between boxes,
 WELL_EDGES = 12  # WELL_EDGES more for the edges of the wells at the container's faces,
 WALLS = 18  # and from here on the rows of interior walls
-NUMBER_BITS = 26  # of a particle's number where a search lists it beside its image
-IMAGE_BITS = 2  # above them, for each axis: the image, signed
-HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON, OPEN = range(7)  # of `obstacles.face.RULES`
-PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # of Piston.motion and MovingWall.motion
+NUMBER_BITS = 26  # bits of a particle's number in a candidate of a search, below its image
+IMAGE_BITS = 2  # bits of the image along each axis, above the number, signed
+HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON, OPEN = range(7)  # codes of `obstacles.face.RULES`
+PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # entries of Piston.motion and MovingWall.motion
 
 
 def flight_dtype(dimension: int) -> np.dtype:
@@ -48,16 +48,16 @@ def flight_dtype(dimension: int) -> np.dtype:
 
 PREDICTION = np.dtype(
     [
-        ("contact_time", "f8"),  # time of the next contact predicted, with
-        ("face_time", "f8"),  # time of the next face, edge of a well or interior wall, and
-        ("predicted", "i8"),  # the event count at which the contact was predicted,
-        ("changed", "i8"),  # and that at which this particle's flight last changed
-        ("partner", "i4"),  # the particle met,
-        ("face", "i4"),  # the code of the face
+        ("contact_time", "f8"),  # predicted time of the next contact
+        ("face_time", "f8"),  # predicted time at the next face, edge of a well or interior wall
+        ("predicted", "i8"),  # event count at which the contact was predicted
+        ("changed", "i8"),  # event count at the last change of this particle's flight
+        ("partner", "i4"),  # partner of the contact
+        ("face", "i4"),  # code of the face
         ("box", "i4", 3),  # coordinates of the particle's box
-        ("before", "i4"),  # its neighbours in its bucket of the queue,
+        ("before", "i4"),  # neighbours in its bucket of the queue: before, after
         ("after", "i4"),
-        ("bucket", "i4"),  # which is this one, or -1
+        ("bucket", "i4"),  # bucket of the queue, or -1
     ],
     align=True,
 )

@@ -367,8 +367,8 @@ class Facts:
     def flow_axes(self) -> tuple[int, ...]:
         """Axes along which the velocity of the gas may vary.
 
-        There are none if the gas moves only as a whole. A wind, which no key states but a run has, is added
-        by `analysis.flow`.
+        If the gas moves only as a whole, no axis is listed. A wind, which no key states but a run has, is
+        added by `analysis.flow`.
         """
         if self.flow_changes:
             return self.moving_axes or self.open_axes

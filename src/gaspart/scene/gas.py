@@ -33,12 +33,12 @@ class Gas:
 
     @property
     def thermal_speed(self) -> float:
-        """sqrt(k_B T / m)."""
+        """Thermal speed sqrt(k_B T / m)."""
         return math.sqrt(self.temperature / self.mass)
 
     @property
     def particle(self) -> dict[str, float]:
-        """diameter, temperature and mass, as keyword arguments of the functions of `gaspart.theory`."""
+        """Diameter, temperature and mass, as keyword arguments of the functions of `gaspart.theory`."""
         return {"diameter": self.diameter, "temperature": self.temperature, "mass": self.mass}
 
     @property
@@ -83,7 +83,7 @@ class Mixture:
 
 
 def mixture_of(scene: Scene) -> Mixture | None:
-    """See `Scene.mixture`."""
+    """Return the mixture of a scene, see `Scene.mixture`."""
     counts, diameters, masses = [], [], []
     kinds = [kind for kind in scene.kinds if kind.count]
     for kind in kinds:

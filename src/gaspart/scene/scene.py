@@ -48,7 +48,7 @@ from gaspart.yaml_text import read_yaml, write_yaml
 THUMBNAIL = (480, 360)
 """Pixels of a picture that a notebook shows for a scene."""
 DRAWN = 20_000
-"""The most particles that such a picture has: those of a scene must be placed before."""
+"""Maximum number of particles of such a picture: the particles of a scene must be placed before."""
 _ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # not written into a file unless there
 
 
@@ -187,7 +187,7 @@ class Scene(Facts):
             return
 
     def wall_at(self, position: tuple[float, ...], radius: float) -> str | None:
-        """Return the key of an interior wall that a particle overlaps; None if it overlaps no wall.
+        """Return the key of an interior wall that a particle overlaps, or None.
 
         Parameters
         ----------

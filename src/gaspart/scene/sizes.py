@@ -44,7 +44,7 @@ _FAR = (
 
 
 def _exp(x: np.ndarray) -> np.ndarray:
-    """e^x, by its series."""
+    """Compute e^x by its series."""
     import numpy as np
 
     power = np.rint(x / _LN2)
@@ -56,7 +56,7 @@ def _exp(x: np.ndarray) -> np.ndarray:
 
 
 def _log(x: np.ndarray) -> np.ndarray:
-    """ln x, by Halley's iteration, which triples the number of correct digits."""
+    """Compute ln x by Halley's iteration, which triples the number of correct digits."""
     import numpy as np
 
     mantissa, exponent = np.frexp(x)

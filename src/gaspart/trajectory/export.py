@@ -63,7 +63,7 @@ _SYMBOLS = (
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A frame of a trajectory, with N particles.
+    """Frame of a trajectory, with N particles.
 
     Attributes
     ----------

@@ -22,9 +22,9 @@ from gaspart.kernels.compile.cache import load_numba
 numba: Any = load_numba()
 types: Any = numba.types
 
-_UNKNOWN = None  # the type of what is not an argument, nor an entry of one
+_UNKNOWN = None  # type of an expression that is neither an argument nor an entry of an argument
 _MATTER = types.NamedTuple, types.NoneType
-Use = dict  # by name of an entry, what of it is used; {} if no more than whether it is None
+Use = dict  # uses of an entry by its name; {} if only its comparison with None is used
 WHOLE: Use = {"*": {}}
 
 
@@ -43,7 +43,7 @@ class Narrowed(types.NamedTuple):
 
     def __init__(self, kinds: list, instance_class: type) -> None:
         super().__init__(kinds, instance_class)
-        # numba takes what is before the parenthesis for the name of the class, in loops that threads share
+        # numba takes the text before the parenthesis for the class name, in loops shared by threads
         self.name = self.name.replace("(", "(narrowed: ", 1)  # type: ignore[has-type]
 
     def unify(self, context: Any, other: Any) -> Any:
@@ -237,7 +237,7 @@ class _Reader(ast.NodeVisitor):
         called = self.names.get(node.func.id) if isinstance(node.func, ast.Name) else None
         function = getattr(called, "py_func", None)
         kinds = tuple(map(self._type, node.args))
-        named = any(isinstance(kind, types.NamedTuple) for kind in kinds)  # others are used whole
+        named = any(isinstance(kind, types.NamedTuple) for kind in kinds)  # others are passed complete
         starred = any(isinstance(one, ast.Starred) for one in node.args)
         if function is None or not named or node.keywords or starred:
             self.generic_visit(node)

@@ -23,7 +23,7 @@ from gaspart.kernels.compile.narrowing import narrowed
 numba: Any = load_numba()
 core: Any = numba.core
 
-_FIRST = 2**32  # of the numbers below; numba counts from 1
+_FIRST = 2**32  # first number of gaspart; numba counts from 1
 _numbers = itertools.count(_FIRST + int.from_bytes(os.urandom(7), "big"))
 
 

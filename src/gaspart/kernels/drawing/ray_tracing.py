@@ -16,7 +16,7 @@ NOTHING, FLOOR, EDGE, SPHERE = 0, 2, 4, 6
 """Codes of the visible object of a pixel; sphere i is SPHERE + 2 i; 1 is added in the shadow."""
 
 _AMBIENT, _LAMP, _GLOSS = 0.55, 0.75, 0.18
-_HAZE = 0.22  # what the far end of the container loses of its colour
+_HAZE = 0.22  # fraction of its colour that the far end of the container loses
 _FLOOR_LIGHT, _EDGE_LIGHT = 0.72, 0.16
 _EDGE_PIXELS = 0.8  # half the width of the container's edges
 

@@ -326,7 +326,7 @@ def add_contact(particles, pair, apart, context, stress, law):
             cell[d * d + d * k + n] += apart[k] * gained
 
 
-_ROUNDED = 1.0 + 1e-12  # a chance above 1 by more than rounding
+_ROUNDED = 1.0 + 1e-12  # probability above 1 by more than rounding
 
 
 @inner_helper

@@ -48,9 +48,9 @@ from gaspart.kernels.dsmc.model import (
 from gaspart.kernels.physics.sums import add_exact
 
 FILLED, SURFACE = range(2)
-KIND_BLOCK = 255  # of a trial's random words: the partner's kind
+KIND_BLOCK = 255  # block of a trial's random words for the partner's kind
 _FULLEST = 0.7  # packing fraction up to which contact values are evaluated
-_ROUNDED = 1.0 + 1e-12  # a chance above 1 by more than rounding
+_ROUNDED = 1.0 + 1e-12  # probability above 1 by more than rounding
 
 
 class Dense(NamedTuple):

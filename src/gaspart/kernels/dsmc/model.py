@@ -19,7 +19,7 @@ from gaspart.kernels.physics.rng import LN2, LOG_SERIES, normal_pair
 from gaspart.kernels.physics.sums import add
 
 COLLISIONS, TRIALS, EXCEEDED, UNFINISHED, FAR = range(5)
-PADDED = 8  # counts of a thread, a cache line
+PADDED = 8  # number of counts of a thread, a cache line
 
 
 class Particles(NamedTuple):
@@ -209,7 +209,7 @@ def open_space(lengths):
 _M0, _M1 = np.uint64(0xD2511F53), np.uint64(0xCD9E8D57)
 _W0, _W1 = np.uint64(0x9E3779B9), np.uint64(0xBB67AE85)
 _LOW, _HALF, _ROUNDS = np.uint64(0xFFFFFFFF), np.uint64(32), 10
-_BLOCK_BITS = np.uint64(8)  # of the counter's last word; what is above counts steps
+_BLOCK_BITS = np.uint64(8)  # bits of the block in the counter's last word; the higher bits count steps
 _TABLE_BITS = 7
 _WORD = 2.0**-32
 

@@ -300,7 +300,7 @@ def finish_axis(axis, left, which, context, gravity):
         time, w = time_to_face(y, u, a)  # to the face across
         across, period = time < inf, 2.0 * time
         if not across:
-            period = 2.0 * speed / a  # the pull is towards this face, away from that one
+            period = 2.0 * speed / a  # the acceleration is towards this face, away from the face across
         if gravity is not None:
             if not period > left * 2.0**-53:
                 lean(face, which, left, context, gravity)

@@ -24,7 +24,7 @@ from gaspart.kernels.physics.flight import time_of_contact
 # Nearly all boxes hold few particles, and a search reads them at once, for any number of particles.
 
 
-CANDIDATES = 64  # gathered by a search before they are tested: a bit of a word for each
+CANDIDATES = 64  # candidates gathered before a test: a bit of a word for each
 _EMPTY = np.uint32(0xFFFFFFFF)
 
 
@@ -159,8 +159,8 @@ def sort_in(predictions, boxes):
 # Words are unsigned: numba converts signed words that are combined with these to real numbers.
 
 
-NUMBER = uint64((1 << NUMBER_BITS) - 1)  # the bits of a candidate that name the particle
-X, Y, Z = (uint64(NUMBER_BITS + IMAGE_BITS * k) for k in range(3))  # the first bit of the image along an axis
+NUMBER = uint64((1 << NUMBER_BITS) - 1)  # bits of a candidate with the number of the particle
+X, Y, Z = (uint64(NUMBER_BITS + IMAGE_BITS * k) for k in range(3))  # first bit of the image along an axis
 _IMAGE, _ONE = uint64((1 << IMAGE_BITS) - 1), uint64(1)
 _LOW = (_ONE << X) | (_ONE << Y) | (_ONE << Z)
 
@@ -315,7 +315,7 @@ def find_contact(particles, number, boxes, space, tally, crossed, gravity):
     low_z, end_z, visits_z, itself_z = span(boxes, 2, az, crossed[2], len(space.lengths))
     tally.counts[BOX_VISITS] += visits_x * visits_y * visits_z
     tally.counts[PAIR_TESTS] -= itself_x * itself_y * itself_z
-    within = crossed[0] == 0 and 0 < at[0] < boxes.per_side[0] - 1  # a row's three lie side by side
+    within = crossed[0] == 0 and 0 < at[0] < boxes.per_side[0] - 1  # the boxes of a row are adjacent in memory
     count = uint64(0)
     for dz in range(low_z, end_z):
         beside_z = neighbour[2, az, dz]

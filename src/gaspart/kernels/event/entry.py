@@ -18,7 +18,7 @@ from gaspart.kernels.obstacles.face import lowest_vacant, occupy
 from gaspart.kernels.physics.rng import flux_speed, log_of, mass_of, normal_pair, random_words, uniform
 from gaspart.kernels.physics.sums import add
 
-_PLACE, _VELOCITY = 0, 1  # which random words of an attempt
+_PLACE, _VELOCITY = 0, 1  # random words of an attempt
 
 
 @inner_helper

@@ -24,7 +24,7 @@ from gaspart.kernels.physics.contact import time_to_growing_contact, time_to_pla
 from gaspart.kernels.physics.flight import advance, encounter
 from gaspart.kernels.physics.sums import add
 
-_PART = 2.0**-30  # of the rate of growth: particles part at least so fast
+_PART = 2.0**-30  # minimum speed of separation, as a fraction of the rate of growth
 
 
 @inner_helper
@@ -60,7 +60,7 @@ def next_face(particles, i, boxes, space, rate):
             elif (v > 0.0) if upper else (v < 0.0):
                 plane = (at[k] + upper) * boxes.widths[k]
                 if at[k] + upper == boxes.per_side[k]:
-                    plane = space.lengths[k]  # exactly, whatever rounding makes of the boxes
+                    plane = space.lengths[k]  # exactly, for any rounding of the boxes
                 time = max(0.0, time_to_plane(x, v, plane))
             if flight.clock + time < soon:
                 soon = flight.clock + time

@@ -79,7 +79,7 @@ def tally_impulse(flights, i, before, model, impulses):
     """Add the impulse that has changed the velocity of a particle from `before`."""
     if impulses is not None:
         change = flights[i].velocity[impulses.axis] - before
-        if change != 0.0:  # one of infinite mass keeps its velocity
+        if change != 0.0:  # a particle of infinite mass keeps its velocity
             place = flights[i].position[impulses.axis] * impulses.per_length
             impulse = mass_of(i, model.masses, model.law) * change
             add_at(impulses.sums, row_of(i, impulses.row), place, impulse)
@@ -162,7 +162,7 @@ def separate(typingctx, flights, i, first, listed, vector, space, found):
 
 
 MEETING, OTHERS = range(2)
-_SLACK = 1.0 + 1e-9  # by which the search reaches farther, so that rounding hides no pair
+_SLACK = 1.0 + 1e-9  # extension of the search, so that rounding hides no pair
 
 
 class PairImpulses(NamedTuple):

@@ -33,8 +33,8 @@ from gaspart.kernels.physics.sums import add
 # Search for the particles of a scene under gravity that have come to rest.
 
 
-TOUCHES, MOVES, RESTS = range(3)  # what `find_resting` marks
-_PAUSE = 4.0  # contact durations: the longest time without a contact of a particle that others support
+TOUCHES, MOVES, RESTS = range(3)  # rows of marks of `find_resting`
+_PAUSE = 4.0  # longest time between contacts of a supported particle, in contact durations
 
 
 @inner_helper
@@ -171,8 +171,8 @@ def wake_island(flights, number, time, boxes, model, gravity, law):
 
 
 STAYS, HELD, PRESSED = range(3)  # marks (3, N): has not moved or is fixed; may be held; has many contacts
-_FAR = 8.0  # the speed of a contact that frees a jam, over that which frees a particle; heights are 64 times
-_OFTEN = 2.0**-3 * SHORTEST  # contact durations: a particle squeezed by a jam meets it sooner again
+_FAR = 8.0  # speed that frees a jam divided by the speed that frees a particle; heights: 64
+_OFTEN = 2.0**-3 * SHORTEST  # longest time between contacts of a squeezed particle, in contact durations
 
 
 class Line(NamedTuple):

@@ -21,7 +21,7 @@ from gaspart.kernels.event.simd import earliest, equal, nearer
 from gaspart.kernels.memory import WIDTH, aligned, lowest
 from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, PAIR_TESTS
 
-_FAR = 1e30  # an empty place of a cell
+_FAR = 1e30  # coordinate of an empty position of a cell
 _STILL = 1e-280  # squared speeds below which a particle does not move
 
 LISTED = np.dtype([("centre", "f8", 3), ("cell", "u4"), ("place", "u4")], align=True)
@@ -247,7 +247,7 @@ def list_near(lists, i, lengths, both):
     point = centre[0], centre[1], centre[2]
     ax, ay = uint64(cell_along(lists, 0, point[0])), uint64(cell_along(lists, 1, point[1]))
     az = uint64(cell_along(lists, 2, point[2])) if len(lengths) == 3 else uint64(0)
-    within = 0 < ax < lists.per_side[0] - 1  # a row's three cells lie side by side
+    within = 0 < ax < lists.per_side[0] - 1  # the three cells of a row are adjacent in memory
     for dz in range(uint64(0), uint64(3)):
         z, shift_z = neighbour[2, az, dz], shift[2, az, dz]
         if z < 0:

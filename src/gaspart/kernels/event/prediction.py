@@ -30,7 +30,7 @@ from gaspart.kernels.physics.flight import mark_resting, time_of_contact
 # have become near.
 
 
-_SLACK = 1e-9  # by which neighbourhoods are drawn wider, so that rounding hides no contact
+_SLACK = 1e-9  # relative extension of neighbourhoods, so that rounding hides no contact
 
 
 @inner_helper

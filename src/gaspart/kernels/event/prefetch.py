@@ -16,12 +16,12 @@ from gaspart.kernels.event.queue import BUCKET
 from gaspart.kernels.memory import TOGETHER, fetch, fetch_numbered, fetch_two
 from gaspart.kernels.model import BOX_FACES, WELL_EDGES
 
-CACHED = 1 << 15  # particles up to which the nearer caches suffice without,
-CACHED_LISTS = 3 << 12  # and with neighbour lists
-_STRIDE = 3  # buckets from one stage to the next: about as many events
-_MISSED = 15  # buckets that are made up for if the queue has leapt over them
-_BOTH = (int64(0), int64(0), int64(0))  # sides of each axis
-_FETCHED = 2  # places of a box whose particles are fetched: few boxes hold more
+CACHED = 1 << 15  # particles for which the nearer caches suffice, without neighbour lists
+CACHED_LISTS = 3 << 12  # the same with neighbour lists
+_STRIDE = 3  # buckets from one stage to the next, about one event each
+_MISSED = 15  # buckets that are fetched later if the queue has leapt over them
+_BOTH = (int64(0), int64(0), int64(0))  # side of each axis: both
+_FETCHED = 2  # positions of a box whose particles are fetched: few boxes hold more
 
 
 @inner_helper

@@ -17,11 +17,11 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 
-BUCKET, FILLED, RUNS, EVENT_COUNT = range(4)  # of Queue.cursor
+BUCKET, FILLED, RUNS, EVENT_COUNT = range(4)  # entries of Queue.cursor
 MOST_UNSORTED = 32
 """Largest number of particles of a bucket that are searched one by one."""
 MOST_RUNS = 32
-FIRST, LENGTH = range(2)  # of Queue.runs
+FIRST, LENGTH = range(2)  # rows of Queue.runs
 
 
 class Queue(NamedTuple):

@@ -58,7 +58,7 @@ def _search_row(particles, i, row, image, boxes, space, tally, shear):
 @inner_kernel
 def _search_sheared(particles, i, boxes, space, tally, crossed, shear):
     at, last = particles.predictions[i].box[GRADIENT], boxes.per_side[GRADIENT] - 1
-    if crossed[FLOW] != 0:  # along the row, all of which was searched when the particle came into it
+    if crossed[FLOW] != 0:  # the whole row was searched when the particle came into it
         return
     if at == last:
         _search_row(particles, i, 0, 1, boxes, space, tally, shear)

@@ -20,7 +20,7 @@ from gaspart.kernels.model import IMAGE_BITS, NUMBER_BITS
 
 PLACES = 4  # particles of a box that are listed at once
 _DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
-_STAGES = (  # of a transposition: pairs of rows, shuffled within their quarters, or by quarters
+_STAGES = (  # stages of a transposition: pairs of rows, shuffled within their quarters, or by quarters
     (1, [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]),
     (2, [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]),
     (4, [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]),

@@ -184,7 +184,7 @@ def next_face_pulled(particles, i, axis, pull, boxes, space, now, oversized):
     x, clock = flight.position[axis], flight.clock
     upper = pull > 0.0
     strength = abs(pull)
-    along = flight.velocity[axis] if upper else -flight.velocity[axis]  # speed towards where the pull leads
+    along = flight.velocity[axis] if upper else -flight.velocity[axis]  # speed along the acceleration
     summit = clock if along >= 0.0 else clock - along / strength
     if along < 0.0:
         plane, code = plane_of(particles, i, axis, not upper, boxes, space, oversized)

@@ -213,8 +213,8 @@ def bounce(flights, i, face, model, tally, law):
     return collide_wall_by_law(flights, i, normal, 0.0, model.space, tally, law)
 
 
-_RESOLVED = 2.0**-52  # of clocks and of the period: the shortest step of a search
-_SLACK = 1.0 + 2.0**-20  # of the stroke: a particle further away needs no search
+_RESOLVED = 2.0**-52  # shortest step of a search, as a fraction of clock and period
+_SLACK = 1.0 + 2.0**-20  # distance in strokes beyond which a particle needs no search
 
 
 @kernel

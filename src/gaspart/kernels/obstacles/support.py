@@ -213,7 +213,7 @@ def release_after(flights, i, space, gravity):
 # remains.
 
 
-_INTO = 2.0**-40  # of its speed: what leads less into a plane runs along it
+_INTO = 2.0**-40  # fraction of the speed; a smaller component into a plane counts as motion along it
 
 
 @inner_helper

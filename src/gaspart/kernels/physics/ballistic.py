@@ -10,7 +10,7 @@ from math import inf, sqrt
 
 from gaspart.kernels.compile.policy import helper, inner_helper, kernel
 
-_HALVINGS = 2200  # bisection alone narrows any interval of floats to two neighbours in fewer
+_HALVINGS = 2200  # maximum number of bisections; fewer narrow any interval to two adjacent floats
 
 
 @inner_helper
@@ -124,7 +124,7 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
     of the second derivative, so that no grazing contact is missed.
     """
     c0, c1, c2, c3, c4 = gap, 2.0 * rv, vv + ra, va, 0.25 * aa
-    # f'' = 2 c2 + 6 c3 t + 12 c4 t^2 splits time into stretches in which f' is monotonic
+    # f'' = 2 c2 + 6 c3 t + 12 c4 t^2 splits time into intervals in which f' is monotonic
     first = second = 0.0
     square = 9.0 * c3 * c3 - 24.0 * c4 * c2
     if square > 0.0:
@@ -150,7 +150,7 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
         turn = stop
         if (slope < 0.0 and end_slope > 0.0) or (slope > 0.0 and end_slope < 0.0):
             turn = _root_between(c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 0.0, start, stop)
-        # f falls from `start` to `turn`, or from `turn` to `stop`, or nowhere in this stretch
+        # f falls from `start` to `turn`, or from `turn` to `stop`, or nowhere in this interval
         at_once = slope < 0.0 or (slope == 0.0 and end_slope < 0.0)
         if at_once or end_slope < 0.0:
             low, high = (start, turn) if at_once else (turn, stop)

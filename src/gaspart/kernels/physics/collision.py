@@ -24,7 +24,7 @@ from gaspart.kernels.physics.sums import add
 
 LEAST = (
     2.0**-48
-)  # of the particles' speed: they part at least so fast, or rounding would let them meet for ever
+)  # minimum speed of separation divided by the particles' speed: rounding would let them collide for ever
 
 
 @inner_helper

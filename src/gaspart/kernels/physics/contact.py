@@ -125,7 +125,7 @@ def time_to_growing_contact(rr, rv, vv, sigma, rate):
 
 _ABOVE = 0.501086
 _BELOW = (0.501086, 1.15345, 0.577977, 0.532178)
-_STEPS = 6  # of Newton's method, after which rounding is left
+_STEPS = 6  # steps of Newton's method, to rounding
 
 
 @helper

@@ -111,7 +111,7 @@ def evaluate(sums, units, found):
             top -= 1
         for n in range(top - 2):
             if total[n] != 0:
-                total[top - 2] |= 1  # decides where the digits that count are half-way between two float64
+                total[top - 2] |= 1  # decides if the digits are half-way between two float64
         value = rest = 0.0
         for n in range(3):  # 65 bits at least, and few enough for two float64 to hold
             value, error = _two_sum(value, total[top - n] * units[top - n])
@@ -144,7 +144,7 @@ def exact_parts(parts: np.ndarray) -> np.ndarray:
 # split.
 
 
-_COARSE, _FINE = 2.0**-28, 2.0**-57  # of the largest term: each holds 2^35 such terms in 64 bits
+_COARSE, _FINE = 2.0**-28, 2.0**-57  # units in the largest term; each holds 2^35 such terms in 64 bits
 
 
 @inner_helper

@@ -105,7 +105,7 @@ def own_impulses(impulses, part):
     return impulses[part : part + 1]
 
 
-_SHORT = 2.0**-12  # of a step: bounces on a floor in less time are not distinguished
+_SHORT = 2.0**-12  # time as a fraction of a step below which bounces on a floor are not distinguished
 
 
 class Rules(NamedTuple):

@@ -286,7 +286,7 @@ def order_part(cells, ordinary, first, end):
     ends[:] = 0
     place = ONE - ONE
     for cell in cells.cell[:ordinary]:
-        within = np.uint32(cell - first)  # of a cell before the first, a large number
+        within = np.uint32(cell - first)  # a large number for a cell before the first
         if within < width:
             ends[within] += ONE
         place += np.uint32(cell < first)

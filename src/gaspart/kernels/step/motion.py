@@ -49,7 +49,7 @@ def reflect(particles, slot, axis, planes, model, tally, thread):
         add_share(particles.index[slot], 2 * axis + side, (impulse, 0.0), tally, thread, tally.per_area)
         if model.normal == 1.0:
             x = plane + plane - x
-        else:  # it came through |x - plane| / |v| ago
+        else:  # it crossed the plane a time |x - plane| / |v| ago
             x = plane + model.normal * (plane - x)
             lost = 0.5 * impulse * abs(v) * (1.0 - model.normal)
             add_whole(tally.wall_loss[thread], lost, tally.energy)
@@ -77,7 +77,7 @@ def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
         side = 0 if x < lower else 1
         y, u, a = (upper - x, -v, -pull) if side else (x - lower, v, pull)
         square = u * u - (y + y) * a
-        if square < 0.0:  # pushed out by a contact, too slow to have come through by itself
+        if square < 0.0:  # pushed out by a contact, too slow to have crossed by itself
             if u < 0.0:
                 at = x, -v - v
                 add_reflection(particles, slot, axis, at, tally, thread, tally.impulses)

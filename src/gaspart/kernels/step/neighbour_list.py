@@ -151,11 +151,11 @@ def bits(typingctx, word):
     return types.uint64(types.uint64), generate
 
 
-_SAFE = 0.99  # of the skin, so that rounding uses none of it
-_ROOM = np.uint64(1024)  # entries written before those without a mark are left out
-_BLOCK = 64  # slots whose partners in one row are looked for before those in the next
+_SAFE = 0.99  # usable fraction of the skin, because of rounding
+_ROOM = np.uint64(1024)  # entries written before the ones without a mark are removed
+_BLOCK = 64  # slots whose partners in one row are searched before the next row
 ONE, _TWO, _EIGHT = np.uint64(1), np.uint64(2), np.uint64(WIDTH)
-_PLACE, _SHIFT = np.uint64(28), np.uint64(56)  # of an entry: where its slot begins, and its marks
+_PLACE, _SHIFT = np.uint64(28), np.uint64(56)  # first bits of the slot and of the marks in an entry
 _SLOTS = (ONE << _PLACE) - ONE
 
 

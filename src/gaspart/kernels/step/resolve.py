@@ -31,8 +31,8 @@ from gaspart.kernels.step.motion import raise_bounds, wrap
 
 _ONE = np.uint32(1)
 _RUN = 16
-_AHEAD = 4  # contacts
-_LATE = 1.125  # steps ago: contacts before these belong to an earlier step, however float32 rounds
+_AHEAD = 4  # contacts by which the prefetch is ahead
+_LATE = 1.125  # time in steps; earlier contacts belong to an earlier step, for any rounding of float32
 
 
 @inner_helper
@@ -280,7 +280,7 @@ def resolve(particles, i, j, model, step, tally, law, cells):
             tally.counts[LATE] += 1
             if rr + rr + rr + rr < ss:
                 tally.counts[PASSED] += 1
-        rr += ago * (rv + rv + vv * ago)  # the invariants as they were at the contact
+        rr += ago * (rv + rv + vv * ago)  # the invariants at the contact
         rv += ago * vv
         tally.extremes[WORST] = max(tally.extremes[WORST], abs(rr / ss - 1.0))
     tally.counts[COLLISIONS] += 1

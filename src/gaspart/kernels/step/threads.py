@@ -33,7 +33,7 @@ from gaspart.kernels.step.model import (
 from gaspart.kernels.step.motion import displacement_part, fastest_part, move, move_by_rules
 from gaspart.kernels.step.neighbour_list import WIDTH, is_complete, list_part, search_pairs
 
-_BLOCK = 1024  # pairs that are tested before those that touch are looked at
+_BLOCK = 1024  # pairs that are tested before the touching ones are examined
 
 
 @inner_allocating_kernel
