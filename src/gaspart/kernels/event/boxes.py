@@ -315,7 +315,7 @@ def find_contact(particles, number, boxes, space, tally, crossed, gravity):
     low_z, end_z, visits_z, itself_z = span(boxes, 2, az, crossed[2], len(space.lengths))
     tally.counts[BOX_VISITS] += visits_x * visits_y * visits_z
     tally.counts[PAIR_TESTS] -= itself_x * itself_y * itself_z
-    within = crossed[0] == 0 and 0 < at[0] < boxes.per_side[0] - 1  # the boxes of a row are adjacent in memory
+    within = crossed[0] == 0 and 0 < at[0] < boxes.per_side[0] - 1  # the boxes of a row are contiguous
     count = uint64(0)
     for dz in range(low_z, end_z):
         beside_z = neighbour[2, az, dz]
