@@ -175,7 +175,7 @@ def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = Fa
     except OSError as error:
         why = error.strerror or "its writer has stopped"
         raise SceneError("path", str(path), f"cannot be written: {why}") from None
-    except UnicodeEncodeError:  # of a library that accepts UTF-8 names only
+    except UnicodeEncodeError:  # raised by a library that accepts UTF-8 names only
         rule = "cannot be written: the name of its folder must be UTF-8"
         raise SceneError("path", str(path), rule) from None
 

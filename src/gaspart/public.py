@@ -11,7 +11,7 @@ import sys
 from importlib import import_module
 
 TYPE_CHECKING = False
-if TYPE_CHECKING:  # it takes longer to import than all else here
+if TYPE_CHECKING:  # it takes longer to import than the rest of this module
     from collections.abc import Callable
     from typing import Any
 

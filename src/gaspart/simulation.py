@@ -680,7 +680,7 @@ class Simulation:
         moving = state.kinetic_energy + state.vibrational_energy
         drift = abs(moving + state.potential_energy + self._dynamics.dissipated - self._energy)
         scale = max(moving, self._moving)
-        if state.gravity is not None:  # what a fall through the container can change
+        if state.gravity is not None:  # energy of a fall through the container
             masses = state.masses[np.isfinite(state.masses)]
             scale += float(masses.sum() * (abs(state.gravity) @ state.lengths))
         precision = self.engine.precision

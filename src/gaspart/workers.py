@@ -103,7 +103,7 @@ class _Worker:
         )
         there.close()
         self._results: list[Any] = []
-        with suppress(BrokenPipeError):  # it has ended, for a reason that its exit code states
+        with suppress(BrokenPipeError):  # the process has ended; its exit code states the reason
             self.connection.send_bytes(pickle.dumps((function, arguments)))
 
     def receive(self, received: Callable[[int, Any], None] | None) -> bool:
@@ -172,7 +172,7 @@ def _serve(descriptor: int) -> None:
 def _end_with(other: connection.Connection) -> None:
     """End after a checkpoint when the process that began this one has ended, however it did."""
     with suppress(EOFError, OSError):
-        other.recv_bytes()  # it sends nothing more
+        other.recv_bytes()  # there are no further messages
     os.kill(os.getpid(), SIGTERM)
 
 

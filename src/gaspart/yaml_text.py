@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 MOST_BYTES, MOST_VALUES, MOST_COPIES, DEEPEST = 2**26, 2_500_000, 100_000, 64
 """Limits of a text: its size, its values, those of them that come from aliases, and their nesting. The text
-of every valid scene is within them (`validation.MOST_LISTED`)."""
+of every valid scene is within them (`keys.values.MOST_LISTED`)."""
 _LONGEST_NUMBER = 1000  # characters
 _NUMBERS = re.compile(r"[-+]?(\d[\d_]*(\.[\d_]*)?|\.\d[\d_]*)[eE][-+]?\d+\Z")
 _SCALARS = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("null", "bool", "int", "float"))

@@ -173,7 +173,7 @@ class ContactLaw(NamedTuple):
     ----------
     normal, tangential : coefficients of restitution
     viscous : None, or for viscoelastic particles the damping divided by the fifth root of speed, radius and
-        squared inverse mass (`viscoelastic.normal_restitution`)
+        squared inverse mass (`physics.contact.normal_restitution`)
     inverse_mass : (N,), 0 if fixed or in a jam
     inverse_inertia : (N,), 0 if fixed
     spins : (N, 3)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from gaspart.scene.species import Particle, Species
 
 _RESOLVED = 1e12  # diameters in the longest side, at most: contacts are then accurate to a thousandth
-_ROOM = 1e-6  # of a radius: the least room of a particle between two walls
+_ROOM = 1e-6  # minimum gap of a particle between two walls, in radii
 _UNITS = 8.0 * 2.0**-52  # some units in the last place, of a number
 _SUM = 1e-12  # relative: rounding of the sum of all volumes
 

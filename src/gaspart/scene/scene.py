@@ -49,7 +49,7 @@ THUMBNAIL = (480, 360)
 """Pixels of a picture that a notebook shows for a scene."""
 DRAWN = 20_000
 """Maximum number of particles of such a picture: the particles of a scene must be placed before."""
-_ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # not written into a file unless there
+_ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # keys that are written to a file only if present
 
 
 @dataclass(frozen=True)

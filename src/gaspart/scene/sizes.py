@@ -18,7 +18,7 @@ MOST_UNIFORM = 1.0 / math.sqrt(3.0)
 """Polydispersity of a uniform distribution that begins at 0."""
 
 _LN2 = 0.6931471805599453
-_TERMS = 16  # of the series of exp, for |x| < 0.35
+_TERMS = 16  # terms of the series of exp, for |x| < 0.35
 # Numerators and denominators of Wichura's algorithm AS 241 (Appl. Stat. 37, 477 (1988)), the highest power
 # first, for the middle, the tails, and far out in these.
 # fmt: off
@@ -99,7 +99,7 @@ def relative_radii(count: int, polydispersity: float, distribution: str) -> np.n
     else:
         square = polydispersity * polydispersity
         more = 1.0 + square
-        # ln(1 + s^2), also of an s^2 that is lost beside 1
+        # ln(1 + s^2), also for an s^2 that rounding loses in 1 + s^2
         variance = float(_log(np.array(more))) * square / (more - 1.0) if more > 1.0 else square
         found = _exp(math.sqrt(variance) * normal_quantile(p))
     found = found * (count / math.fsum(found)) if count else found

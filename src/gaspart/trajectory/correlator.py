@@ -41,7 +41,7 @@ CORRELATED = {
     "change": "G(t) - G(0)",
 }
 """Summands over pairs of samples; the last two only for `bulk`, whose mean is not zero."""
-_PREFIX = "correlator "  # of its arrays in a checkpoint
+_PREFIX = "correlator "  # prefix of its arrays in a checkpoint
 
 
 @dataclass(frozen=True)
@@ -356,7 +356,7 @@ class StressCorrelator(_Correlator):
     def __init__(self, settings: Correlations, dimension: int) -> None:
         shear = dimension * (dimension + 1) // 2 - 1
         turning = dimension * (dimension - 1) // 2
-        number = [shear, turning, shear, 1, dimension]  # of components, as in STRESS
+        number = [shear, turning, shear, 1, dimension]  # numbers of components, as in STRESS
         self._groups = np.repeat(np.arange(len(STRESS)), number)
         self._terms = np.array(number, dtype=float)[:, None, None]
         self._dimension, self._latest, self._begun = dimension, np.zeros(len(self._groups)), False

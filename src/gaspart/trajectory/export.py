@@ -171,7 +171,7 @@ def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
         masses = np.resize(per_particle(scene, "mass"), scene.capacity)[: len(types)].astype(float)
         for n in numbers:
             places = np.asarray(file["coordinates"][n], dtype=float)
-            inside = np.isfinite(places).all(axis=1)  # of particles that come and go
+            inside = np.isfinite(places).all(axis=1)  # False for absent numbers in scenes with open faces
             piston = np.asarray(file["piston"][n]) if scene.has_piston else None
             # not read: files of early versions have the whole container, and discs in cells of their diameter
             cell = amber.cell(scene, np.array(scene.container.lengths), piston)

@@ -147,7 +147,7 @@ def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
             if status.st_size < needed:
                 rule = f"is truncated: {status.st_size} bytes, where {frames} frames need {needed}"
                 raise ValueError(rule)
-            if status.st_size > needed and path.suffix != PARTIAL:  # that one may end within a frame
+            if status.st_size > needed and path.suffix != PARTIAL:  # a partial file may end within a frame
                 rule = f"is damaged: {status.st_size} bytes, where {frames} frames need {needed}"
                 raise ValueError(rule)
             yield file, header, frames

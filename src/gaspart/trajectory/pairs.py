@@ -10,7 +10,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 
-_NAME = "pair collisions"  # of the array in a checkpoint
+_NAME = "pair collisions"  # name of the array in a checkpoint
 
 
 def pairs_of(scene: Scene) -> list[tuple[int, int]]:

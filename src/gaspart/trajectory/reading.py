@@ -122,7 +122,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     for key, variable in data.variables.items():
         name = str(key)
         unit = variable.attrs.get("units", "1")
-        if variable.dtype.kind in "fi":  # what is no length, time or energy is a number of things, or a ratio
+        if variable.dtype.kind in "fi":  # values other than lengths, times and energies are counts or ratios
             variable.attrs["units"] = _UNITS.get(name, _REDUCED.get(unit, unit))
     data.attrs = {key: value for key, value in attributes.items() if key not in amber.BOOKKEEPING}
 

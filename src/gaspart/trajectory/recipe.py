@@ -254,7 +254,7 @@ class Recipe:
         groups = [len(scene.species)] * len(scene.particles) + list(range(len(scene.species)))
         counts = [1] * len(scene.particles) + [kind.count for kind in scene.species]
         each = {name: per_particle(scene, name) for name in ("radius", "mass")}
-        particles = {  # of particles that may come as well, which are all alike
+        particles = {  # includes particles that may enter later, which are all alike
             name: np.resize(values, scene.capacity)[: self.stored_count]
             for name, values in {**each, "type": np.repeat(groups, counts)}.items()
         }
@@ -314,7 +314,7 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
         )
     except SceneError:
         raise
-    except (KeyError, TypeError, ValueError) as error:  # of a header that was forged
+    except (KeyError, TypeError, ValueError) as error:  # for a forged header
         raise SceneError("file", str(path), f"has an attribute that cannot be used: {error}") from None
 
 

@@ -90,7 +90,7 @@ def is_beginning(path: Path, wanted: Recipe) -> bool:
         with checked(path) as (_, _, frames):
             shorter = frames < wanted.frames
         same = replace(recipe, duration=wanted.duration, until=wanted.until)
-    except SceneError:  # as for a duration that is no multiple of its interval
+    except SceneError:  # for example, a duration that is no multiple of its interval
         return False
     return shorter and begun_as(path, recipe) and same.header(revision) == wanted.header(revision)
 

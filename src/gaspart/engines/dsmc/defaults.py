@@ -113,7 +113,7 @@ def _rates(scene: Scene, kinds: Kinds, dense: bool, squares: list[float]) -> tup
     density = number / float((upper - lower).prod())
     sigma = radius[:, None] + radius
     section = math.pi * sigma**2 if d == 3 else 2.0 * sigma
-    mean = 8.0 / math.pi if d == 3 else math.pi / 2.0  # of <v>^2 / (kT/m)
+    mean = 8.0 / math.pi if d == 3 else math.pi / 2.0  # <v>^2 / (kT/m)
     relative = np.sqrt(mean * (square[:, None] + square))
     pairs = density[:, None] * (number - np.eye(len(number)))
     contact = contact_values(density, radius, d) if dense else 1.0
@@ -216,7 +216,7 @@ class Reach:
 
     def longest(self, speed: float, way: float) -> float:
         """Return the longest step in which a particle flies at most a distance."""
-        low, high = -300.0, 300.0  # of the logarithm to base 2; the way grows with the step
+        low, high = -300.0, 300.0  # logarithm to base 2 of the step; the path grows with the step
         for _ in range(60):
             middle = 0.5 * (low + high)
             low, high = (middle, high) if self.way(speed, 2.0**middle) <= way else (low, middle)
@@ -325,7 +325,7 @@ USUAL = 16.0
 """Sufficient number of particles in a cell: a cell is narrower than recommended rather than fuller."""
 LAYERS = 8
 """Minimum number of cells along the fall of particles between walls: their speeds depend on the height."""
-_DIGITS = 2.0**10  # a step is rounded to so many parts, so that it does not depend on how sums are rounded
+_DIGITS = 2.0**10  # parts to which a step is rounded, so that it does not depend on the rounding of sums
 _VISCOSITY = {2: math.pi / 24.0, 3: 16.0 / (45.0 * math.pi)}
 _VISCOSITY_IN_TIME, _DIFFUSION_IN_TIME = 16.0 / (75.0 * math.pi), 4.0 / (27.0 * math.pi)
 CELL_LOSS = 0.5

@@ -283,7 +283,7 @@ class EventDynamics(Dynamics):
                 if not ends_epoch:
                     self._clock = stop
                     return
-                work -= len(self._flights)  # all is predicted anew
+                work -= len(self._flights)  # all events are predicted anew
                 begun -= self._next_epoch(endless=until == np.inf)
             else:
                 self._clock = max(self._clock, last)

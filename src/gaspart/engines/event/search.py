@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
 _LISTED = {2: 8.0, 3: 15.0}  # particles that a list holds on average: they fill one or two vectors of eight
-_MARGINS = 0.1, 0.65  # of the largest diameter: limits on how far a particle moves before its list is renewed
+_MARGINS = 0.1, 0.65  # limits of a list's margin, in largest diameters
 _MANY = 1 << 15  # particles whose neighbour lists no longer fit into the processor's own cache
 _DENSE = {2: (0.45, 0.55), 3: (0.28, 0.4)}  # packing fractions from which lists are faster: few, many
-_ALIKE = 1.5  # and the largest ratio of radii: a list of small particles reaches as far as one of large ones
+_ALIKE = 1.5  # largest ratio of radii: a list of small particles reaches as far as a list of large ones
 _ROOM = {2: 16, 3: 32}  # entries of a list at first
 _SMALLEST, _LARGEST = 1e-12, 1e12  # radii whose squares are numbers in single precision
 

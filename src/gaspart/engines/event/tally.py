@@ -119,8 +119,8 @@ class EventTally:
 
 _LENGTH = 10  # an epoch of the clocks is some 2^10 times of flight over a diameter
 _AT_REST = 2.0**960  # the epoch of a scene in which nothing moves
-_RESOLVED = 2.0**-52  # of speeds
-_OTHER = 2.0**10  # by which speeds must have changed for epochs of another length
+_RESOLVED = 2.0**-52  # relative resolution of speeds
+_OTHER = 2.0**10  # factor of speeds from which the length of epochs changes
 QUIET = 64
 """Number of epochs without an event after which epochs are doubled."""
 

@@ -69,7 +69,7 @@ def reservoirs_of(
     if not rates.any():
         return None
     up_to = np.cumsum(rates) / rates.sum()
-    up_to[np.flatnonzero(rates)[-1] :] = 1.0  # whatever rounding makes of it
+    up_to[np.flatnonzero(rates)[-1] :] = 1.0  # for any rounding
     next_one = np.zeros(1, dtype=np.int64), np.full(1, np.inf), np.zeros(3)
     return kernels.Reservoirs(
         key_of(seed, _ENTRY_DRAWS), float(rates.sum()), up_to, widths, *next_one, inside
@@ -185,7 +185,7 @@ class PistonPart(Part):
 # A particle that is pressed to the face meets it again after a part of an epoch, or of the duration of a
 # contact, if that is longer; of the period, if the face's acceleration presses it, and that is shorter.
 _HOP_OF_EPOCH, _OF_DURATION, _OF_PERIOD = 2.0**-24, 2.0**-3, 2.0**-15
-_OF_SPEED = 2.0**-48  # it parts with this part of the face's speed at least
+_OF_SPEED = 2.0**-48  # minimum speed of separation divided by the face's speed
 
 
 def motion_of(scene: Scene) -> Motion | None:

@@ -77,7 +77,7 @@ class LawPart(Part):
     def stored(self) -> float:
         """Energy of spins and of vibrations."""
         squares = (self.arrays["spins"] ** 2).sum(axis=1)
-        turning = squares > 0.0  # and so not of smooth particles, whose moment of inertia may be infinite
+        turning = squares > 0.0  # excludes smooth particles, whose moment of inertia may be infinite
         spins = 0.5 * float((squares[turning] / self._inverse_inertia[turning]).sum())
         vibrations = self.arrays.get("vibrations")
         return spins + (0.0 if vibrations is None else float(np.maximum(vibrations, 0.0).sum()))
@@ -133,9 +133,9 @@ def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, 
 # fall, than the contacts of two particles that gravity alone presses together.
 
 
-FURTHEST = 2.0**-8  # of the smallest diameter: what moves less rests
+FURTHEST = 2.0**-8  # smallest displacement of a particle that does not rest, in smallest diameters
 _TILT = 2.0**-2
-_PLANES = 24  # that a particle touches, of which more are not regarded
+_PLANES = 24  # maximum number of planes of a particle; further planes are ignored
 
 
 def slowest_that_moves(scene: Scene) -> float:
@@ -206,7 +206,7 @@ class Jams:
         )
 
         law, flights = model.law, particles.flights
-        assert law is not None and law.duration is not None  # as `rest.rest_watch` requires
+        assert law is not None and law.duration is not None  # as `rest_watch` requires
         duration, moves = law.duration, law.duration.inverse_mass > 0.0
         marks = np.empty((3, len(flights)), dtype=bool)
         marks[HELD], marks[STAYS] = stays & moves, stays | ~moves
@@ -219,7 +219,7 @@ class Jams:
         line = Line(order, places, self._axis)
         keep_stable(flights, line, self._limits, model, marks)
         kept = marks[:2] | (stays & (duration.island >= len(flights)))
-        if (kept != marks[:2]).any():  # what a jam has held before remains unless gravity itself moves it
+        if (kept != marks[:2]).any():  # particles held by a jam before remain unless gravity moves them
             marks[:2] = kept
             keep_stable(flights, line, self._plain, model, marks)
         freed = free_unstable(flights, time, marks, model)
@@ -347,7 +347,7 @@ class RestWatch(Part):
         awake = (law.duration.island == NONE) & (law.inverse_mass > 0.0)
         if not (marks[RESTS] & marks[TOUCHES] & awake).any():
             return False
-        near = np.flatnonzero(marks.any(axis=0) & awake)  # not what slides slowly and touches nothing
+        near = np.flatnonzero(marks.any(axis=0) & awake)  # without sliding particles that touch nothing
         order = near[np.argsort(places[near, self._axis], kind="stable")]
         parent = np.empty(len(flights), dtype=np.int64)
         join(flights, order, places, self._axis, self._most, model.space, parent)

@@ -168,8 +168,8 @@ def write_parts(parts: Iterable[Part], state: State, clock: float = 0.0) -> None
 # Gravity, and the particles that it holds on interior walls.
 
 
-_SHORTEST_BOUNCE = 2.0**-44  # of an epoch: the longest bounce on a floor that is taken for rest
-_LOWEST = 2.0**-44  # of the container: the highest bounce on an interior wall that is taken for rest
+_SHORTEST_BOUNCE = 2.0**-44  # longest bounce on a floor that is taken for rest, in epochs
+_LOWEST = 2.0**-44  # highest bounce on an interior wall that is taken for rest, in container lengths
 
 
 def gravity_of(scene: Scene, state: State) -> Gravity | None:
@@ -249,7 +249,7 @@ class ShearPart(Part):
 # Kicks of a thermostat, at regular times that do not depend on where a run is split.
 
 
-_MOST_NUMBERS = 2**63 - 1  # of kicks, before they begin anew
+_MOST_NUMBERS = 2**63 - 1  # largest number of a kick, after which numbers restart
 _KICK_DRAWS = 3  # the purpose of their random numbers, after those of thermal walls
 
 

@@ -160,7 +160,7 @@ def parts_for(scene: Scene, rules: Rules | None) -> list[Part]:
     if rules is None:
         return []
     law, faces = rules.model.law, rules.model.faces
-    heat = Part({}, sums={"heat": rules.heat[np.newaxis]})  # all threads have one
+    heat = Part({}, sums={"heat": rules.heat[np.newaxis]})  # common to all threads
     parts = LawPart(law) if law else None, FacesPart(scene, faces, 1.0) if faces else None, heat
     return [part for part in parts if part]
 
@@ -336,7 +336,7 @@ def _skin(engine: TimeStepped, scene: Scene, state: State, contact: float) -> fl
     dimension, density = scene.dimension, state.count / scene.container.volume
     squares = (state.velocities**2).sum(axis=1)
     fastest = np.sqrt(squares.max(initial=0.0))
-    if state.count > 1:  # in the end, whatever the speeds are now
+    if state.count > 1:  # speeds in the end, for any present speeds
         square = max(squares.mean(), face_energy(scene) / float(state.masses.min())) / dimension
         fastest = max(fastest, np.sqrt(square * (2.0 * np.log(state.count) + 2.0)))
     gravity = 0.0 if scene.gravity is None else float(np.abs(scene.gravity).max())

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from gaspart.engines.step.settings import TimeStepped
 
 
-_OVERSIZED = 16  # at most so many particles are tested against all others
+_OVERSIZED = 16  # maximum number of particles that are tested against all others
 _LARGER = 2.0  # radii of the next smaller particle: larger ones are among them
 _SINGLE = 1e9  # the largest length or speed in float32, whose squares are multiplied with each other
 _RESOLVED = 1e5  # diameters in the longest side, at most: float32 then resolves contacts to a hundredth
@@ -205,7 +205,7 @@ def candidate(engine: TimeStepped, asked: Asked) -> Candidate:
     if not missed > 0.0 or not math.isfinite(free):
         raise SceneError("time_step", None, "follows from contacts, which particles at rest do not have")
     longest = min(math.sqrt(_SHARE * asked.accuracy / (_SAFE * missed)), _LONGEST * free)
-    step = float(f"{0.95 * longest:.2g}")  # not above the longest, however it is rounded
+    step = float(f"{0.95 * longest:.2g}")  # not above the longest, for any rounding
     return Candidate(engine.with_step(step), discretisation=_SAFE * missed * step**2)
 
 
