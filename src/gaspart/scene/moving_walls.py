@@ -34,10 +34,7 @@ def moving_wall_among(walls: Sequence[Wall | Plate], lengths: tuple[float, ...])
 
 
 def crossed_axis(wall: Wall | Plate, lengths: tuple[float, ...]) -> int:
-    """Return the axis that a wall crosses from side to side of a container, or -1.
-
-    The axis is perpendicular to the wall.
-    """
+    """Return the axis perpendicular to a wall that spans a container, or -1."""
     for axis, _ in enumerate(lengths):
         places = [{corner[k] for corner in wall.corners.values()} for k in range(len(lengths))]
         whole = all(places[k] == {0.0, length} for k, length in enumerate(lengths) if k != axis)

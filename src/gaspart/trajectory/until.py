@@ -119,11 +119,11 @@ def is_examined(frames: int) -> bool:
 
 
 def examined_before(frames: int) -> int | None:
-    """Return the number of frames of the last examination before a number; None without one."""
+    """Return the number of frames of the last examination before `frames`, or None."""
     earlier = list(takewhile(lambda count: count < frames, examined_frames()))
     return earlier[-1] if earlier else None
 
 
 def examined_from(frames: float) -> int:
-    """Return the number of frames of the first examination with at least a number of frames."""
+    """Return the number of frames of the first examination with at least `frames` frames."""
     return next(count for count in examined_frames() if count >= frames)

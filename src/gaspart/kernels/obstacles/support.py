@@ -315,7 +315,7 @@ _HOP = (
 
 @inner_kernel
 def come_to_rest(flights, i, normal, place, mass, space, tally, gravity):
-    """Put a particle to rest after a bounce on a wall that cannot be resolved.
+    """Put a particle to rest after a bounce that is too short to be resolved.
 
     If the particle cannot rest there, its bounce is made long enough to be resolved.
 

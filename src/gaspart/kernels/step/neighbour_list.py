@@ -118,10 +118,10 @@ def equals(typingctx, values, first, value):
 
 @intrinsic
 def compact_eight(typingctx, words, first, least, kept, number):
-    """Write the ones of eight words that are not less than `least` into `kept`.
+    """Write the words, out of eight, that are at least `least` into `kept`.
 
-    Returns their number. The words begin at index `first`, the result at index `number`. There must be space
-    for eight.
+    Returns their number. The eight words begin at index `first`, the result at index `number`. There must be
+    space for eight.
     """
 
     def generate(context, builder, signature, arguments):
