@@ -204,8 +204,8 @@ is one of 3 % in the measured pressure.
 
 """
 NOT_JUDGED = """\
-XYZ files; LAMMPS data files of style *sphere* in ASE, which accepts no such lines. freud is no referee of
-:math:`g(r)`, which gaspart computes by freud.
+XYZ files; LAMMPS data files of style *sphere* in ASE, which accepts no such lines. freud's :math:`g(r)` is
+compared with gaspart's in the tests of its kernels, not here.
 """
 
 

@@ -242,7 +242,7 @@ class Engine:
 
     @property
     def timed_as(self) -> str:
-        """Name in the table of costs (`gaspart.accuracy.cost_table`)."""
+        """Its name in the table of costs (`gaspart.accuracy.table`)."""
         return self.name
 
     @property

@@ -152,7 +152,7 @@ class ContactDuration(NamedTuple):
     inverse_mass : (N,), inverse masses when no jam holds the particles
     moving : speed that frees a particle from a jam (`event.jams`)
     elastic : (1,), number of contacts that last
-    kept : (1, 2), energy that these contacts have not dissipated, see `physics.sums.add`
+    kept : (1, 2), energy that these contacts have not dissipated, see `physics.running_sum.add`
     """
 
     length: float
@@ -238,7 +238,7 @@ class Sliding(NamedTuple):
     Attributes
     ----------
     velocity : (2d, d), velocities of the container's faces
-    shear : (2d^2, 2), momentum along each axis that particles have given to each face, see `physics.sums.add`
+    shear : (2d^2, 2), momentum along each axis that particles have given to each face, see `physics.running_sum.add`
     """
 
     velocity: np.ndarray
@@ -444,10 +444,10 @@ class Tally(NamedTuple):
     Attributes
     ----------
     counts : (of `COUNTS`,)
-    sums : (of `SUMS`, 2), see `physics.sums.add`
+    sums : (of `SUMS`, 2), see `physics.running_sum.add`
     worst : (1,), largest value of |r^2/sigma^2 - 1| at a contact
     wall_hits : (faces + walls,)
-    wall_impulse, wall_energy : (faces + walls, 2), by face and interior wall, see `physics.sums.add`
+    wall_impulse, wall_energy : (faces + walls, 2), by face and interior wall, see `physics.running_sum.add`
     stress : `event.stress.Stress`, or None
     impulses : `event.impulses.Impulses`, or None
     pair_impulses : `event.impulses.PairImpulses`, or None

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.kernels.model import Gravity, Model, Shear, no_support
-from gaspart.kernels.physics import sums as running_sum
+from gaspart.kernels.physics import running_sum
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.scene import Scene
 from gaspart.scene.thermostat import Thermostat
@@ -316,7 +316,7 @@ class StepKicks(Part):
 
     A step in which several kicks are due ends with one kick as strong as all of them.
 
-    given_terms : (1, 2), energy given since the tally began, see `physics.sums.add`
+    given_terms : (1, 2), energy given since the tally began, see `physics.running_sum.add`
     """
 
     def __init__(

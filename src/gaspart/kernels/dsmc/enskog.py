@@ -45,7 +45,7 @@ from gaspart.kernels.dsmc.model import (
     waiting_time,
     words_of,
 )
-from gaspart.kernels.physics.sums import add_exact
+from gaspart.kernels.physics.exact_sum import add_exact
 
 FILLED, SURFACE = range(2)
 KIND_BLOCK = 255  # block of a trial's random words for the partner's kind

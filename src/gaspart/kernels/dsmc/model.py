@@ -1,9 +1,9 @@
 """Data structures of the DSMC engine's kernels: particles, grid, kinds, workspace, tally.
 
 A *slot* is a particle's present position in memory; the slots are in the order of the cells, and `numbers`
-gives the particle's number. Sums of several threads are exact (`physics.sums`), so that they do not depend on
-the order of addition. The structures hold only arrays and plain numbers, because numba passes no other types
-to threads.
+gives the particle's number. Sums of several threads are exact (`physics.exact_sum`), so that they do not
+depend on the order of addition. The structures hold only arrays and plain numbers, because numba passes no
+other types to threads.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.model import Ramp, Space
-from gaspart.kernels.physics.rng import LN2, LOG_SERIES, normal_pair
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.logarithm import LN2, LOG_SERIES
+from gaspart.kernels.physics.rng import normal_pair
+from gaspart.kernels.physics.running_sum import add
 
 COLLISIONS, TRIALS, EXCEEDED, UNFINISHED, FAR = range(5)
 PADDED = 8  # number of counts of a thread, a cache line
@@ -86,7 +87,7 @@ class Workspace(NamedTuple):
     pair_spins : (threads, 2, 3), spins of these particles
     sums : (threads, 2, 2), sums of the collision law
     counts : (threads, 8), see the names at the top of the module
-    virial, loss : (threads, WIDTH), exact sums, see `physics.sums`
+    virial, loss : (threads, WIDTH), exact sums, see `physics.exact_sum`
     wall_hits : (threads, 2d), number of hits of each face
     wall_impulse, wall_heat : (threads, 2d, WIDTH), exact sums of momentum and energy given to each face
     inverse_area : (K, 2d), inverse of the area of a face that centres of particles of a kind can reach;
@@ -393,7 +394,7 @@ def kick_all(particles, workspace, width, counter, given):
 
     width : width of the distribution of kicks for mass 1
     counter : see `_kick`
-    given : (1, 2), energy given to the particles, see `physics.sums.add`
+    given : (1, 2), energy given to the particles, see `physics.running_sum.add`
     """
     momentum, total = (0.0, 0.0, 0.0), 0.0
     for slot in range(particles.data.shape[1]):

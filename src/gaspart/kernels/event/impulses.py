@@ -18,11 +18,11 @@ from numpy import int64, uint64
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.event.boxes import member
 from gaspart.kernels.event.simd import PLACES, list_box, load_row, load_rows
-from gaspart.kernels.memory import WIDTH, Lanes, fields
 from gaspart.kernels.model import COLLISIONS
 from gaspart.kernels.physics.collision import gap_along
 from gaspart.kernels.physics.flight import acceleration_of, bin_at, row_of
-from gaspart.kernels.physics.rng import mass_of
+from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.simd import WIDTH, Lanes, fields
 
 
 class Impulses(NamedTuple):

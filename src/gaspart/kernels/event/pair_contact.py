@@ -19,7 +19,7 @@ from gaspart.kernels.physics.collision import exchange_momentum, gap_along, meet
 from gaspart.kernels.physics.contact import SHORTEST, meet_often
 from gaspart.kernels.physics.flight import acceleration_of, advance
 from gaspart.kernels.physics.rng import normal_pair
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.running_sum import add
 
 # Contacts of two particles that gravity presses together, as in a stack at rest.
 #
@@ -194,7 +194,7 @@ def kick_all(flights, time, width, counter, model, given):
 
     width : width of the distribution of kicks for mass 1
     counter : words (2,) of the key, and number of the kick
-    given : (1, 2), energy given to the particles, see `physics.sums.add`
+    given : (1, 2), energy given to the particles, see `physics.running_sum.add`
     """
     (key, number), space = counter, model.space
     total = px = py = pz = 0.0

@@ -22,8 +22,8 @@ import numpy as np
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.physics.collision import gap_along
 from gaspart.kernels.physics.lees_edwards import FLOW, GRADIENT, flow_at
-from gaspart.kernels.physics.rng import mass_of
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.running_sum import add
 
 
 class Stress(NamedTuple):
@@ -32,7 +32,7 @@ class Stress(NamedTuple):
     Attributes
     ----------
     sums : (2 d^2 + d, 2), sums of S by rows, of its collisional part, and of Q, without K(t) t, see
-        `physics.sums.add`
+        `physics.running_sum.add`
     before : (2, d + 1), velocity and energy of two particles before their collision
     drift : (d,), velocity of the centre of mass
     """

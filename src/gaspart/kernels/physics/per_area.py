@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper
-from gaspart.kernels.physics.rng import mass_of
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.running_sum import add
 
 
 class PerArea(NamedTuple):
@@ -22,7 +22,7 @@ class PerArea(NamedTuple):
         without such an area
     size : (N,), size of each particle
     sums : (2d (d + 1), 2), momentum of each face along each axis, outwards along the normal, and energy, see
-        `physics.sums.add`
+        `physics.running_sum.add`
     """
 
     inverse: np.ndarray

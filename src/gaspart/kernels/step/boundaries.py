@@ -21,7 +21,7 @@ from gaspart.kernels.obstacles.thermal import cross_edge, time_to_edge
 from gaspart.kernels.physics.collision import collide_by_law
 from gaspart.kernels.physics.contact import time_to_plane
 from gaspart.kernels.physics.flight import advance, bin_at, face_plane, row_of
-from gaspart.kernels.physics.sums import add, add_whole
+from gaspart.kernels.physics.running_sum import add, add_whole
 from gaspart.kernels.step.model import LOSS, VIRIAL
 
 # Impulses by the position where a particle receives them, along one axis (`kernels.physics.flight`), in
@@ -118,7 +118,7 @@ class Rules(NamedTuple):
     tally : workspace for the contribution of one event
     free : (d, 2), coordinates between which a particle that no face holds hits no face and no edge
     holds : whether any face may hold particles
-    heat : (2d, 2), heat given to each face, by `physics.sums.add_whole`
+    heat : (2d, 2), heat given to each face, by `physics.running_sum.add_whole`
     """
 
     flights: np.ndarray

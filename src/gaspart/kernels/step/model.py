@@ -127,11 +127,11 @@ class StepTally(NamedTuple):
     Attributes
     ----------
     counts : see the names at the top of the module
-    sums : (..., 2), by `physics.sums.add`
+    sums : (..., 2), by `physics.running_sum.add`
     extremes : see the names at the top of the module
     wall_hits : (threads, 2d)
-    wall_impulse : (threads, 2d, 2), by `physics.sums.add_whole`
-    wall_loss : (threads, 2), an energy, by `physics.sums.add_whole`
+    wall_impulse : (threads, 2d, 2), by `physics.running_sum.add_whole`
+    wall_loss : (threads, 2), an energy, by `physics.running_sum.add_whole`
     momentum, energy : powers of two that few terms of these sums exceed
     impulses : (threads, rows, bins + 1, 2), impulses along an axis, as in `kernels.physics.flight`, by
         `add_whole`, or None

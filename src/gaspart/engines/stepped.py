@@ -1,0 +1,238 @@
+"""Base of engines that make steps: particles by slots, tallies by threads, whole steps."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from dataclasses import replace
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import DTypeLike
+
+from gaspart.engines.dynamics import Dynamics
+from gaspart.engines.event_log import EventLog
+from gaspart.engines.features.part import sums_of, write_parts
+from gaspart.errors import SceneError
+from gaspart.kernels.physics.running_sum import net
+from gaspart.scene.scene import Scene
+from gaspart.state.state import State
+from gaspart.state.tally import Tally
+
+_MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
+_PLACED = ("slots", "positions", "velocities", "images")
+
+
+class SteppedDynamics(Dynamics):
+    """Scene in progress by steps.
+
+    A *slot* is a particle's present position in memory. An engine also sets `_parts`, and places the
+    particles into their slots before the first step.
+
+    time_step : length of a step
+    reference : state of the same particles at the start time
+    unit_mass : unit of mass of the sums of energies
+    """
+
+    numbers: ClassVar[tuple[str, ...]] = ("steps", "since")
+
+    def __init__(
+        self, scene: Scene, reference: State, time_step: float, threads: int, unit_mass: float = 1.0
+    ) -> None:
+        self.time_step = time_step
+        self._scene, self._reference, self._unit_mass = scene, reference, unit_mass
+        self._threads = threads if threads > 1 else None
+        self._lost = np.zeros(2)  # net and gross, before the tally began
+        self._start, self._steps, self._since = reference.time, 0, 0
+
+    @abstractmethod
+    def _place(
+        self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
+    ) -> None:
+        """Place the particles into their slots.
+
+        slots : (N,), number of the particle in each slot
+        positions, velocities, images : (N, d)
+        """
+
+    @property
+    @abstractmethod
+    def _slots(self) -> np.ndarray:
+        """Number of the particle in each slot, shape (N,)."""
+
+    @property
+    @abstractmethod
+    def _positions(self) -> np.ndarray:
+        """Positions by slot, shape (d, N)."""
+
+    @property
+    @abstractmethod
+    def _velocities(self) -> np.ndarray:
+        """Velocities by slot, shape (d, N)."""
+
+    @property
+    @abstractmethod
+    def _images(self) -> np.ndarray:
+        """Periodic images by particle, shape (d, N)."""
+
+    @abstractmethod
+    def _advance_to(self, step: int) -> None:
+        """Make all steps up to this one, at least one, and count them. Raises SimulationError."""
+
+    @abstractmethod
+    def _sums(self) -> dict[str, np.ndarray]:
+        """Return the arrays (threads, ...) with counts by their names in a checkpoint."""
+
+    @abstractmethod
+    def _counts(self) -> dict[str, Any]:
+        """Return the values of these sums by the fields of `Tally`.
+
+        Time, steps and the energy of faces are left out.
+        """
+
+    @property
+    @abstractmethod
+    def _loss(self) -> np.ndarray:
+        """Energy taken by contacts since the tally began, in parts (K, 2).
+
+        The unit contains the unit mass.
+        """
+
+    @property
+    @abstractmethod
+    def _heat(self) -> np.ndarray:
+        """Energy given to each face by particles that left it at its temperature, shape (2d, 2).
+
+        The unit is the one of `_loss`.
+        """
+
+    @property
+    def _given(self) -> np.ndarray:
+        """Energy given by kicks, shape (1, 2), in the unit of `_loss`."""
+        return np.zeros((1, 2))
+
+    @property
+    def _progress(self) -> float:
+        """Number of steps made, including parts of a step."""
+        return self._steps
+
+    def _by_particle(self, values: np.ndarray, dtype: DTypeLike | None = None) -> np.ndarray:
+        """Convert values (d, N) by slot to values (N, d) in the order of the particles."""
+        found = np.empty(values.shape[::-1], dtype or values.dtype)
+        found[self._slots] = values.T
+        return found
+
+    @property
+    def time(self) -> float:
+        """Time reached, at the end of a step."""
+        return self._start + self._progress * self.time_step
+
+    def advance(
+        self,
+        until: float,
+        max_events: int | None = None,
+        log: EventLog | None = None,
+        max_work: int | None = None,
+    ) -> None:
+        """Step to the last whole step not after `until` (to within 1e-9 of a step).
+
+        Raises SceneError for limits or records of events, which need the event-driven engine, and for a time
+        that is not within 2^53 steps; SimulationError if the particles are too fast for a step.
+        """
+        wanted = {
+            "max_events": max_events,
+            "max_work": max_work,
+            "record_events": None if log is None else True,
+        }
+        for key, value in wanted.items():
+            if value is not None:
+                raise SceneError(key, value, 'needs the "event" engine; this one makes whole steps only')
+        steps = (until - self._start) / self.time_step
+        if not steps < _MOST_STEPS:
+            raise SceneError("until", until, f"must be within {_MOST_STEPS:g} steps of {self.time_step:g}")
+        target = math.floor(steps * (1.0 + 4e-16) + 1e-9)
+        if target <= self._steps:
+            return
+        if self._threads is not None:
+            from numba import config, set_num_threads
+
+            set_num_threads(min(self._threads, config.NUMBA_NUM_THREADS))
+        self._advance_to(target)
+
+    def reset_tally(self) -> None:
+        """Begin to count anew."""
+        self._lost[:] = self.dissipated, self.exchanged
+        for sums in self._sums().values():
+            sums[...] = 0
+        for part in self._parts:
+            part.reset(self._clock)
+        self._since = self._steps
+
+    @property
+    def dissipated(self) -> float:
+        """Energy taken by contacts and thermal walls since time 0, minus the energy of kicks."""
+        return float(self._lost[0]) + net(self._loss, self._heat, -self._given) * self._unit_mass
+
+    @property
+    def exchanged(self) -> float:
+        """Sum of the absolute energies exchanged by contacts and by each face since time 0."""
+        gross = net(self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
+        return float(self._lost[1]) + gross * self._unit_mass + abs(net(self._given)) * self._unit_mass
+
+    @property
+    def state(self) -> State:
+        """State of all particles at the present time, in float64 for any precision."""
+        state = replace(
+            self._reference,
+            time=self.time,
+            positions=self._by_particle(self._positions, float),
+            velocities=self._by_particle(self._velocities, float),
+            images=self._images.T.astype(self._reference.images.dtype),
+        )
+        write_parts(self._parts, state)
+        return state
+
+    @property
+    def tally(self) -> Tally:
+        """Counters and sums since the last `reset_tally`."""
+        counts: dict[str, Any] = {"steps": self._steps - self._since} | self._counts()
+        for part in self._parts:
+            counts |= part.counts(self._clock)
+        return Tally(
+            time=(self._steps - self._since) * self.time_step,
+            wall_energy=self._heat.sum(axis=1) * self._unit_mass,
+            dissipated_energy=net(self._loss) * self._unit_mass,
+            thermostat_energy=net(self._given) * self._unit_mass,
+            **counts,
+        )
+
+    def _arrays(self) -> dict[str, np.ndarray]:
+        return {**super()._arrays(), "lost": self._lost}
+
+    def _all_sums(self) -> dict[str, np.ndarray]:
+        """Return the arrays (threads, ...) with counts, including the arrays of parts."""
+        return {**self._sums(), **sums_of(self._parts)}
+
+    def _joined(self, sums: np.ndarray) -> np.ndarray:
+        """Return the sum over threads of an array (threads, ...) with counts."""
+        return np.asarray(sums.sum(axis=0))
+
+    def _kept(self) -> dict[str, Any]:
+        return {
+            **super()._kept(),
+            **{key: self._joined(sums) for key, sums in self._all_sums().items()},
+            "slots": self._slots,
+            "positions": self._by_particle(self._positions),
+            "velocities": self._by_particle(self._velocities),
+            "images": self._images.T,
+        }
+
+    def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
+        self._place_again(checkpoint)
+        for key, sums in self._all_sums().items():
+            sums[...] = 0
+            sums[0] = checkpoint[key]
+
+    def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
+        """Place the particles in their slots of a checkpoint; counts of this are overwritten."""
+        self._place(*(checkpoint[key] for key in _PLACED))
