@@ -46,9 +46,23 @@ def require_processes(key: str, count: int) -> None:
 
 
 def in_threads(function: Callable[[Any], Any], items: Iterable[Any], threads: int) -> list[Any]:
-    """Return the results of a function for all items, in their order, of which so many are worked on at once.
+    """Return the results of a function for all items, in their order.
 
     It pays for functions whose time is spent in kernels, which hold no lock.
+
+    Parameters
+    ----------
+    function : callable
+        Function of an item.
+    items : iterable
+        The items.
+    threads : int
+        Number of items that are processed at once.
+
+    Returns
+    -------
+    list
+        The results.
     """
     if threads == 1:
         return [function(item) for item in items]

@@ -242,7 +242,7 @@ class Engine:
 
     @property
     def timed_as(self) -> str:
-        """Its name in the table of costs (`gaspart.accuracy.table`)."""
+        """Name in the table of costs (`gaspart.accuracy.table`)."""
         return self.name
 
     @property

@@ -238,7 +238,7 @@ class Sliding(NamedTuple):
     Attributes
     ----------
     velocity : (2d, d), velocities of the container's faces
-    shear : (2d^2, 2), momentum along each axis that particles have given to each face, see `physics.running_sum.add`
+    shear : (2d^2, 2), momentum along each axis given to each face by particles, see `physics.running_sum.add`
     """
 
     velocity: np.ndarray

@@ -1,4 +1,7 @@
-"""Sine and cosine with the same bits on every machine: by +, -, x and / alone."""
+"""Sine and cosine with the same bits on every machine.
+
+They are computed by +, -, x and / alone.
+"""
 
 from math import floor
 
