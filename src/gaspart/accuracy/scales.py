@@ -105,7 +105,7 @@ class Scales:
         lines += [f"suggested: {self.proposal}"]
         if self.thermal_speed and not 1.0 / _REDUCED < self.thermal_speed < _REDUCED:
             rule = "k_B is 1: a temperature is an energy, of one system of units with the masses and lengths"
-            lines += [f"units: {rule} (docs/units.md)"]
+            lines += [f"units: {rule} (docs/conventions.md)"]
         return lines
 
 

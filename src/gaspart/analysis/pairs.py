@@ -96,7 +96,7 @@ def radial_distribution(
 # g(r) from the momentum that pairs of particles gain along their separation.
 #
 # In equilibrium this gives k_B T g(r) without the noise of counting, but for what all distances share
-# (`Tally.contact_impulse_sum`; docs/design-notes.md has the derivation). That follows from the number of
+# (`Tally.contact_impulse_sum`; docs/estimators.md has the derivation). That follows from the number of
 # pairs within the furthest distance, which is counted. Counts have less noise in wide shells of a dense
 # fluid, so both are mixed, as densities are (`gaspart.analysis.impulses`).
 
