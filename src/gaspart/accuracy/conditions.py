@@ -16,9 +16,9 @@ import numpy as np
 from gaspart import theory
 from gaspart.accuracy.column import Column, Pulled, between, pulled
 from gaspart.analysis.run import open_run
-from gaspart.engines.dsmc.defaults import accessible, contact_values
+from gaspart.engines.conditions import Layers
+from gaspart.engines.dsmc.defaults import accessible
 from gaspart.scene.faces import Thermal
-from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
@@ -28,91 +28,13 @@ _CERTAIN = 4.0
 """Standard errors by which two of all layers differ if there is a gradient."""
 _HELD = 0.02
 """Part of the particles beyond which a layer counts in the shortest scale."""
-_FREE = 0.02
-"""The least part of the volume that is free of a pair, where its contact value is evaluated."""
 
 
 @dataclass(frozen=True)
-class Conditions:
-    """Layers across an axis, from wall to wall: place (S,) of their middle; share (S,) of all particles in
-    each; crowding (S,), the density over that of a gas that fills evenly what centres can reach; temperature
-    (S,). axis: None of an even gas; scale: the shortest length along it over which density or temperature
-    change by the factor e; columns: under gravity, by theory, of the real gas and of an ideal one."""
+class Conditions(Layers):
+    """Layers, with what theory knows of them. columns: under gravity, of the real gas and of an ideal one."""
 
-    scene: Scene
-    place: np.ndarray
-    share: np.ndarray
-    crowding: np.ndarray
-    temperature: np.ndarray
-    axis: int | None = None
-    scale: float = math.inf
     columns: tuple[Column, Column] | None = None
-
-    @cached_property
-    def free(self) -> np.ndarray:
-        """(d,) lengths that centres can reach."""
-        lower, upper = accessible(self.scene)
-        return np.asarray(upper - lower)
-
-    @cached_property
-    def _kinds(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """(K,) radii, masses and mean number densities of the kinds of particles that move."""
-        kinds = self.scene.moving_kinds
-        radii = np.array([kind.radius for kind in kinds])
-        masses = np.array([kind.mass for kind in kinds])
-        return radii, masses, np.array([kind.count for kind in kinds]) / float(self.free.prod())
-
-    @cached_property
-    def filled(self) -> np.ndarray:
-        """(S,) packing fraction, of what centres can reach."""
-        radii, _, numbers = self._kinds
-        d = self.scene.dimension
-        return self.crowding * ball_volume(d) * float((numbers * radii**d).sum())
-
-    @cached_property
-    def contact(self) -> np.ndarray:
-        """(S,) contact value of an infinite gas, the largest one of all pairs of kinds."""
-        radii, _, numbers = self._kinds
-        d = self.scene.dimension
-        return np.array([float(contact_values(numbers * one, radii, d).max()) for one in self.crowding])
-
-    @cached_property
-    def contact_of_few(self) -> np.ndarray:
-        """(S,) that of so many particles, inf where a pair has no room.
-
-        A pair at contact has not to avoid itself: 1 / (1 - v / V), v the volume from which one of the pair
-        keeps the centre of the other, which is exact of two particles, times the contact value of the rest.
-        To first order in the packing fraction of spheres 1 + (5/2 + 3/N) eta: 4 eta of two, 5/2 eta of many.
-        """
-        radii, _, numbers = self._kinds
-        d, count = self.scene.dimension, self.scene.count
-        pair = ball_volume(d) * (2.0 * float(radii.max())) ** d / float(self.free.prod())
-        others = max(0.0, count - 2.0) / count
-        room = np.maximum(0.0, 1.0 - pair * self.crowding)
-        rest = [float(contact_values(others * numbers * one, radii, d).max()) for one in self.crowding]
-        return np.where(room > _FREE, np.array(rest) / np.maximum(room, _FREE), math.inf)
-
-    @cached_property
-    def virial(self) -> np.ndarray:
-        """(S,) Z - 1."""
-        return 2.0 ** (self.scene.dimension - 1) * self.filled * self.contact_of_few
-
-    @cached_property
-    def path(self) -> np.ndarray:
-        """(S,) mean free path of the kind that has the shortest one."""
-        radii, _, numbers = self._kinds
-        d = self.scene.dimension
-        sigma = radii[:, None] + radii
-        section = math.pi * sigma**2 if d == 3 else 2.0 * sigma
-        most = float((section * numbers).sum(axis=1).max())
-        return np.asarray(1.0 / (math.sqrt(2.0) * most * self.crowding * self.contact))
-
-    @cached_property
-    def speed(self) -> np.ndarray:
-        """(S,) mean speed of the lightest particles."""
-        _, masses, _ = self._kinds
-        mean = 8.0 / math.pi if self.scene.dimension == 3 else math.pi / 2.0
-        return np.sqrt(mean * self.temperature / masses.min())
 
     @property
     def quickened(self) -> float:
@@ -123,20 +45,6 @@ class Conditions:
         hotter = np.sqrt(self.temperature / (start or math.inf))
         mean = (self.share * self.crowding * self.contact * hotter).sum()
         return float(mean / even_conditions(self.scene, 1.0).contact[0])
-
-    @property
-    def contrast(self) -> float:
-        """The shortest free path of an even gas over the shortest one here."""
-        return float((self.crowding * self.contact).max() / even_conditions(self.scene, 1.0).contact[0])
-
-    @cached_property
-    def surfaces(self) -> float:
-        """What part of all contacts lack a neighbour beyond a wall, to first order: the sum over axes with
-        walls of the largest diameter over the length in which the particles are."""
-        sides = np.where(self.scene.container.periodic, math.inf, self.free)
-        if self.axis is not None and math.isfinite(sides[self.axis]):
-            sides[self.axis] = min(sides[self.axis], self.scale)
-        return float((2.0 * self.scene.largest_radius / np.maximum(sides, 1e-300)).sum())
 
     @cached_property
     def memory(self) -> float:
@@ -194,7 +102,7 @@ def kinetic_temperature(scene: Scene, start: State) -> float:
 
 def even_conditions(scene: Scene, temperature: float) -> Conditions:
     """Those of a gas that is the same everywhere."""
-    return Conditions(scene, np.zeros(1), np.ones(1), np.ones(1), np.array([temperature]))
+    return Conditions(scene, np.ones(1), np.ones(1), np.array([temperature]))
 
 
 def _of_column(scene: Scene, pulled_scene: Pulled, start: State) -> Conditions:
@@ -209,7 +117,6 @@ def _of_column(scene: Scene, pulled_scene: Pulled, start: State) -> Conditions:
     within[0] = True
     return Conditions(
         scene,
-        z,
         share,
         numbers * pulled_scene.height / scene.count,
         np.full(len(z), real.temperature),
@@ -248,4 +155,4 @@ def _along(scene: Scene, axis: int, places: np.ndarray, thermal: np.ndarray) -> 
     change = np.maximum(*(np.abs(of[other] - of[one]) for of in logarithms))
     certain = np.maximum(change - _CERTAIN * error, 0.0) / (middle[other] - middle[one])
     scale = 1.0 / float(certain.max()) if certain.max() > 0.0 else math.inf
-    return Conditions(scene, middle, share, crowding, temperature, axis, scale)
+    return Conditions(scene, share, crowding, temperature, axis, scale)

@@ -152,7 +152,10 @@ def asked_of(target: Target, accuracy: float, conditions: Conditions) -> Asked:
     governed = transported(target.scene, target.observable)
     presses = target.declared.of_impulses  # a force has the relative errors of a pressure
     observable = "pressure" if presses else target.observable
-    return Asked(observable, accuracy, conditions, target.face, governed, target.initial)
+    return Asked(
+        observable, accuracy, conditions, target.face, governed, target.initial,
+        memory=conditions.memory, points=conditions.of_points(observable, target.face),
+    )  # fmt: skip
 
 
 def transported(scene: Scene, observable: str) -> bool:

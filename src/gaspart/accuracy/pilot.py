@@ -29,7 +29,7 @@ from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
 from gaspart.simulation import Simulation
 from gaspart.state.given import state_at_time_zero
-from gaspart.state.optional_tallies import tally_to_dict
+from gaspart.state.optional_tallies import tallies_to_json
 from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
@@ -252,7 +252,7 @@ def _digest(target: Target, engine: Engine, seconds: float) -> str:
     kind = "motion" if target.correlated else target.declared.samples
     if target.declared.needs in KEPT:
         kind = target.declared.needs
-    kept = [tally_to_dict(tally) for tally in target.tallies(engine)]
+    kept = tallies_to_json(target.tallies(engine))
     content = [target.scene.to_dict(), engine_to_dict(engine), kind, kept, seconds, source_digest()]
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:24]
 

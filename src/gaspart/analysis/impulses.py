@@ -24,7 +24,6 @@ from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import (
     ImpulseTally,
     OptionalTally,
-    option_of,
     stored_tally,
     useful_impulses,
 )
@@ -63,7 +62,7 @@ def estimator(
         asked.check(run.scene)
     except SceneError:
         return found
-    advice = f"a run with {' '.join(option_of(asked))} makes it more accurate"
+    advice = f"a run with {asked.option} makes it more accurate"
     return {**found, "note": f"by {usual}; {lacks or advice}"}
 
 
@@ -137,7 +136,7 @@ class Carried:
 
 def kept(data: xr.Dataset) -> ImpulseTally | None:
     """What the file of a run has of impulses."""
-    return stored_tally(data.attrs.get("tallies", "[]"), ImpulseTally)
+    return stored_tally(data.attrs, ImpulseTally)
 
 
 def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> np.ndarray | None:

@@ -26,7 +26,7 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_particle
-from gaspart.state.optional_tallies import tally_to_dict
+from gaspart.state.optional_tallies import tallies_to_json
 from gaspart.state.state import by_number
 from gaspart.state.tally import Tally
 from gaspart.trajectory.pairs import PairCounter
@@ -397,6 +397,6 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
         attrs={
             "scene": dump_yaml(scene.to_dict()),
             "engine": json.dumps(engine_to_dict(engine)),
-            "tallies": json.dumps([*map(tally_to_dict, simulation.tallies)]),
+            "tallies": tallies_to_json(simulation.tallies),
         },
     )

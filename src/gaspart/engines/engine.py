@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import MISSING, asdict, dataclass, fields
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.keys import from_mapping, validate
@@ -17,8 +17,7 @@ from gaspart.keys.values import one_of
 from gaspart.scene.features import FEATURES
 
 if TYPE_CHECKING:
-    import numpy as np
-
+    from gaspart.engines.conditions import Layers
     from gaspart.engines.dynamics import Dynamics
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
@@ -28,103 +27,24 @@ if TYPE_CHECKING:
 # Accuracy requests to engines, and their answers.
 
 
-class Local(Protocol):
-    """Local density and temperature of a steady scene, in layers (S,) across an axis.
-
-    `gaspart.accuracy.conditions` implements this interface and explains its properties.
-    """
-
-    @property
-    def scene(self) -> Scene:
-        """Scene."""
-
-    @property
-    def axis(self) -> int | None:
-        """Axis across which the gas changes; None for a homogeneous gas."""
-
-    @property
-    def scale(self) -> float:
-        """Shortest length along the axis over which the gas changes by the factor e."""
-
-    @property
-    def free(self) -> np.ndarray:
-        """Lengths that centres can reach, shape (d,)."""
-
-    @property
-    def share(self) -> np.ndarray:
-        """Fraction of all particles in each layer, shape (S,)."""
-
-    @property
-    def crowding(self) -> np.ndarray:
-        """Local density divided by the mean density, shape (S,)."""
-
-    @property
-    def temperature(self) -> np.ndarray:
-        """Local k_B T, shape (S,)."""
-
-    @property
-    def filled(self) -> np.ndarray:
-        """Local packing fraction, shape (S,)."""
-
-    @property
-    def contact(self) -> np.ndarray:
-        """Local contact value of an infinite gas, shape (S,)."""
-
-    @property
-    def contact_of_few(self) -> np.ndarray:
-        """Local contact value for the number of particles of the scene, shape (S,)."""
-
-    @property
-    def virial(self) -> np.ndarray:
-        """Local Z - 1, shape (S,)."""
-
-    @property
-    def path(self) -> np.ndarray:
-        """Local mean free path, shape (S,)."""
-
-    @property
-    def speed(self) -> np.ndarray:
-        """Local mean speed, shape (S,)."""
-
-    @property
-    def contrast(self) -> float:
-        """Shortest free path of a homogeneous gas divided by the shortest one here."""
-
-    @property
-    def surfaces(self) -> float:
-        """Fraction of all contacts that lack a neighbour beyond a wall."""
-
-    @property
-    def memory(self) -> float:
-        """Relative deviation |D / D_Enskog - 1| due to correlated collisions."""
-
-    def of_points(self, observable: str, face: str | None) -> float | None:
-        """Return the relative deviation of the observable of points from hard particles.
-
-        Returns None if theory does not know it for the column of particles.
-        """
-
-
 @dataclass(frozen=True)
 class Asked:
-    """Observable of a steady scene, and its requested relative accuracy.
+    """An observable of a steady scene, and its relative accuracy: a standard error with the bias.
 
-    The accuracy is a standard error with the bias.
-
-    Attributes
-    ----------
-    conditions : local conditions of the scene
-    face : wall of a pressure
-    transported : whether transport coefficients govern the observable
-    initial : state at time 0, None if only the errors of models are requested
+    conditions: of the scene; face: of the pressure, the wall; transported: whether transport coefficients
+    govern the observable; initial: the state at time 0, None where only the errors of models are asked for;
+    memory: by how much correlated collisions change transport; points: by how much the observable of points
+    differs, None where theory does not know it.
     """
 
     observable: str
     accuracy: float
-    conditions: Local
+    conditions: Layers
     face: str | None = None
     transported: bool = False
     initial: State | None = None
+    memory: float = 0.0
+    points: float | None = None
 
     @property
     def scene(self) -> Scene:

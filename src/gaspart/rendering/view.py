@@ -16,9 +16,9 @@ from gaspart.analysis.run import repeated
 from gaspart.errors import SceneError
 from gaspart.files import FileKind, output_path, writing
 from gaspart.keys.values import count_of
+from gaspart.rendering.camera import edges_of
 from gaspart.rendering.frames import opened, particles_of, scene_of
 from gaspart.rendering.particles import FASTEST, FIXED, DrawnParticles
-from gaspart.rendering.pictures import edges_of
 from gaspart.rendering.style import COLOURS
 from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene

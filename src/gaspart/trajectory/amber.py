@@ -21,6 +21,7 @@ from gaspart.state.optional_tallies import OptionalTally, tallied_fields
 from gaspart.state.tally import Tally
 from gaspart.system import read_at, write_at
 from gaspart.trajectory.correlator import meaning_of
+from gaspart.trajectory.run_options import KEPT
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -30,8 +31,6 @@ NOTE = (
     "Reduced units: lengths and times are in the scene's own units, masses relative to the reference "
     "species, k_B = 1. Picosecond and angstrom stand for these, because readers of AMBER files insist on it."
 )
-KEPT = {"positions": "coordinates", "velocities": "velocities"}
-"""Properties of a particle of which a frame may hold one alone (`keep`), and their variables."""
 _ALONG = {field.name: field.metadata.get("along", ()) for field in fields(Tally)}
 MAGIC = b"CDF\x02"
 """First bytes of a netCDF-3 file of 64-bit offsets."""

@@ -3,35 +3,51 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.keys.values import count_of, number, one_of
+from gaspart.keys.values import number
 from gaspart.scene.face_checks import check_piston_end
 from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.state.given import state_at_time_zero, state_from_arrays
 from gaspart.state.insertion import per_particle
-from gaspart.state.optional_tallies import OptionalTally, tallies_of, tally_from_dict, tally_to_dict
+from gaspart.state.optional_tallies import (
+    OptionalTally,
+    tallies_from_json,
+    tallies_of,
+    tallies_to_json,
+)
 from gaspart.state.random import stream
 from gaspart.state.state import State
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.correlator import Correlations, sum_names
 from gaspart.trajectory.opening import opened
 from gaspart.trajectory.pairs import pair_names, pairs_of
+from gaspart.trajectory.run_options import OPTIONS
 from gaspart.trajectory.until import Until
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:
     import netCDF4
 
+_FORMS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
+    "displacements": (np.int32, bool),
+    "follow": (np.int32, int),
+    "keep": (str, str),
+    "correlations": (Correlations.to_json, Correlations.from_json),
+    "pairs": (np.int32, bool),
+    "tallies": (tallies_to_json, tallies_from_json),
+}
+"""Fields of a recipe that the file states unless they are at their default: to the attribute, and back."""
 MOST_REPLICAS = 10_000
 ROUNDING = 1e-9
 """Relative deviation from an integer multiple that is attributed to rounding."""
@@ -92,13 +108,13 @@ class Recipe:
             raise SceneError("replica", self.replica, "must be one of several, with its number in its seed")
         if self.scene.count == 0:
             raise SceneError("scene", "no particles", "a run needs at least one particle")
-        if self.follow is not None:
-            if count_of("follow", self.follow, least=1) > self.scene.count:
-                raise SceneError("follow", self.follow, f"there are {self.scene.count} particles")
-        if self.keep is not None:
-            one_of("keep", self.keep, tuple(amber.KEPT))
-            if self.until:
-                raise SceneError("keep", self.keep, "has no meaning with until, which measures what is there")
+        for key, kind in OPTIONS.items():
+            if (value := getattr(self, key, None)) is not None:
+                object.__setattr__(self, key, kind.check(key, value))
+        if self.follow is not None and self.follow > self.scene.count:
+            raise SceneError("follow", self.follow, f"there are {self.scene.count} particles")
+        if self.keep and self.until:
+            raise SceneError("keep", self.keep, "has no meaning with until, which measures what is there")
         for key in ("follow", "correlations", "displacements", "pairs"):
             if getattr(self, key):
                 refuse_open(self.scene, f"excludes {key}: the particles change")
@@ -219,12 +235,8 @@ class Recipe:
             **{f"predicted_{key}": value for key, value in self.engine.predictions(self.scene).items()},
             **self._length(),
             "sample_interval": self.sample_interval,
-            "displacements": np.int32(self.displacements),
-            **({} if self.follow is None else {"follow": np.int32(self.follow)}),
-            **({} if self.keep is None else {"keep": self.keep}),
-            **({} if self.correlations is None else {"correlations": self.correlations.to_json()}),
-            **({"pairs": np.int32(1)} if self.pairs else {}),
-            **({"tallies": json.dumps([*map(tally_to_dict, self.tallies)])} if self.tallies else {}),
+            "displacements": np.int32(self.displacements),  # also if False
+            **{name: store(value) for name, (store, _) in _FORMS.items() if (value := getattr(self, name))},
             **dict(zip(("replica", "replicas"), map(np.int32, self.replica or ()), strict=False)),
         }
 
@@ -302,15 +314,10 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
             seed=tuple(seed) if isinstance(seed, list) else seed,
             duration=None if "until" in stored else float(stored["duration"]),
             sample_interval=float(stored["sample_interval"]),
-            displacements=bool(stored["displacements"]),
-            follow=int(stored["follow"]) if "follow" in stored else None,
-            correlations=Correlations.from_json(stored["correlations"]) if "correlations" in stored else None,
             until=Until.from_json(stored["until"], stored.get("at_most")) if "until" in stored else None,
-            pairs=bool(stored.get("pairs", False)),
             initial=_stored_initial(file, scene),
-            tallies=tuple(tally_from_dict(tally) for tally in json.loads(stored.get("tallies", "[]"))),
             replica=(int(stored["replica"]), int(stored["replicas"])) if "replica" in stored else None,
-            keep=stored.get("keep"),
+            **{name: restore(stored[name]) for name, (_, restore) in _FORMS.items() if name in stored},
         )
     except SceneError:
         raise

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.engine import Asked, Candidate, Local
+from gaspart.engines.engine import Asked, Candidate
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
+    from gaspart.engines.conditions import Layers
     from gaspart.engines.dsmc.settings import DSMC
 
 DENSEST = 0.4
@@ -58,14 +59,13 @@ def candidate(engine: DSMC, asked: Asked) -> Candidate:
 def boltzmann_error(asked: Asked) -> float:
     """Bound the relative error of the Boltzmann equation, in which particles are points."""
     conditions, scene = asked.conditions, asked.scene
-    error = (conditions.memory if asked.transported else 0.0) + _layers(asked)
+    error = (asked.memory if asked.transported else 0.0) + _layers(asked)
     if asked.observable != "pressure":
         lost = _NORMAL[scene.dimension] * conditions.surfaces
         error += lost / (1.0 - lost) if lost < 1.0 else math.inf
     few = float((conditions.contact_of_few / conditions.contact).max()) - 1.0
-    differing = conditions.of_points(asked.observable, asked.face)
-    if differing is not None:
-        return float(error + few + differing)
+    if asked.points is not None:
+        return float(error + few + asked.points)
     virial = float(conditions.virial.max())
     if math.isinf(virial):
         return math.inf
@@ -83,7 +83,7 @@ def enskog_error(asked: Asked, cells: tuple[int, ...] | None = None) -> float:
     conditions = asked.conditions
     error = _STATIC + _layers(asked)
     if asked.transported:
-        error += conditions.memory
+        error += asked.memory
     error += float((conditions.contact_of_few / conditions.contact).max()) - 1.0
     error += _AT_WALLS * float(conditions.filled.max()) * conditions.surfaces
     if asked.observable == "pressure" and cells is not None:
@@ -112,7 +112,7 @@ def cell_error(engine: DSMC, asked: Asked) -> float:
     return float(error + (_lost(engine, conditions) if dense else 0.0))
 
 
-def require_resolved(engine: DSMC, conditions: Local) -> None:
+def require_resolved(engine: DSMC, conditions: Layers) -> None:
     """Raise SceneError for cells or steps that do not resolve an inhomogeneous gas.
 
     They must not be longer than the length or time over which the gas changes, nor than its shortest free
@@ -137,7 +137,7 @@ def require_resolved(engine: DSMC, conditions: Local) -> None:
             raise SceneError(key, value, f"{what} {size:.2g}, more than {limit:.2g}, {name}")
 
 
-def cell_widths(engine: DSMC, conditions: Local) -> np.ndarray:
+def cell_widths(engine: DSMC, conditions: Layers) -> np.ndarray:
     """Return the sides (d,) of a cell, 0 along an axis without profile and cells.
 
     Such an axis has one cell between periodic faces and no profile.
@@ -150,7 +150,7 @@ def cell_widths(engine: DSMC, conditions: Local) -> np.ndarray:
     return np.where(flat, 0.0, conditions.free / cells)
 
 
-def cells_of(engine: DSMC, conditions: Local) -> tuple[int, ...]:
+def cells_of(engine: DSMC, conditions: Layers) -> tuple[int, ...]:
     """Return the number of cells along each axis (d,), by default 1."""
     return tuple(np.broadcast_to(np.array(engine.cells_per_side or 1), conditions.free.shape).tolist())
 
@@ -168,7 +168,7 @@ def _layers(asked: Asked) -> float:
     return float(conditions.virial.max()) * math.sqrt(sigma / max(length, sigma))
 
 
-def _lost(engine: DSMC, conditions: Local) -> float:
+def _lost(engine: DSMC, conditions: Layers) -> float:
     """Return the fraction of collisions that the engine loses, weighted by collisions.
 
     Collisions are lost in cells with fewer particles than the mean.

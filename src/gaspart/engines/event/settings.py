@@ -10,6 +10,7 @@ from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
 from gaspart.keys import choice, declared, per_side
 from gaspart.scene.features import FEATURES
+from gaspart.state.optional_tallies import TALLIES
 
 if TYPE_CHECKING:
     from gaspart.engines.event.dynamics import EventDynamics
@@ -77,9 +78,7 @@ class EventDriven(Engine):
     name: ClassVar[str] = "event"
     title: ClassVar[str] = "event-driven"
     records_events: ClassVar[bool] = True
-    tallies: ClassVar[frozenset[str]] = frozenset(
-        ("stress", "impulses", "pair_impulses", "wall_shear", "entries", "fixed_collisions", "per_area")
-    )
+    tallies: ClassVar[frozenset[str]] = frozenset(tally.name for tally in TALLIES)
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     neutral_settings: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
     first_segment: ClassVar[int] = 256  # events with crossings and predictions

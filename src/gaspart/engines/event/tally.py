@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.engines.features.part import Part, TallyPart
-from gaspart.engines.features.tallies import impulses_part, pair_impulses_part, stress_part
+from gaspart.engines.features.tallies import PARTS
 from gaspart.errors import SimulationError
 from gaspart.kernels import model as kernels
 from gaspart.kernels.event.pair_contact import CollapseWatch
@@ -20,8 +20,6 @@ from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
-PARTS = {"stress": stress_part, "impulses": impulses_part, "pair_impulses": pair_impulses_part}
-"""Functions that make the part of an optional tally, by its name."""
 _OPTIONAL = kernels.Tally._field_defaults  # entries that a part has
 
 

@@ -235,3 +235,7 @@ def pair_impulses_part(
     )
     pairs = 0.5 * n * (n - 1) * d * ball_volume(d)  # per volume and distance^(d - 1), if independent
     return PairImpulsesPart(kernel, unit_mass * scene.container.volume / (pairs * per_unit))
+
+
+PARTS = {"stress": stress_part, "impulses": impulses_part, "pair_impulses": pair_impulses_part}
+"""Functions that make the part of an optional tally of the event-driven engine, by its name."""

@@ -1,4 +1,4 @@
-"""Compiled part of the ray tracer (see `rendering.pictures`): rays, shadows and the skylight."""
+"""The compiled part of the ray tracer (see `rendering.tracer`): rays, shadows and the light of the sky."""
 
 from __future__ import annotations
 

@@ -149,13 +149,14 @@ def separate(typingctx, flights, i, first, listed, vector, space, found):
     return types.none(flights, word, word, listed, vector, space, found), generate
 
 
-# Impulses by the distance of a pair of particles: what makes the radial distribution function accurate.
+# Impulses by the distance of a pair of particles, which make the radial distribution function accurate.
 #
-# An impulse dp on a particle, at r from another one, changes the relative momentum (p - p') / 2 of the
-# pair, and gives dp.r / (2 r^d) to all distances above r (docs/estimators.md). At a contact this is so
-# of the two that meet, and of each of them with all others. Of the shells, the mean over that of the pair
-# itself has the part 1 - f, with f the part of its volume below r, and all higher ones have all: the shell
-# is given 1 - f, the next one f, and the mean over a shell is the sum of all up to it.
+# An impulse dp on a particle, at r from another particle, changes the relative momentum (p - p') / 2 of the
+# pair, and gives dp.r / (2 r^d) to all distances above r (docs/estimators.md). A collision does so for the
+# colliding pair, and for each of its particles with all others. The value is averaged over each shell. The
+# shell of the pair itself gets the part 1 - f, with f the fraction of its volume below r, and all higher
+# shells get the whole: 1 - f is added to the shell, f to the next one, and the mean over a shell is the sum
+# of all shells up to it.
 #
 # The others of a pair are found in an order that depends on the search, so whole numbers are summed.
 

@@ -173,13 +173,13 @@ def nearest(gap, length, periodic):
     return gap
 
 
-# Planes across an axis, those of equal bins: which of them an impulse acts below.
+# Planes across an axis, at the boundaries of equal bins: the planes below which an impulse acts.
 #
-# An impulse dp on a particle at z changes the momentum below every plane above z. Of the planes of one bin
-# that is the part 1 - f, where f is how far up in the bin the particle is: the bin is given dp (1 - f),
-# the next one dp f, and the mean over the planes of a bin is the sum of all up to it
-# (docs/estimators.md). Impulses of any origin count, of contacts, walls and edges of wells: all that
-# changes a velocity between two flights.
+# An impulse dp on a particle at z changes the momentum below every plane above z. For the planes within one
+# bin this holds for the fraction 1 - f, where f is the particle's height in the bin as a fraction of it: dp
+# (1 - f) is added to the bin, dp f to the next one, and the mean over the planes of a bin is the sum of all
+# bins up to it (docs/estimators.md). Impulses of any origin count, from contacts, walls and edges of wells:
+# all changes of a velocity between two flights.
 
 
 @inner_helper

@@ -159,7 +159,8 @@ def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
     step = _step(point) * found.speed / math.sqrt(8.0 / math.pi) * math.sqrt(2.0)
     grown = cell_factor(coefficient, width / found.path) * step_factor(coefficient, step / found.path)
     bound = boltzmann_error if name == "boltzmann" else enskog_error
-    model = bound(Asked("D", 1.0, even_conditions(scene, 1.0), transported=True))
+    even = even_conditions(scene, 1.0)
+    model = bound(Asked("D", 1.0, even, transported=True, memory=even.memory))
     return model, float(grown) - 1.0
 
 
