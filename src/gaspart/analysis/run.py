@@ -112,8 +112,7 @@ class Run:
         return self.vectors("velocities").values.astype(float)
 
     def vectors(self, name: str) -> xr.DataArray:
-        """Return the vectors (T, N, d) of this name, read as they are used; raise SceneError if the file lacks
-        them."""
+        """Return the vectors (T, N, d) of this name, read on use; raise SceneError if the file lacks them."""
         if name not in self.data:
             rule = f"of each particle the file has nothing else, and {name} are needed"
             raise SceneError("keep", self.data.attrs.get("keep"), rule)
