@@ -25,7 +25,7 @@ from gaspart.rendering.live_gas import LiveGas
 
 MOST = 4_000_000
 """Bytes of all files."""
-_FRAMES, _CROSSINGS = 41, 1.0
+_FRAMES, _CROSSINGS = 37, 0.9
 """Frames of a run, and its duration in times in which a particle crosses the container."""
 _STEPS = 400
 """Steps of the gauges."""

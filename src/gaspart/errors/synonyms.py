@@ -96,12 +96,12 @@ SYNONYMS: dict[str, str | tuple[str, ...]] = {
     "parameters": "over",
     "grid": "over",
 }
-"""By the other word the name, with a remark behind a comma; several names have a comma or "or" between. Of
+"""Name by the other word, with a remark behind a comma; several names have a comma or "or" between. Of
 several meanings the first that is known applies."""
 
 
 def meant(word: str, known: list[str]) -> str | None:
-    """What another word means where these names are known; None if it has no such meaning."""
+    """Return the meaning of another word if its names are known, or None."""
     meanings = SYNONYMS.get(word, ())
     for meaning in (meanings,) if isinstance(meanings, str) else meanings:
         if any(name in known for name in meaning.replace(",", " ").split()):
@@ -176,4 +176,4 @@ ELSEWHERE: dict[str, dict[str, str]] = {
     },
     "Tally": {"events": "collisions and wall_hits count them"},
 }
-"""By package or class, and by the name that it does not have, where that is found."""
+"""Location of a missing name, by package or class and by the name."""

@@ -30,7 +30,7 @@ def live(
     size: tuple[int, int] = LIVE_SIZE,
     colour: str = "speed",
 ) -> Any:
-    """Show a scene that runs as long as it is watched, in a widget of a notebook.
+    """Show a scene that runs while it is watched, in a widget of a notebook.
 
     Sliders change the packing fraction, for which the gas starts again, and gravity, the temperature of the
     walls, restitution and the side x high, with which the gas goes on. The side is pushed in as a piston and
