@@ -1,7 +1,8 @@
-"""The local density and temperature of a steady scene, from which bounds on the errors of DSMC follow.
+"""Local density and temperature of a steady scene, which bound the errors of DSMC.
 
-A gas that is even has its mean values everywhere; one under gravity those of hydrostatics (`column`), where
-theory knows them; any other has those that a pilot run of the exact engine shows.
+A homogeneous gas has its mean values everywhere; a gas under gravity has the profiles of hydrostatics
+(`column`), where theory knows them; any other gas has the values that a pilot run of the exact engine
+measures.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
 _LAYERS = 12
-"""Of a measured profile, in each axis, with as many particles in each."""
+"""Number of equally populated layers of a measured profile, in each axis."""
 _CERTAIN = 4.0
 """Standard errors by which two of all layers differ if there is a gradient."""
 _HELD = 0.02
@@ -38,7 +39,7 @@ class Conditions(Layers):
 
     @property
     def quickened(self) -> float:
-        """How often particles collide over how often they would in an even gas as hot as they start."""
+        """Collision rate divided by the rate in a homogeneous gas as hot as at the start."""
         kinds = self.scene.moving_kinds
         d = self.scene.dimension
         start = sum(kind.count * kind.initial_temperature(d) for kind in kinds) / self.scene.count
@@ -48,18 +49,26 @@ class Conditions(Layers):
 
     @cached_property
     def memory(self) -> float:
-        """|D / Enskog's - 1| of spheres, by which correlated collisions change transport; of discs, whose
-        coefficients grow with the size of the system, the same at this packing fraction, an estimate."""
+        """Effect |D / Enskog's - 1| of correlated collisions on the transport of spheres.
+
+        The coefficients of discs grow with the size of the system; their estimate is the value at the same
+        packing fraction.
+        """
         densest = min(float(self.filled.max()), theory.ERPENBECK_WOOD_HIGHEST)
         return abs(float(theory.erpenbeck_wood_ratio(densest)) - 1.0) if densest > 0.0 else 0.0
 
     def of_points(self, observable: str, face: str | None) -> float | None:
-        """By how much an observable of points differs from that of particles, relatively; face: of the
-        pressure; None where theory does not know the column."""
+        """Compute the relative difference of an observable between points and particles.
+
+        `face` is the wall of a pressure. None if theory does not know the column.
+        """
         return between(*self.columns, observable, self._top(face)) if self.columns else None
 
     def _top(self, face: str | None) -> bool | None:
-        """Whether a face of the container is at the top of a column, None of any that is not across it."""
+        """Return True if a face of the container is at the top of a column.
+
+        None for a face that is not across the axis of the column.
+        """
         scene, axis = self.scene, self.axis
         if face is None or axis is None or face[0] != "xyz"[axis] or scene.gravity is None:
             return None
@@ -67,7 +76,10 @@ class Conditions(Layers):
 
 
 def known_conditions(scene: Scene, start: State) -> Conditions | None:
-    """By theory, None where that knows nothing; start: a state of the scene, which has its energy."""
+    """Compute conditions by theory; None where theory knows nothing.
+
+    The initial state `start` determines the energy of the scene.
+    """
     if column := pulled(scene):
         try:
             return _of_column(scene, column, start)
@@ -80,7 +92,7 @@ def known_conditions(scene: Scene, start: State) -> Conditions | None:
 
 
 def _is_even(scene: Scene) -> bool:
-    """Whether a scene becomes even, whatever its start."""
+    """Return True if a scene becomes homogeneous from any start."""
     law = scene.restitution
     uneven = [
         scene.gravity is not None,
@@ -94,19 +106,19 @@ def _is_even(scene: Scene) -> bool:
 
 
 def kinetic_temperature(scene: Scene, start: State) -> float:
-    """Of a state, k_B T; 0 of particles at rest."""
+    """Compute the temperature k_B T of a state; 0 for particles at rest."""
     moving = np.isfinite(start.masses)
     freedom = scene.dimension * moving.sum() - sum(scene.conserved_axes)
     return float(2.0 * start.translational_energy / freedom) if freedom > 0 else 0.0
 
 
 def even_conditions(scene: Scene, temperature: float) -> Conditions:
-    """Those of a gas that is the same everywhere."""
+    """Return the conditions of a homogeneous gas."""
     return Conditions(scene, np.ones(1), np.ones(1), np.array([temperature]))
 
 
 def _of_column(scene: Scene, pulled_scene: Pulled, start: State) -> Conditions:
-    """Under gravity. Raises ValueError where theory knows nothing."""
+    """Compute the conditions under gravity; raise ValueError where theory knows nothing."""
     energy, heat = pulled_scene.energy_of(start), max(scene.face_temperatures, default=None)
     real, ideal = (pulled_scene.settled(energy, heat, one) for one in (False, True))
     z, numbers = real.heights, real.numbers.sum(axis=0)
@@ -127,8 +139,11 @@ def _of_column(scene: Scene, pulled_scene: Pulled, start: State) -> Conditions:
 
 
 def measured_conditions(scene: Scene, path: Path) -> Conditions:
-    """Those of the measured part of a run, along the axis on which density and temperature change most.
-    Raises SceneError for a file without all particles."""
+    """Measure conditions in a run, along the axis on which they change most.
+
+    The measured part of the run counts, and the change of density and temperature. Raises SceneError for a
+    file without all particles.
+    """
     with open_run(path, None, sheared=True) as run:
         places = run.positions[:, run.moving]
         thermal = (run.masses[run.moving] * (run.peculiar**2).sum(axis=2)) / run.dimension
@@ -137,7 +152,7 @@ def measured_conditions(scene: Scene, path: Path) -> Conditions:
 
 
 def _along(scene: Scene, axis: int, places: np.ndarray, thermal: np.ndarray) -> Conditions:
-    """Layers with as many particles in each of frames (T, M)."""
+    """Compute layers that are equally populated in frames (T, M), along an axis."""
     lower, upper = (float(one[axis]) for one in accessible(scene))
     order = np.argsort(places, axis=None)
     layers = np.array_split(order, _LAYERS)

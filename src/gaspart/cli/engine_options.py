@@ -15,7 +15,7 @@ from gaspart.keys import Kind, described, schema_of
 
 @cache
 def engine_settings() -> dict[str, Kind]:
-    """The settings of all engines, by name; the meaning of each says of which engine it is."""
+    """Return the settings of all engines, by name; each meaning states its engines."""
     settings: dict[str, Kind] = {}
     for name, engine in ENGINES.items():
         for key, kind in schema_of(engine)["properties"].items():
@@ -51,13 +51,13 @@ def _sides(text: str) -> int | tuple[int, ...]:
 
 
 def one_of(words: Iterable[str]) -> str:
-    """ "a, b or c"."""
+    """Join words to "a, b or c"."""
     *first, last = words
     return f"{', '.join(first)} or {last}" if first else last
 
 
 def as_option(error: SceneError, engine: str) -> str:
-    """An error of the engine's settings in terms of the options that state them."""
+    """Describe an error of the engine's settings by the options that set them."""
     name = error.key.removeprefix("engine.")
     option = {"name": "--engine", "rewind": "--no-rewind"}.get(name, f"--{name.replace('_', '-')}")
     rule = f"has no meaning with --engine {engine}" if "unknown key" in error.rule else error.rule
@@ -78,5 +78,5 @@ def stated(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> list[str]:
 
 
 def joined(numbers: float | tuple[int, ...] | list[int]) -> str:
-    """Numbers as an option takes them."""
+    """Format numbers as an option accepts them."""
     return ",".join(map(repr, numbers)) if isinstance(numbers, tuple | list) else repr(numbers)

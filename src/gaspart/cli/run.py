@@ -83,7 +83,7 @@ def add_run(parser: Parser) -> None:
 
 
 def _add_ends(group: argparse._ArgumentGroup) -> None:
-    """What ends a run."""
+    """Add the options that end a run."""
     add = group.add_argument
     add("--duration", type=float, metavar="T", help="duration of the run, in the scene's unit")
     text = (
@@ -107,7 +107,7 @@ def _add_ends(group: argparse._ArgumentGroup) -> None:
 
 
 def _add_contents(group: argparse._ArgumentGroup) -> None:
-    """What is in the file."""
+    """Add the options for the contents of the file."""
     add = group.add_argument
     for name, kind in OPTIONS.items():
         add_setting(group, name, kind)
@@ -189,7 +189,7 @@ def _values(arguments: argparse.Namespace, names: Iterable[str]) -> dict[str, An
 
 
 def _requests(text: str) -> list[tuple[str, float]]:
-    """Observable, perhaps with a face, and accuracy, of each NAME=X between commas."""
+    """Read observable, perhaps with a face, and accuracy, of each NAME=X between commas."""
     requests = []
     for part in text.split(","):
         name, _, accuracy = part.partition("=")
@@ -202,8 +202,11 @@ def _requests(text: str) -> list[tuple[str, float]]:
 
 
 def _until(given: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
-    """What --until asks for. Raises UsageError for options that exclude or need each other, with a duration
-    for the scene where there is none."""
+    """Return the accuracies of --until.
+
+    Raises UsageError for options that exclude or need each other; without a duration it suggests one for the
+    scene.
+    """
     if given.until is not None:
         if given.duration is not None:
             raise UsageError("--duration: excludes --until; the longest duration is --at-most")
@@ -237,7 +240,7 @@ class _Status:
         self._reached = reached
 
     def remark(self) -> str:
-        """The present error that is largest beside the required one."""
+        """Return the error that is largest relative to the required one."""
         known = [one for one in self._reached if one.accuracy < math.inf]
         if not known:
             return ""

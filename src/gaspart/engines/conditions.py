@@ -31,7 +31,7 @@ class Layers:
 
     @cached_property
     def free(self) -> np.ndarray:
-        """(d,) lengths that centres can reach."""
+        """Lengths that centres can reach, shape (d,)."""
         lower, upper = accessible(self.scene)
         return np.asarray(upper - lower)
 
@@ -75,7 +75,7 @@ class Layers:
 
     @cached_property
     def virial(self) -> np.ndarray:
-        """(S,) Z - 1."""
+        """Local Z - 1, shape (S,)."""
         return 2.0 ** (self.scene.dimension - 1) * self.filled * self.contact_of_few
 
     @cached_property
@@ -97,7 +97,7 @@ class Layers:
 
     @property
     def contrast(self) -> float:
-        """The shortest free path of an even gas over the shortest one here."""
+        """Shortest free path of a homogeneous gas divided by the shortest one here."""
         radii, _, numbers = self._kinds
         even = float(contact_values(numbers, radii, self.scene.dimension).max())
         return float((self.crowding * self.contact).max() / even)

@@ -19,7 +19,7 @@ LARGEST_SIDE = 20_000
 
 
 def checked_size(size: tuple[int, int]) -> tuple[int, int]:
-    """(W, H), or a SceneError."""
+    """Return a valid size (W, H), or raise SceneError."""
     if not isinstance(size, (tuple, list)) or len(size) != 2:
         raise SceneError("size", size, "must be a width and a height in pixels")
     for side in size:
@@ -29,7 +29,7 @@ def checked_size(size: tuple[int, int]) -> tuple[int, int]:
 
 
 def checked_camera(camera: tuple[float, float] | None, dimension: int) -> tuple[float, float]:
-    """Azimuth and elevation in degrees, the default ones for None, or a SceneError."""
+    """Return azimuth and elevation in degrees, by default for None, or raise SceneError."""
     if camera is None:
         return CAMERA
     if dimension == 2:
@@ -42,7 +42,7 @@ def checked_camera(camera: tuple[float, float] | None, dimension: int) -> tuple[
 
 
 def pixels_per_length(particles: DrawnParticles, size: tuple[int, int], camera: tuple[float, float]) -> float:
-    """The scale of a picture; of spheres, in the middle of the container."""
+    """Return the scale of a picture; of spheres, in the middle of the container."""
     lengths = particles.lengths
     if len(lengths) == 2:
         from gaspart.rendering.discs import scale_of
@@ -59,8 +59,11 @@ def picture(
     paths: Sequence[np.ndarray] = (),
     direction: tuple[float, float] = CAMERA,
 ) -> np.ndarray:
-    """The pixels, uint8 (H, W, 3), of particles in these colours (N, 3); paths, (M, 2) each, lie over
-    discs; direction: azimuth and elevation of the camera that sees spheres, in degrees."""
+    """Draw particles in these colours (N, 3), as pixels, uint8 (H, W, 3).
+
+    paths : arrays (M, 2), drawn over discs.
+    direction : azimuth and elevation of the camera for spheres, in degrees.
+    """
     if particles.dimension == 3:
         from gaspart.rendering.tracer import trace
 
@@ -115,8 +118,10 @@ def _plane(
 
 
 def _images(particles: DrawnParticles) -> tuple[np.ndarray, np.ndarray]:
-    """Indices (M,) of particles and shifts (M, d): all discs, then the periodic images of those that reach
-    over a periodic face."""
+    """Return indices (M,) of particles and shifts (M, d) of their images.
+
+    These are all discs, then the periodic images of discs that cross a periodic face.
+    """
     radii, lengths = particles.radii[:, None], particles.lengths
     steps = [(0, -1, 1) if periodic else (0,) for periodic in particles.periodic[: particles.dimension]]
     indices, shifts = [], []

@@ -241,7 +241,7 @@ def _start(
 ) -> State | None:
     """Return the initial state of a run; of a file, its last state.
 
-    Raises SceneError if that file is one of the files at `path`, by whatever name: it would be lost.
+    Raises SceneError if that file is one of the files at `path`, by any name: it would be lost.
     """
     paths = replica_paths(_required(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
     if not isinstance(initial, str | Path):

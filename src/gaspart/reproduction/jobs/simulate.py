@@ -61,17 +61,20 @@ EXAMINER = "gaspart.accuracy.reached"
 
 
 def engines(point: Point) -> list[Engine]:
-    """The engine of the trajectories."""
+    """Return the engine of the trajectories."""
     return [point.engine]
 
 
 def modules(point: Point) -> list[str]:
-    """The modules that this one imports by their names: only runs with `until` depend on the analysis."""
+    """Return the modules that this one imports by their names.
+
+    Only runs with `until` depend on the analysis.
+    """
     return [EXAMINER] if "until" in point.settings else []
 
 
 def arguments(point: Point) -> dict:
-    """The arguments of `simulate`. Raises SceneError."""
+    """Return the arguments of `simulate`; raise SceneError."""
     times, settings = point.schedule, point.settings
     given = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
     if "until" in settings:
@@ -99,7 +102,7 @@ def arguments(point: Point) -> dict:
 
 
 def _frame_interval(point: Point) -> float:
-    """The time between two frames that are kept. Raises SceneError."""
+    """Compute the time between two frames that are kept; raise SceneError."""
     times, settings = point.schedule, point.settings
     if "frames" in settings:
         if "lags" not in settings:
@@ -110,7 +113,10 @@ def _frame_interval(point: Point) -> float:
 
 
 def simulate(folder: Path, **arguments: Any) -> None:
-    """Write a trajectory for each seed; see `write_replicas`. The other arguments are those of `recipes`."""
+    """Write a trajectory for each seed; see `write_replicas`.
+
+    The other arguments belong to `recipes`.
+    """
     write_replicas(record, recipes(**arguments), folder, print)
 
 
