@@ -107,24 +107,37 @@ def live(
         gas.traced = event.new
         image.value = gas.picture._repr_png_()
 
+    def remove_walls(button: Any) -> None:
+        changing(gas.open_walls)
+        button.disabled = True
+
     running.observe(start, "value")
     tracer = widgets.ToggleButton(description="tracer")
     tracer.observe(trace, "value")
     buttons = [running, tracer] if scene.dimension == 2 else [running]
     if scene.walls:
         opening = widgets.Button(description="remove walls")
-        opening.on_click(lambda button: (changing(gas.open_walls), setattr(button, "disabled", True)))
+        opening.on_click(remove_walls)
         buttons.append(opening)
-    sliders = []
-    for name, (least, value, most), change in _ranges(gas):
-        step = (most - least) / 50.0
-        slider = widgets.FloatSlider(value, min=least, max=most, step=step, description=name)
-        slider.continuous_update, slider.style.description_width = False, "initial"
-        slider.observe(lambda event, change=change: changing(change, event.new), "value")
-        sliders.append(slider)
+    sliders = [_slider(widgets, *of, changing) for of in _ranges(gas)]
     controls = widgets.HBox([*buttons, *sliders], layout=widgets.Layout(flex_flow="row wrap"))
     top = widgets.HBox([image, meters], layout=widgets.Layout(flex_flow="row wrap"))
     return widgets.VBox([top, controls, note])
+
+
+def _slider(
+    widgets: Any,
+    name: str,
+    range_: tuple[float, float, float],
+    change: Callable[[float], None],
+    changing: Callable[..., None],
+) -> Any:
+    """Return a slider of a name and a range (least, value, most) that changes a gas."""
+    least, value, most = range_
+    made = widgets.FloatSlider(value, min=least, max=most, step=(most - least) / 50.0, description=name)
+    made.continuous_update, made.style.description_width = False, "initial"
+    made.observe(lambda event: changing(change, event.new), "value")
+    return made
 
 
 def _ranges(gas: LiveGas) -> list[tuple[str, tuple[float, float, float], Callable[[float], None]]]:

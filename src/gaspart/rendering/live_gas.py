@@ -72,7 +72,8 @@ class LiveGas:
         """Start a scene anew."""
         self.simulation = Simulation(scene, self._engine, self._seed)
         self._before = self._clock = 0.0
-        self.collisions, self._counted, self._target = 0, 0, None
+        self.collisions, self._counted = 0, 0
+        self._target: float | None = None
         self._path: list[np.ndarray] = []
         self._moving = int(np.argmax(np.isfinite(self.simulation.state.masses)))
         self.observe()
@@ -182,7 +183,7 @@ class LiveGas:
             Temperature k_B T of the hottest wall; 0: the walls of the first scene.
         """
         first, faces = self._first.faces, dict(self.simulation.scene.faces)
-        warm = {name: first[name] for name in self._warm}
+        warm = self._warm
         for name in warm or self._hard:
             if temperature <= 0.0:
                 faces.pop(name, None)
@@ -360,10 +361,10 @@ class LiveGas:
         return first.container.lengths[0] * max(_SMALLEST, first.packing_fraction / self.densest)
 
     @property
-    def _warm(self) -> list[str]:
+    def _warm(self) -> dict[str, Thermal]:
         """Thermal faces of the first scene, of one temperature each."""
         faces = self._first.faces.items()
-        return [name for name, one in faces if isinstance(one, Thermal) and one.varies_along is None]
+        return {name: one for name, one in faces if isinstance(one, Thermal) and one.varies_along is None}
 
     @property
     def _hard(self) -> list[str]:
