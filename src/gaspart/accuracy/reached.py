@@ -12,6 +12,10 @@ small: its 95 % intervals would cover the true value in 88 to 94 % of runs. Two 
   chi-square for f, which is 1.32 e for f = 15 and 1.10 e for 100. f must be 15 or more, as of 16 independent
   blocks. So the true standard error is as small as required in 98 % of runs.
 
+Samples that are all the same so far have the error 0, which says nothing: the next one may differ. Such a run
+goes on, and is given up after 16384 frames unless a longest duration ends it. A series that changed k times
+has at most k degrees of freedom, so that one jump, or a few, end no run either.
+
 Of replicas, which are independent, the value is the mean, and the error follows from those of each, by which
 degrees of freedom add up. They are examined when all have so many frames.
 
@@ -56,7 +60,8 @@ if TYPE_CHECKING:
 
 _CONFIDENCE = 0.95
 IDLE = 16384
-"""Frames without any contact after which a run ends that has no longest duration."""
+"""Frames without any contact, or any change, after which a run ends that has no longest duration."""
+_UNCHANGED = "frames: all are the same so far, which tells no error"
 
 
 @dataclass(frozen=True)
@@ -219,6 +224,9 @@ class Examiner:
                 ratio = max(first, 0.0) / last
             parts, starts = [], (self._scatter(runs[0], asked), len(runs))
             for name, estimate in now.items():
+                if estimate.error == 0.0:
+                    parts.append(AccuracyStatus(asked, name, estimate.value, rule=_UNCHANGED))
+                    continue
                 other = None if isinstance(earlier, str) else earlier.get(name)
                 made = confirmed(estimate, other, ratio)
                 known = made.value, made.error, made.freedom, other is not None
@@ -257,9 +265,10 @@ def _contacts(frame: xr.Dataset) -> float:
 
 
 def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
-    """Whether an observable is made of contacts of which there was none."""
+    """Return True if an observable is made of contacts of which there was none, or never changed."""
     return any(
-        one.value == 0.0 if "face" in OBSERVABLES[one.asked.observable].along else collisions == 0.0
+        one.rule == _UNCHANGED
+        or (one.value == 0.0 if "face" in OBSERVABLES[one.asked.observable].along else collisions == 0.0)
         for one in reached
     )
 

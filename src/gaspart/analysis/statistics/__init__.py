@@ -12,6 +12,7 @@ from gaspart.analysis.statistics.blocks import (
     autocorrelation_time,
     correlated_mean,
     histogram_chi_square,
+    slow_mean,
 )
 from gaspart.analysis.statistics.fits import (
     Combination,
@@ -55,5 +56,6 @@ __all__ = [
     "mean_of",
     "means_of",
     "optimum",
+    "slow_mean",
     "steady_mean",
 ]
