@@ -28,9 +28,8 @@ import numpy as np
 from scipy import stats
 
 import gaspart as gp
-from gaspart.analysis.bond_order import radial_distribution
 from gaspart.analysis.impulses import mixture, numbers_by_impulses
-from gaspart.analysis.pairs import STRETCHES, g_by_impulses
+from gaspart.analysis.pairs import STRETCHES, g_by_impulses, radial_distribution
 from gaspart.analysis.run import Run, open_run
 from gaspart.engines import Engine
 from gaspart.state.optional_tallies import ImpulseTally

@@ -23,7 +23,7 @@ extensions = [
     "sphinx_copybutton",
     "mathml",
 ]
-exclude_patterns = ["README.md", "paper.md"]  # pages.py fills the numbers of paper.md in
+exclude_patterns = ["README.md"]
 default_role = "py:obj"  # `name` in a docstring is a link where there is one
 
 html_math_renderer = "mathml"

@@ -78,7 +78,7 @@ def interface(groups):
     text += (
         "Names are importable from ``gaspart``, those of theory from ``gaspart.theory``, observables from\n"
     )
-    text += "``gaspart.analysis``. :doc:`An example of each <../../examples>`.\n\n"
+    text += "``gaspart.analysis``.\n\n"
     for page, (title, sections) in groups.items():
         text += _heading(title, "-") + f":doc:`Arguments, units and errors <{page}>`.\n\n"
         for section, names in sections.items():

@@ -24,6 +24,7 @@ from gaspart.cli.new import templates
 from gaspart.public import stated
 from gaspart.reproduction.claims.table import filled
 from gaspart.reproduction.families.registry import families, titles
+from gaspart.reproduction.reference import pages as reference
 
 ROOT = Path(__file__).parents[1]
 GROUPS = {
@@ -204,8 +205,8 @@ is one of 3 % in the measured pressure.
 
 """
 NOT_JUDGED = """\
-XYZ files; LAMMPS data files of style *sphere* in ASE, which accepts no such lines. freud is no referee of
-:math:`g(r)`, which gaspart computes by freud.
+XYZ files; LAMMPS data files of style *sphere* in ASE, which accepts no such lines. freud's :math:`g(r)` is
+compared with gaspart's in the tests of its kernels, not here.
 """
 
 
@@ -229,13 +230,15 @@ def referees():
 
 
 def paper():
-    """The page of method and results: docs/paper.md with the numbers of the claims that have been judged. Its
-    places begin with the figure, {{figure: beginning of a claim}}."""
+    """Return the page of method and results: workflow/report/paper.md with the numbers of judged claims.
+
+    Its places begin with the figure, {{figure: beginning of a claim}}.
+    """
     rows = []
     for path in sorted((ROOT / "results/claims").glob("*.csv")):
         with path.open(newline="", encoding="utf-8") as file:
             rows += [{**row, "claim": f"{row['figure']}: {row['claim']}"} for row in csv.DictReader(file)]
-    text = (ROOT / "docs/paper.md").read_text(encoding="utf-8")
+    text = (ROOT / "workflow/report/paper.md").read_text(encoding="utf-8")
     return {"paper.md": filled(text, rows, "(see the claims)")}
 
 
@@ -249,9 +252,17 @@ def table(columns, rows):
 
 def write(folder):
     """Write all pages; those that are up to date are not touched, so that Sphinx reads only what is new."""
-    for part in ("api", "figures"):
+    for part in ("api", "figures", "reference"):
         (folder / part).mkdir(parents=True, exist_ok=True)
-    pages = {**api(), **command_line(), **gallery(folder), **figures(folder), **referees(), **paper()}
+    pages = {
+        **api(),
+        **command_line(),
+        **gallery(folder),
+        **figures(folder),
+        **referees(),
+        **paper(),
+        **reference(),
+    }
     pages["symmetries.rst"] = symmetries.page(heading, table)
     pages["exact-values.rst"] = exact_values.page(heading, table)
     for path, text in pages.items():

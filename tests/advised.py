@@ -23,9 +23,10 @@ import uneven
 import gaspart as gp
 from gaspart.accuracy.pilot import speed_of
 from gaspart.accuracy.plan import plan
-from gaspart.accuracy.target import Target, keeps_energy
+from gaspart.accuracy.steady import keeps_energy
+from gaspart.accuracy.target import Target
 from gaspart.analysis import observables
-from gaspart.analysis.measure import measure
+from gaspart.analysis.measuring import measure
 from gaspart.errors import SceneError
 from gaspart.state.initial import initial_state
 

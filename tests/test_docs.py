@@ -6,12 +6,10 @@ import re
 import shlex
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.public import entries
 from gaspart.scene.faces import FACE_KINDS
 from gaspart.yaml_text import parse_yaml
 
@@ -45,33 +43,20 @@ def parts(page):
     for block in re.findall(r"^```python\n(.*?)^```", (DOCS / f"{page}.md").read_text(), re.M | re.S):
         lines = block.splitlines()
         for statement in ast.parse(block).body:
-            stated = re.search(
-                r"  # ([-\d.,() \[\]e]+|True|False|\(True, True\))$", lines[statement.end_lineno - 1]
-            )
+            stated = re.search(r"  # ([-\d.,e]+)$", lines[statement.end_lineno - 1])
             yield statement, stated and ast.literal_eval(stated[1])
 
 
-@pytest.mark.parametrize(("page", "least"), [("examples", 100), ("units", 10)])
-def test_the_examples_give_what_they_state(page, least, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_the_units_give_what_they_state():
     names, compared = {}, 0
-    for statement, stated in parts(page):
+    for statement, stated in parts("conventions"):
         if stated is None:
-            exec(compile(ast.Module([statement], []), page, "exec"), names)
+            exec(compile(ast.Module([statement], []), "conventions", "exec"), names)
             continue
-        value = eval(compile(ast.Expression(statement.value), page, "eval"), names)
-        assert np.allclose(np.asarray(value, float), stated, rtol=1e-4, atol=0.0), ast.unparse(statement)
+        value = eval(compile(ast.Expression(statement.value), "conventions", "eval"), names)
+        assert value == pytest.approx(stated, rel=1e-4), ast.unparse(statement)
         compared += 1
-    assert compared >= least
-
-
-def test_every_public_name_has_an_example():
-    used = {ast.unparse(node) for statement, _ in parts("examples") for node in ast.walk(statement)}
-    public = {f"gp.{name}" for name in gp.__all__} - {"gp.theory"}
-    functions, _ = entries(f"{gp.analysis.__file__}i")  # without their aliases
-    public |= {f"gp.analysis.{name}" for name in functions}
-    public |= {f"theory.{name}" for name in gp.theory.__all__}
-    assert not public - used
+    assert compared >= 9
 
 
 def script(name):
@@ -108,30 +93,31 @@ def named_files(text):
             yield next((place for place in places if place.exists()), places[0])
 
 
-@pytest.mark.parametrize("page", ["architecture", "newcomers"])
-def test_files_and_functions_that_a_page_names_exist(page):
-    text = (DOCS / f"{page}.md").read_text(encoding="utf-8")
+def test_files_and_functions_that_the_architecture_names_exist():
+    text = (DOCS / "architecture.md").read_text(encoding="utf-8")
     files = [path for path in named_files(text) if path not in FAMILY]
     assert len(files) > 20
     assert not [path for path in files if not path.exists()]
     found = re.findall(r"`(\w+)`(?: and `(\w+)`)? in\s+`([\w/]+\.py)`", text)
-    assert page == "architecture" or len(found) > 30
+    assert len(found) > 30
     for *names, file in found:
         code = (SOURCE / file).read_text(encoding="utf-8")
         for name in filter(None, names):
             assert re.search(rf"^(?:def |class )?(?:\w+, )*{name}\b.*[:=(]", code, re.MULTILINE), (name, file)
 
 
-def test_lines_that_the_page_on_troubles_explains_exist():
+def test_lines_that_the_page_on_help_explains_exist():
     source = "".join(path.read_text(encoding="utf-8") for path in SOURCE.rglob("*.py"))
-    rows = re.findall(r"^\| (`.+?) \|", (DOCS / "troubleshooting.md").read_text(encoding="utf-8"), re.M)
+    page = (DOCS / "installation.md").read_text(encoding="utf-8")
+    text = page.partition("\n## When something goes wrong\n")[2]
+    rows = re.findall(r"^\| (`.+?) \|", text, re.M)
     lines = [line for row in rows for line in re.findall(r"`([^`]+)`", row)]
     assert len(lines) > 12
     assert not [line for line in lines if line not in source]
 
 
 def test_links_between_pages_lead_somewhere():
-    for path in [*DOCS.glob("*.md"), *DOCS.glob("reference/*.md"), DOCS.parent / "README.md"]:
+    for path in [*DOCS.glob("*.md"), DOCS.parent / "README.md"]:
         for target in re.findall(r"\]\(([^)#:]+)\)", path.read_text(encoding="utf-8")):
             made = target.startswith("generated/")  # by `make docs`, which fails for a link to nothing
             assert made or (path.parent / target).exists(), (path.name, target)

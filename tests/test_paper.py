@@ -6,7 +6,7 @@ from pathlib import Path
 from gaspart.reproduction.claims.table import filled, place_fault
 from gaspart.reproduction.families.registry import families
 
-TEXT = (Path(__file__).parents[1] / "docs/paper.md").read_text(encoding="utf-8")
+TEXT = (Path(__file__).parents[1] / "workflow/report/paper.md").read_text(encoding="utf-8")
 PLACES = [" ".join(place.split()) for place in re.findall(r"\{\{(.*?)\}\}", TEXT, re.DOTALL)]
 
 

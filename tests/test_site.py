@@ -98,7 +98,7 @@ def test_nothing_is_wider_than_its_column(site, width):
 
 @needs_chromium
 def test_the_search_finds_pages_without_a_server(site):
-    wanted = {"restitution": "scenes", "obstacle": "scenes", "sweep": "quickstart", "units": "units"}
+    wanted = {"restitution": "scenes", "obstacle": "scenes", "sweep": "quickstart", "units": "conventions"}
     script = 'return [...document.querySelectorAll("#search-results li a")].map(a => a.getAttribute("href"))'
     found = found_on([f"search.html?q={word}" for word in wanted], script, site, 1400, 3000)
     for word, page in wanted.items():

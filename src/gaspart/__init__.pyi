@@ -3,7 +3,7 @@ from gaspart import theory as theory
 from gaspart.accuracy.reached import reached_accuracy as reached_accuracy
 from gaspart.analysis.collisions import collision_data as collision_data
 from gaspart.analysis.collisions import contact_value as contact_value
-from gaspart.analysis.measure import measure as measure
+from gaspart.analysis.measuring import measure as measure
 from gaspart.engines import DSMC as DSMC
 from gaspart.engines import EventDriven as EventDriven
 from gaspart.engines import TimeStepped as TimeStepped

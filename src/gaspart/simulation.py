@@ -12,7 +12,8 @@ import numpy as np
 
 import gaspart
 from gaspart.engines import Engine, chosen
-from gaspart.engines.dynamics import EventLog, check_identity, checkpoint_identity
+from gaspart.engines.checkpoint_identity import check_identity, checkpoint_identity
+from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys.values import count_of, number
 from gaspart.scene.face_checks import check_piston_end, piston_end

@@ -1,7 +1,8 @@
-"""Work that several processes share: calls of a function that writes files which can be continued.
+"""Work that several processes or threads share.
 
-Unlike the processes of a pool, these do not run the caller's script again, and signals of the terminal do not
-reach them: each ends at a signal, or when the process that began it has ended, after a checkpoint.
+Processes make calls of a function that writes files which can be continued. Unlike the processes of a pool,
+these do not run the caller's script again, and signals of the terminal do not reach them: each ends at a
+signal, or when the process that began it has ended, after a checkpoint.
 """
 
 from __future__ import annotations
@@ -11,7 +12,8 @@ import pickle
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import Pipe, connection
@@ -41,6 +43,17 @@ def require_processes(key: str, count: int) -> None:
     """Raise SceneError for more than one process where they cannot be given a connection."""
     if count > 1 and not POSIX:
         raise SceneError(key, count, f"more than one process needs Linux or macOS; {key}=1")
+
+
+def in_threads(function: Callable[[Any], Any], items: Iterable[Any], threads: int) -> list[Any]:
+    """Return the results of a function for all items, in their order, of which so many are worked on at once.
+
+    It pays for functions whose time is spent in kernels, which hold no lock.
+    """
+    if threads == 1:
+        return [function(item) for item in items]
+    with ThreadPoolExecutor(threads) as executor:
+        return list(executor.map(function, items))
 
 
 def in_processes(

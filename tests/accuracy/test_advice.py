@@ -7,11 +7,11 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.accuracy import cost_table as table
-from gaspart.accuracy.cost_table import EQUILIBRATION
+from gaspart.accuracy import table
 from gaspart.accuracy.option import WORTH
 from gaspart.accuracy.plan import plan, tabulated
-from gaspart.analysis.measure import measure
+from gaspart.accuracy.table import EQUILIBRATION
+from gaspart.analysis.measuring import measure
 from gaspart.cli.advise import _lines
 from gaspart.engines import DSMC
 from gaspart.errors import SceneError

@@ -8,7 +8,8 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.accuracy.conditions import even_conditions, known_conditions, measured_conditions, pulled
+from gaspart.accuracy.column import pulled
+from gaspart.accuracy.conditions import even_conditions, known_conditions, measured_conditions
 from gaspart.accuracy.option import asked_of, candidates
 from gaspart.accuracy.target import Target
 from gaspart.engines.dsmc.accuracy import boltzmann_error, cell_error, enskog_error, require_resolved

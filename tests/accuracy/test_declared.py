@@ -10,7 +10,7 @@ import gaspart as gp
 from gaspart.accuracy.conditions import even_conditions
 from gaspart.accuracy.option import candidates
 from gaspart.accuracy.target import Target
-from gaspart.analysis.measure import measure
+from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES, require_defined
 from gaspart.runs.ending import require_measurable
 from gaspart.state.initial import initial_state

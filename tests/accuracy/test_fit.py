@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gaspart.accuracy import cost_table as fit
-from gaspart.accuracy import cost_table as table
+from gaspart.accuracy import fit, table
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import pytest
 import gaspart as gp
 from gaspart.accuracy import pilot, plan
 from gaspart.accuracy.estimates import components
-from gaspart.analysis.measure import measure
+from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.runs.ending import require_measurable
 

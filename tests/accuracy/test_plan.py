@@ -9,14 +9,14 @@ import pytest
 import gaspart as gp
 from gaspart.accuracy import pilot, plan
 from gaspart.accuracy import target as target_module
-from gaspart.accuracy.conditions import pulled
+from gaspart.accuracy.column import pulled
 from gaspart.accuracy.estimates import Component
 from gaspart.accuracy.option import Option, candidates, suited
 from gaspart.accuracy.pilot import Pilot, Trials, raised_bias
-from gaspart.accuracy.reached import start_scatter
+from gaspart.accuracy.scatter import start_scatter
 from gaspart.accuracy.tabulated import is_tabulated
 from gaspart.accuracy.target import Target
-from gaspart.analysis.measure import measure
+from gaspart.analysis.measuring import measure
 from gaspart.cli import main
 from gaspart.cli.advise import _lines, _shortfall
 from gaspart.engines import EventDriven

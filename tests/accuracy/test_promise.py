@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from gaspart import theory
-from gaspart.accuracy import cost_table as table
-from gaspart.accuracy.cost_table import EQUILIBRATION
+from gaspart.accuracy import table
 from gaspart.accuracy.plan import tabulated
+from gaspart.accuracy.table import EQUILIBRATION
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
 from gaspart.scene.container import Container

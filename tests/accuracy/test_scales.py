@@ -7,7 +7,7 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.accuracy.target import scales
+from gaspart.accuracy.scales import scales
 from gaspart.cli import main
 
 SI = gp.Scene(

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.accuracy.reached import AccuracyStatus, Examiner, scatter_of_run, start_scatter
+from gaspart.accuracy.reached import AccuracyStatus, Examiner
+from gaspart.accuracy.scatter import scatter_of_run, start_scatter
 from gaspart.accuracy.target import Target
 from gaspart.cli import main
 from gaspart.trajectory.replicas import opened_together

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from gaspart.accuracy import cost_table as speed
-from gaspart.accuracy import cost_table as table
+from gaspart.accuracy import speed, table
 from gaspart.analysis.observables import having
 
 

@@ -10,7 +10,7 @@ import gaspart as gp
 from gaspart.analysis import bulk
 from gaspart.analysis.expected.equilibrium import compressibility_factor
 from gaspart.analysis.expected.transport import diffusion_in_cube
-from gaspart.analysis.measure import measure
+from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.analysis.run import open_run
 from gaspart.inspection.checks import judge

@@ -9,7 +9,7 @@ import pytest
 import gaspart as gp
 from gaspart.analysis.impulses import Carried, mixture, numbers_by_impulses
 from gaspart.analysis.run import open_run
-from gaspart.cli.run import run_options
+from gaspart.cli.stated_run import run_options
 from gaspart.state.optional_tallies import ImpulseTally
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe

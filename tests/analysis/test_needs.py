@@ -3,7 +3,7 @@
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.measure import measure
+from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT, require_run
 
 BOX = gp.Container((6.0, 6.0, 6.0), boundary="periodic")

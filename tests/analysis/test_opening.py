@@ -7,7 +7,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.analysis.expected.flows import opening
-from gaspart.analysis.measure import measure
+from gaspart.analysis.measuring import measure
 from gaspart.errors import SceneError
 
 A = gp.analysis

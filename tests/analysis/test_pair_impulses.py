@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.pairs import STRETCHES, g_by_impulses, mixed_g, shell_volumes
+from gaspart.analysis.pairs import STRETCHES, g_by_impulses, mixed_g, radial_distribution, shell_volumes
 from gaspart.analysis.run import open_run
-from gaspart.cli.run import run_options
+from gaspart.cli.stated_run import run_options
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
 
@@ -47,8 +47,6 @@ def test_g_of_a_run_has_less_error_with_impulses(run):
 
 def parts_of(run, bins):
     """(2, 16, bins) of the last three quarters of a run, and g(r) by counts in the same stretches."""
-    from gaspart.analysis.bond_order import radial_distribution
-
     stretches = np.array_split(np.arange(len(run.time)), STRETCHES)
     g = [
         radial_distribution(run.positions[part], SCENE.container.lengths, bins, 2.4)[1] for part in stretches

@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.insertion import _covered, insertions
-from gaspart.analysis.structure_factors import admitted, factors, shells_of
+from gaspart.analysis.structure_factors import admitted, shells_of
 
 A = gp.analysis
 SCENES = {
@@ -40,14 +40,6 @@ def test_shells_of_a_large_container_are_admitted_and_few():
     assert np.bincount(shell).tolist() == [8] * 40 == [8] * len(k)
     assert (waves == waves.astype(int)).all() and len(set(map(tuple, waves))) == len(waves)
     assert k == pytest.approx(0.5 * (np.arange(40) + 0.5), abs=0.25)
-
-
-@pytest.mark.parametrize("lengths", [(5.0, 9.0), (4.0, 5.0, 7.0)])
-def test_the_sums_are_those_of_the_definition(lengths):
-    positions = np.random.default_rng(1).random((40, len(lengths))) * lengths
-    waves, _ = admitted(lengths, 6.0)
-    exact = abs(np.exp(2j * np.pi * (waves / np.array(lengths)) @ positions.T).sum(axis=1)) ** 2 / 40
-    assert factors(positions, lengths, waves) == pytest.approx(exact, abs=1e-10)
 
 
 @pytest.mark.parametrize(

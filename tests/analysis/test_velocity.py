@@ -8,7 +8,7 @@ import xarray as xr
 from scenes import gas
 
 import gaspart as gp
-from gaspart.analysis.measure import measure
+from gaspart.analysis.measuring import measure
 from gaspart.cli import main
 from gaspart.errors import SceneError
 

@@ -9,7 +9,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.analysis.expected.flows import plates_of
-from gaspart.analysis.measure import measure
+from gaspart.analysis.measuring import measure
 from gaspart.analysis.run import open_run
 from gaspart.errors import SceneError
 from gaspart.theory.heat import INTERPOLATED

@@ -8,7 +8,7 @@ from scipy import stats
 
 import gaspart as gp
 from gaspart.analysis.fields import QUANTITIES
-from gaspart.analysis.measure import measure
+from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES, having, selecting
 from gaspart.errors import SceneError
 
@@ -63,8 +63,8 @@ SAMPLED = {
     ("partial_structure_factors", "exchanged"): _WAVES,
 }
 """Those that hold within errors only, and why."""
-SINGLE = {"rdf": 1e-2, "order": 1e-4}
-"""The limit of rounding of what freud computes in single precision: a pair may lie in the next bin."""
+SINGLE = {"order": 1e-4}
+"""The limit of rounding of what freud computes in single precision."""
 MEANS = ("Z", "pressure", "collision_rate", "pair_rates", "pressure_tensor")
 """Means over the intervals between frames: that of a whole run follows from its parts."""
 

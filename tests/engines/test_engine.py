@@ -33,11 +33,12 @@ KNOWN = """
 from contextlib import suppress
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.reproduction import reference, schema
-config = schema.schema()["properties"]["experiments"]["additionalProperties"]["properties"]
+from gaspart.reproduction import reference
+from gaspart.reproduction.config import schema
+config = schema()["properties"]["experiments"]["additionalProperties"]["properties"]
 assert "skeleton" in config["point"]["properties"]["engine"]["enum"]
 assert config["point"]["properties"]["stride"]["description"] == "how far the skeleton walks; required"
-assert any("Point: engine `skeleton`" in page for page in reference.documents().values())
+assert any("Point: engine `skeleton`" in page for page in reference.pages().values())
 with suppress(SystemExit):
     main(["run", "--help"])
 scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(1, 0.5, temperature=1.0)])

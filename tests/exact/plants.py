@@ -7,8 +7,8 @@ half a bin. A plant is (name, module, old piece of source, new piece, cell); see
 from exact.planting import Plant
 
 _RUN, _SERIES, _TALLY = "analysis.run", "analysis.series", "state.tally"
-_PRESSURE, _ROOM, _FLUXES = "analysis.counters", "analysis.room", "analysis.wall_fluxes"
-_MIXTURES, _PROFILES, _STRUCTURE = "analysis.mixtures", "analysis.profiles", "analysis.structure"
+_PRESSURE, _ROOM, _FLUXES = "analysis.counters", "analysis.flow", "analysis.fluxes"
+_MIXTURES, _PROFILES, _STRUCTURE = "analysis.pairs", "analysis.profiles", "analysis.structure"
 _MOTION, _ORDER, _TRANSPORT = "analysis.motion", "analysis.bond_order", "analysis.transport"
 _LONE = "self.dimension * moving - int(self.conserved.sum())"
 _PAIRS = "counts[i] / (2.0 if i == j else 1.0)"
@@ -46,7 +46,7 @@ PLANTS = [
     ),
     Plant(
         "control with a mean that is not 0",
-        "analysis.controls",
+        "analysis.impulses",
         "carried - run.scene.moving_count",
         "carried - 0.5 * run.scene.moving_count",
         ("slit", "pressure"),
@@ -152,14 +152,14 @@ PLANTS = [
     ),
     Plant(
         "half of the crossed term",
-        "analysis.correlations",
+        "analysis.motion",
         "- 2.0 * np.diag(rr, lag)",
         "- np.diag(rr, lag)",
         ("points_walls", "msd"),
     ),
     Plant(
         "displacements per N - 1",
-        "analysis.correlations",
+        "analysis.motion",
         "pairs = (frames - lag) * count",
         "pairs = (frames - lag) * (count - 1)",
         ("spheres_short", "msd"),
@@ -180,21 +180,21 @@ PLANTS = [
     ),
     Plant(
         "mutual diffusion without a fraction",
-        "analysis.mutual",
+        "analysis.diffusion",
         "first * second * run.count",
         "first * run.count",
         ("halves", "mutual_diffusion"),
     ),
     Plant(
         "mutual diffusion over d",
-        "analysis.mutual",
+        "analysis.diffusion",
         "(2.0 * run.dimension * lag)",
         "(run.dimension * lag)",
         ("halves", "mutual_diffusion"),
     ),
     Plant(
         "correlation per frame",
-        "analysis.correlations",
+        "analysis.motion",
         "/ flat.shape[1]",
         "/ len(flat)",
         ("spheres_short", "vacf"),
@@ -229,27 +229,31 @@ PLANTS = [
         ("periodic", "rdf"),
     ),
     Plant(
-        "distances 2 % too small", _ORDER, "r_max=furthest,", "r_max=0.98 * furthest,", ("periodic", "rdf")
+        "distances 2 % too small",
+        "analysis.pairs",
+        "float(furthest), counts)",
+        "float(1.02 * furthest), counts)",
+        ("periodic", "rdf"),
     ),
     Plant(
         "S(k) per N - 1",
-        "analysis.waves",
-        "** 2 / len(positions)",
-        "** 2 / (len(positions) - 1)",
+        "analysis.structure_factors",
+        "** 2 / frames.shape[1]",
+        "** 2 / (frames.shape[1] - 1)",
         ("periodic", "structure_factor"),
     ),
     Plant(
         "waves of a longer box",
-        "analysis.waves",
-        "np.pi / length *",
-        "np.pi / (1.1 * length) *",
+        "analysis.structure_factors",
+        "base = 2.0 * np.pi / np",
+        "base = 2.0 / 1.1 * np.pi / np",
         ("periodic", "structure_factor"),
     ),
     Plant(
         "partial S(k) per all",
         "analysis.structure_factors",
         "max(1.0, len(one)) ** 0.5",
-        "max(1.0, len(frame)) ** 0.5",
+        "max(1.0, frames.shape[1]) ** 0.5",
         ("mixture_periodic", "partial_structure_factors"),
     ),
     Plant(
@@ -317,28 +321,26 @@ PLANTS = [
     ),
     Plant(
         "sign of entries beyond",
-        "analysis.opening",
+        "analysis.fluxes",
         "- _entered_beyond(run, number)",
         "+ _entered_beyond(run, number)",
         ("reservoirs", "flux"),
     ),
     Plant(
         "half of the flux",
-        "analysis.opening",
+        "analysis.fluxes",
         "np.diff(beyond) / np",
         "0.5 * np.diff(beyond) / np",
         ("reservoirs", "flux"),
     ),
     Plant(
         "hits of hard faces leave",
-        "analysis.occupancy",
+        "analysis.fluxes",
         '"wall_hits"].values[:, opened]',
         '"wall_hits"].values[:, :]',
         ("open_beside_hard", "number"),
     ),
-    Plant(
-        "number of the start lost", "analysis.occupancy", "scene.count + moved", "moved", ("open", "number")
-    ),
+    Plant("number of the start lost", "analysis.fluxes", "scene.count + moved", "moved", ("open", "number")),
     Plant(
         "drift as a mean velocity",
         "analysis.flow",

@@ -76,7 +76,7 @@ def test_each_observable_has_two_planted_errors():
 def test_a_piece_that_is_gone_or_changes_nothing_is_an_error():
     for old, new in (
         ("no such piece", "x"),
-        ('"""The container of the moment', '"""A container of the moment'),
+        ('"""The rule of motion', '"""A rule of motion'),
     ):
-        with pytest.raises(NotPlanted), planted(Plant("none", "analysis.room", old, new, ("periodic", "Z"))):
+        with pytest.raises(NotPlanted), planted(Plant("none", "analysis.flow", old, new, ("periodic", "Z"))):
             pass

@@ -1,7 +1,7 @@
 """Every field of every format: what a file states is what is judged, or it is refused in one line.
 
 A gas is drawn at random, written in each format in any of the ways that its specification allows, and must be
-the same when it is read. `docs/formats.md` has the fields of each format; those refused are in
+the same when it is read. `docs/files.md` has the fields of each format; those refused are in
 `test_refused_fields.py`.
 """
 
@@ -258,8 +258,8 @@ AMBER = """
 
 def test_every_field_of_the_specifications_is_in_the_documentation():
     hoomd = pytest.importorskip("gsd.hoomd")
-    text = (Path(__file__).parents[2] / "docs/formats.md").read_text(encoding="utf-8")
-    sections = text.split("\n## ")[1:]
+    text = (Path(__file__).parents[2] / "docs/files.md").read_text(encoding="utf-8")
+    sections = text.partition("\n## Files of other programs\n")[2].split("\n### ")[1:]
     named = [set(re.findall(r"`([^`]+)`", section)) for section in sections]
     frame = hoomd.Frame()
     schema = {f"configuration/{name}" for name in frame.configuration._default_value}
@@ -270,5 +270,5 @@ def test_every_field_of_the_specifications_is_in_the_documentation():
     for fields, found in zip((set(AMBER.split()), schema, columns), named, strict=True):
         assert fields <= found, fields - found
     rows = [line for section in sections for line in section.splitlines() if line.startswith("| ")]
-    words = ("used", "refused", "not elastic", "no effect")
+    words = ("used", "rejected", "not elastic", "no effect")
     assert not [row for row in rows if not any(word in row for word in (*words, "field", "---"))]

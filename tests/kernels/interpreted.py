@@ -15,6 +15,8 @@ import numpy as np
 from scenes import gas
 
 import gaspart as gp
+from gaspart.analysis.pairs import pair_counts
+from gaspart.analysis.structure_factors import admitted, factors
 from gaspart.kernels import insertion, model
 from gaspart.kernels.event import boxes as candidates
 from gaspart.kernels.event import boxes as search
@@ -130,6 +132,7 @@ def ends():
                 engine = gp.TimeStepped(0.01, **settings)
                 found[f"{name} in steps{how}"] = end_of(event_scenes()[name], engine, duration=1.0)
     found["order"] = order_of_contacts()
+    found["pairs and waves"] = pairs_and_waves()
     found["correlations"] = np.append(correlations(False), correlations(True))
     packing = gp.compress(gas(2, 12, 0.6), seed=1)
     found["growth"] = np.append(packing.positions.ravel(), packing.pressure)
@@ -150,6 +153,15 @@ def order_of_contacts():
     else:
         order = np.lexsort((pairs[:, 1], pairs[:, 0], times))
     return np.column_stack([times, pairs])[order].ravel()
+
+
+def pairs_and_waves():
+    """Counts of pairs and sums over waves of random particles, in two and three dimensions."""
+    found = []
+    for lengths in ((5.0, 3.0), (3.0, 5.0, 4.0)):
+        frames = np.random.default_rng(3).random((2, 70, len(lengths))) * lengths
+        found += [pair_counts(frames, lengths, 9, 1.5), factors(frames, lengths, admitted(lengths, 5.0)[0])]
+    return np.concatenate([np.ravel(values) for values in found])
 
 
 def correlations(displacements):

@@ -1,6 +1,6 @@
 """Departures of docstrings and names from the rules of the style that ruff and numpydoc do not have.
 
-Each rule is a function of a module's syntax tree; `docs/style.md` has the rules with their reasons.
+Each rule is a function of a module's syntax tree; `docs/contributing.md` has the rules with their reasons.
 """
 
 from __future__ import annotations

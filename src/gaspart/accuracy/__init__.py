@@ -1,7 +1,7 @@
 """Accuracy and its cost: errors of engines, noise of run lengths, processor time, and the cheapest run.
 
 `plan` chooses among an `Option` for each engine. Where `data/accuracy.csv` holds measurements (written by
-`gaspart.accuracy.cost_table`, read by `table`), `tabulated` makes them, scaled to this machine by `speed`; of
+`gaspart.accuracy.fit`, read by `table`), `tabulated` makes them, scaled to this machine by `speed`; of
 everything else `trials` makes them from runs of `pilot`. `gaspart.runs` runs until observables are accurate,
 by the rule in `reached`.
 """

@@ -92,7 +92,7 @@ class Component:
 def components(data: xr.Dataset, observable: str, start: float | None = None) -> dict[str, Component]:
     """An observable of `gaspart measure` of a trajectory, by component, "" for a scalar or a curve, whose
     value and error are root mean squares. Raises SceneError as the functions of `gaspart.analysis`."""
-    from gaspart.analysis.measure import measure
+    from gaspart.analysis.measuring import measure
     from gaspart.analysis.run import open_run
 
     with open_run(data, start, sheared=True, varying=True) as run:

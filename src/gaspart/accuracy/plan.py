@@ -12,12 +12,13 @@ from dataclasses import dataclass, replace
 from gaspart import theory
 from gaspart.accuracy import PILOT_SECONDS
 from gaspart.accuracy import tabulated as known
-from gaspart.accuracy.cost_table import EQUILIBRATION as EQUILIBRATED
-from gaspart.accuracy.cost_table import LEAST
 from gaspart.accuracy.option import Option, ordered, replicas_of, suited
 from gaspart.accuracy.pilot import Announce, Pilot, Trials
-from gaspart.accuracy.reached import Scatter, start_scatter
-from gaspart.accuracy.target import Target, require_steady, rounded_to_12_digits
+from gaspart.accuracy.scatter import Scatter, start_scatter
+from gaspart.accuracy.steady import require_steady
+from gaspart.accuracy.table import EQUILIBRATION as EQUILIBRATED
+from gaspart.accuracy.table import LEAST
+from gaspart.accuracy.target import Target, rounded_to_12_digits
 from gaspart.analysis import finite
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION

@@ -20,7 +20,7 @@ Of replicas, which are independent, the value is the mean, and the error follows
 degrees of freedom add up. They are examined when all have so many frames.
 
 Where a run keeps the energy of its start, which its seed draws, the run shows only the error for this
-energy: other seeds scatter by more (`gaspart.accuracy.reached`). The mean of replicas is of no single energy,
+energy: other seeds scatter by more (`gaspart.accuracy.scatter`). The mean of replicas is of no single energy,
 so that its error has the scatter of the starts in it. No longer run reduces this part. Noise has to be as
 small as what the part leaves of the required accuracy, or as the accuracy itself if nothing is left.
 
@@ -36,27 +36,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from gaspart import theory
-from gaspart.accuracy.conditions import Column, kinetic_temperature, pulled
 from gaspart.accuracy.estimates import LEAST_FREEDOM, bound, components, of_face
-from gaspart.accuracy.target import Target, keeps_energy
 from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT
 from gaspart.errors import SceneError
-from gaspart.scene.scene import Scene
-from gaspart.scene.species import Species
-from gaspart.trajectory.reading import GIVEN_START
 from gaspart.trajectory.recipe import read_recipe
 from gaspart.trajectory.replicas import files_of, opened_together
 from gaspart.trajectory.until import Requirement, Until, examined_before
-from gaspart.yaml_text import parse_yaml
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from gaspart.analysis.estimate import Estimate
-
 
 _CONFIDENCE = 0.95
 IDLE = 16384
@@ -236,6 +226,8 @@ class Examiner:
 
     def _scatter(self, run: xr.Dataset, asked: Requirement) -> float:
         """Return the relative scatter of an observable from seed to seed by the energy of the start."""
+        from gaspart.accuracy.scatter import scatter_of_run  # loads the analysis
+
         if asked not in self._scatters:
             self._scatters[asked] = scatter_of_run(run, asked.observable, asked.face).value
         return self._scatters[asked]
@@ -279,153 +271,3 @@ def _measure(runs: Sequence[xr.Dataset], asked: Requirement) -> dict[str, Estima
     found = [components(data, asked.observable, asked.start) for data in runs]
     known = [name for name in found[0] if of_face(name, asked.face) and all(name in one for one in found)]
     return {name: merged([one[name].estimate for one in found]) for name in known}
-
-
-# Scatter of an observable from seed to seed by the energy of the start.
-#
-# Where nothing exchanges energy with the particles, each run keeps the energy of its start; under a piston
-# with a load, its enthalpy. Velocities that are drawn have a temperature only on average. So have random
-# positions under gravity, whatever the velocities.
-
-
-_STRATIFIED = 1.5
-"""Power of the temperature, at least, if the density changes with it: under a piston, and under gravity where
-theory knows nothing."""
-_CHANGE = 0.01
-"""Relative change of the energy by which derivatives are taken."""
-_DENSEST = 0.45
-"""Packing fraction up to which the scatter of random places is known."""
-
-
-@dataclass(frozen=True)
-class Scatter:
-    """Relative standard deviation of an observable from seed to seed by the energy of the start.
-
-    value: it; drawn, placed: whether drawn velocities and random positions contribute.
-    """
-
-    value: float = 0.0
-    drawn: bool = False
-    placed: bool = False
-
-    @property
-    def remedy(self) -> str:
-        """The change of a scene or a run that removes the scatter."""
-        if not self.placed:
-            return "exact_temperature: true removes it"
-        drawn = "; exact_temperature: true removes the part of the velocities" if self.drawn else ""
-        return f"it is of random positions under gravity{drawn}"
-
-
-def scatter_of_run(run: xr.Dataset, observable: str, face: str | None = None) -> Scatter:
-    """Compute the scatter of an observable between runs like an open trajectory with other seeds.
-
-    Runs from a given state have one energy.
-    """
-    if GIVEN_START in run.attrs:
-        return Scatter()
-    return start_scatter(Target(Scene.from_dict(parse_yaml(run.attrs["scene"])), observable, face))
-
-
-def start_scatter(target: Target) -> Scatter:
-    """Compute the scatter of an observable of a scene."""
-    scene = target.scene
-    if not keeps_energy(scene):
-        return Scatter()
-    parts = _of_velocities(scene), _of_places(scene)
-    if not any(parts):
-        return Scatter()
-    return Scatter(_of_observable(target, math.hypot(*parts)), *(part > 0.0 for part in parts))
-
-
-def _of_velocities(scene: Scene) -> float:
-    """Standard deviation of the kinetic energy at the start."""
-    drawn = [kind for kind in scene.species if kind.temperature is not None and not kind.exact_temperature]
-    return math.sqrt(
-        sum(0.5 * scene.dimension * kind.count * (kind.temperature or 0.0) ** 2 for kind in drawn)
-    )
-
-
-def _of_places(scene: Scene) -> float:
-    """Standard deviation of the potential energy at the start: that of even places in a region, the less the
-    denser it is."""
-    kinds = [kind for kind in scene.species if kind.count and kind.arrangement == "random" and not kind.fixed]
-    square = 0.0
-    for axis, pull in enumerate(scene.gravity or ()):
-        for kind in kinds:
-            square += kind.count * (kind.mass * pull * _range(scene, kind, axis)) ** 2 / 12.0
-    return math.sqrt(square * _smoothed(scene, kinds)) if square else 0.0
-
-
-def _range(scene: Scene, kind: Species, axis: int) -> float:
-    """The length along an axis in which a species is placed."""
-    lower, upper = (one[axis] for one in scene.reach(kind.radius))
-    if kind.region is None:
-        return float(upper - lower)
-    low, high = (float(corner[axis]) for corner in kind.region)
-    return max(0.0, min(upper, high) - max(lower, low))
-
-
-def _smoothed(scene: Scene, kinds: list[Species]) -> float:
-    """By how much excluded volume reduces the scatter of places: the compressibility of the fluid."""
-    d = scene.dimension
-    filled = 0.0
-    for kind in kinds:
-        volume = math.prod(_range(scene, kind, axis) or 1.0 for axis in range(d))
-        filled += kind.total_power(d) * theory.particle_volume(d, 2.0) / volume
-    return float(theory.reduced_compressibility(min(filled, _DENSEST), d))
-
-
-def _of_observable(target: Target, deviation: float) -> float:
-    """Relative standard deviation of an observable with one of the energy."""
-    scene = target.scene
-    freedom = 0.5 * scene.dimension * scene.count
-    power = target.declared.power
-    kinetic = sum(one.count * one.initial_temperature(scene.dimension) for one in scene.kinds)
-    mean = 0.5 * scene.dimension * kinetic
-    for _, piston in scene.pistons:
-        if target.observable == "pressure":
-            return 0.0  # the load
-        mean += (piston.pressure or 0.0) * scene.container.volume
-        power = max(power, _STRATIFIED)
-    if not scene.gravity:
-        return power * deviation / mean if mean else 0.0
-    temperature = kinetic_temperature(scene, target.initial)
-    if target.conditions is not None and target.conditions.columns:
-        found = _of_column(target, deviation)
-        if found is not None:
-            return found
-    heat = (freedom + scene.count) * temperature
-    return max(power, _STRATIFIED) * deviation / heat if heat else math.inf
-
-
-def _of_column(target: Target, deviation: float) -> float | None:
-    """The same under gravity, by hydrostatics; None where that knows nothing."""
-    column = pulled(target.scene)
-    assert column is not None
-    energy = column.energy_of(target.initial)
-    try:
-        low, middle, high = (column.of_energy(energy * (1.0 + k * _CHANGE), False) for k in (-1, 0, 1))
-    except ValueError:
-        return None
-    changed = _change(target, low, middle, high)
-    return changed * deviation / (2.0 * _CHANGE * energy)
-
-
-def _change(target: Target, low: Column, middle: Column, high: Column) -> float:
-    """Of the observable between two columns, over its value."""
-    by_temperature = (high.temperature - low.temperature) / middle.temperature
-    if target.observable == "collision_rate":
-        return abs(high.collisions - low.collisions) / middle.collisions
-    if target.observable == "density":
-        z = middle.heights
-        profiles = [np.interp(z, one.heights, one.numbers.sum(axis=0), right=0.0) for one in (low, high)]
-        exact = middle.numbers.sum(axis=0)
-        return float(np.sqrt(((profiles[1] - profiles[0]) ** 2).sum() / (exact**2).sum()))
-    if target.declared.of_impulses:
-        changes = []
-        for top in (False, True):
-            if middle.pressure(top) > 0.0:
-                changes.append(abs(high.pressure(top) - low.pressure(top)) / middle.pressure(top))
-        return max(changes)
-    return max(target.declared.power, 0.5) * by_temperature

@@ -9,10 +9,11 @@ from __future__ import annotations
 import math
 
 from gaspart import theory
-from gaspart.accuracy import cost_table as table
-from gaspart.accuracy.cost_table import EQUILIBRATION, LEAST
+from gaspart.accuracy import table
 from gaspart.accuracy.estimates import Component
+from gaspart.accuracy.models import model_error
 from gaspart.accuracy.option import Option, ordered
+from gaspart.accuracy.table import EQUILIBRATION, LEAST
 from gaspart.accuracy.target import Target
 from gaspart.analysis import bulk
 from gaspart.analysis.observables import OBSERVABLES, having
@@ -21,37 +22,6 @@ from gaspart.engines.engine import Candidate
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
-from gaspart.theory.dsmc import step_factor
-
-# Errors of equations and of steps in a gas in equilibrium, by theory.
-
-
-def model_error(packing_fraction: float, dimension: int, equation: str, observable: str) -> float:
-    """|error| of an observable by the equation that an engine solves (`Engine.equation`), relative to hard
-    spheres or discs; inf where one of them has none, as of D of discs.
-
-    The Boltzmann equation has a contact value of 1, and no virial. The Enskog model is given the contact
-    value of Carnahan and Starling, in two dimensions that of Henderson. D of neither has the memory of
-    correlated collisions [Erpenbeck 1991], whose uncertainty is added.
-    """
-    if equation == bulk.EXACT:
-        return 0.0
-    gas = Gas(dimension, packing_fraction, 1, 1.0, 1.0)
-    of = getattr(bulk, OBSERVABLES[observable].bulk)
-    exact, own = of(gas, bulk.EXACT), of(gas, equation)
-    if math.isnan(exact) or math.isnan(own):
-        return math.inf
-    remembers = OBSERVABLES[observable].memory and packing_fraction > 0.01
-    return abs(own / exact - 1.0) + (theory.ERPENBECK_WOOD_UNCERTAINTY if remembers else 0.0)
-
-
-def step_error(packing_fraction: float, step: float) -> float:
-    """By how much steps, in diameters over the thermal speed, make D of spheres too high. The law is stated
-    for a dilute gas; a dense one collides more often by the contact value, as if its free path were shorter
-    by that."""
-    path = float(theory.mean_free_path(packing_fraction, 3))
-    return float(step_factor("diffusion", step * math.sqrt(2.0) / path)) - 1.0
-
 
 FEWEST = 64
 """Particles of a gas that is like those of the table, to 1 % of Z - 1: fewer have pilots of their own."""

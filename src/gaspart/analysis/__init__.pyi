@@ -1,4 +1,5 @@
 from gaspart.analysis.collisions import free_flight_times as free_flight_times
+from gaspart.analysis.combination import replicas as replicas
 from gaspart.analysis.counters import collision_rate as collision_rate
 from gaspart.analysis.counters import compressibility_factor as compressibility_factor
 from gaspart.analysis.counters import wall_force as wall_force
@@ -13,14 +14,13 @@ from gaspart.analysis.fluxes import particle_number as particle_number
 from gaspart.analysis.fluxes import wall_shear as wall_shear
 from gaspart.analysis.insertion import chemical_potential as chemical_potential
 from gaspart.analysis.lyapunov import lyapunov_exponent as lyapunov_exponent
-from gaspart.analysis.measure import by_species as by_species
-from gaspart.analysis.measure import replicas as replicas
 from gaspart.analysis.motion import mean_squared_displacement as mean_squared_displacement
 from gaspart.analysis.motion import velocity_autocorrelation as velocity_autocorrelation
 from gaspart.analysis.observable import Observable as Observable
 from gaspart.analysis.pairs import contact_values as contact_values
 from gaspart.analysis.pairs import pair_collision_rates as pair_collision_rates
 from gaspart.analysis.pairs import rdf as rdf
+from gaspart.analysis.species import by_species as by_species
 from gaspart.analysis.structure import density as density
 from gaspart.analysis.structure import order_parameter as order_parameter
 from gaspart.analysis.structure import profile as profile

@@ -1,4 +1,4 @@
-"""Order of particles: bond order, pair distances and Fourier modes, by freud.
+"""Bond order of particles, by freud, and Fourier modes of discs.
 
 Ramasubramani and others, Comput. Phys. Commun. 254, 107275 (2020). Everywhere: positions (N, d) in [0, L]
 of a periodic container of lengths (d,). freud works in single precision, and here on one thread, as the
@@ -22,7 +22,7 @@ NEIGHBOURS = 12
 
 @cache
 def _freud() -> ModuleType:
-    freud = optional("freud", "order", "g(r) and bond order")
+    freud = optional("freud", "order", "bond order")
     freud.parallel.set_num_threads(1)
     return freud
 
@@ -62,19 +62,6 @@ def local_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarra
     order = _freud().order.Steinhardt(l=6, average=True, wl=False, weighted=False, wl_normalize=False)
     order.compute(_system(positions, lengths), neighbors={"num_neighbors": NEIGHBOURS})
     return order.particle_order
-
-
-def radial_distribution(
-    frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Centres (bins,) of shells up to `furthest` and g(r) there, mean over frames (T, N, d).
-
-    Pairs are compared with N (N - 1) / 2 of an ideal gas; freud's default mode counts N^2 / 2.
-    """
-    rdf = _freud().density.RDF(bins=bins, r_max=furthest, r_min=0.0, normalization_mode="finite_size")
-    for positions in frames:
-        rdf.compute(_system(positions, lengths), reset=False)
-    return rdf.bin_centers, rdf.rdf
 
 
 def structure_factor(

@@ -1,7 +1,7 @@
 """Density along an axis from the momentum that particles carry through planes across it.
 
-That momentum follows from impulses without the noise of counting (`Tally.momentum_flux_sum`; docs/
-design-notes.md has the derivation). Its rate at a plane is A rho <m v^2>, and in equilibrium <m v^2> of a
+That momentum follows from impulses without the noise of counting (`Tally.momentum_flux_sum`;
+docs/estimators.md has the derivation). Its rate at a plane is A rho <m v^2>, and in equilibrium <m v^2> of a
 particle at the plane is known: rho follows. Counting has more noise in a dilute gas and in narrow bins, and
 less for long waves of a dense gas. So both are mixed, each bin with its weight, which comes from the other
 half of the run than that in which it is used, so that it depends on no noise that it acts on.
@@ -308,7 +308,7 @@ def described_density(run: Run, axis: int, bins: int, by_impulses: bool) -> dict
 # with x from the middle, and I_low - I_high is the change of the momentum. Of the right-hand side all but
 # the collisional part has a known mean: both changes 0, and sum m v^2 that of an energy which all
 # directions share evenly. So their deviations from these are taken off, as much as a regression says
-# (docs/design-notes.md).
+# (docs/estimators.md).
 
 
 _LEAST, _MOST = 32, 128

@@ -6,6 +6,7 @@ Uncertainties are the scatter of consecutive blocks of the run.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,17 +18,85 @@ from gaspart.analysis.observables import KEPT, require_defined
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
+from gaspart.kernels.analysis.pairs import MARGIN, count_pairs
 from gaspart.keys.values import count_of, number
 from gaspart.scene.impulses import FURTHEST
 from gaspart.state.optional_tallies import PairImpulseTally, stored_tally
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
 from gaspart.trajectory.pairs import pair_names, pairs_of
+from gaspart.workers import in_threads
+
+# Pairs of a periodic container, counted by their distance.
+
+_COLUMNS, _BOXES = 2, 8
+"""Columns and boxes of `count_pairs` in the largest distance, where particles are not farther apart."""
+_MOST_BOXES = 4
+"""Boxes for each particle, at most."""
+
+
+def pair_counts(
+    frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
+) -> np.ndarray:
+    """Count the pairs of all frames in equal intervals of the distance up to `furthest`, shape (bins,).
+
+    frames: positions (T, N, d) in a periodic container of lengths (d,), by the nearest image. In double
+    precision; the counts do not depend on the number of threads. Raises ValueError for a distance beyond half
+    of the shortest side, where a pair has several images.
+    """
+    sides = np.asarray(lengths, dtype=float)
+    if not 0.0 < furthest <= 0.5 * sides.min():
+        raise ValueError(f"furthest: {furthest} (must be positive, and at most {0.5 * sides.min()})")
+    _, count, dimension = np.shape(frames)
+    if count < 2:
+        return np.zeros(bins, dtype=np.int64)
+    size, first = np.ones(3), 3 - dimension  # of discs: one column wide along the first of three axes
+    size[first:] = sides
+    numbers = _boxes(size, count, furthest, first)
+    spans = np.ceil(MARGIN * furthest * numbers / size).astype(np.int64)[:2]
+    spans[:first] = 0
+
+    def of_frame(positions: np.ndarray) -> np.ndarray:
+        places, counts = np.zeros((3, count)), np.zeros(bins, dtype=np.int64)
+        places[first:] = np.asarray(positions).T
+        count_pairs(places, size, numbers, spans, float(furthest), counts)
+        return counts
+
+    return np.sum(in_threads(of_frame, frames, threads), axis=0, initial=0, dtype=np.int64)
+
+
+def _boxes(size: np.ndarray, count: int, furthest: float, first: int) -> np.ndarray:
+    """Return the numbers of boxes along each axis for `count_pairs`."""
+    numbers = np.ones(3, dtype=np.int64)
+    width = max(furthest / _COLUMNS, float(size.prod() / count) ** (1.0 / (3 - first)))
+    most = _MOST_BOXES * count
+    while True:
+        numbers[first:2] = np.clip(size[first:2] / width, 1, most)
+        if numbers.prod() <= most:
+            break
+        width *= 2.0
+    numbers[2] = int(np.clip(_BOXES * size[2] / furthest, 1, most // numbers[:2].prod()))
+    return numbers
+
+
+def radial_distribution(
+    frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the centres (bins,) of shells up to `furthest` and g(r) there, the mean over frames (T, N, d).
+
+    Pairs are compared with the N (N - 1) / 2 pairs of an ideal gas.
+    """
+    count, dimension = np.shape(frames)[1:]
+    counts = pair_counts(frames, lengths, bins, furthest, threads)
+    unit = unit_sphere_surface(dimension) / dimension * (furthest / bins) ** dimension
+    ideal = 0.5 * count * (count - 1) * unit * shell_volumes(bins, dimension) / np.prod(lengths)
+    return (np.arange(bins) + 0.5) * (furthest / bins), counts / (len(frames) * ideal)
+
 
 # g(r) from the momentum that pairs of particles gain along their separation.
 #
 # In equilibrium this gives k_B T g(r) without the noise of counting, but for what all distances share
-# (`Tally.contact_impulse_sum`; docs/design-notes.md has the derivation). That follows from the number of
+# (`Tally.contact_impulse_sum`; docs/estimators.md has the derivation). That follows from the number of
 # pairs within the furthest distance, which is counted. Counts have less noise in wide shells of a dense
 # fluid, so both are mixed, as densities are (`gaspart.analysis.impulses`).
 
@@ -134,8 +203,6 @@ def rdf(
     >>> gp.analysis.rdf(simulation, bins=20).sizes["distance"]
     20
     """
-    from gaspart.analysis.bond_order import radial_distribution
-
     with open_run(source, start) as run:
         require_defined("rdf", run.scene)
         has = kept(run)
@@ -155,7 +222,7 @@ def rdf(
         if parts is not None:
             each = mixed_g(each, parts, shell_volumes(bins, run.dimension))
         values, errors = means_of(each)
-        distance = np.asarray(found[0][0], dtype=float)
+        distance = found[0][0]
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
         about = described("rdf", run, distance, end / bins)
         result = observable("rdf", along, values, errors, **about)

@@ -16,8 +16,10 @@ from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import means_of
+from gaspart.kernels.analysis.waves import CONJUGATE, sum_waves
 from gaspart.keys.values import count_of, number
 from gaspart.trajectory.pairs import pair_names, pairs_of
+from gaspart.workers import in_threads
 
 # Density waves of a periodic container: the wave vectors that it admits, and their amplitudes.
 
@@ -25,8 +27,6 @@ from gaspart.trajectory.pairs import pair_names, pairs_of
 _FEW = 24
 """Waves along the longest side, up to which all wave vectors of a shell are candidates; up to twice as many
 every second one along each axis, and so on."""
-_DEAR = 8
-"""Elements of a product of matrices for each that is used, up to which it is cheaper than single sums."""
 
 
 def admitted(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.ndarray, np.ndarray]:
@@ -77,42 +77,51 @@ def in_shells(values: np.ndarray, shell: np.ndarray) -> np.ndarray:
     return np.bincount(shell, values) / np.bincount(shell)
 
 
-def factors(positions: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray) -> np.ndarray:
-    """(M,) |sum exp(i k.r)|^2 / N of positions (N, d); see `amplitudes`."""
-    return np.abs(amplitudes(positions, lengths, waves)) ** 2 / len(positions)
+def factors(
+    frames: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray, threads: int = 1
+) -> np.ndarray:
+    """Return |sum exp(i k.r)|^2 / N of each frame, shape (T, M); see `amplitudes`."""
+    return np.abs(amplitudes(frames, lengths, waves, threads)) ** 2 / frames.shape[1]
 
 
-def amplitudes(positions: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray) -> np.ndarray:
-    """(M,) sum exp(i k.r), complex, at the wave vectors k = 2 pi n / L, n being `waves` (M, d).
+def amplitudes(
+    frames: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray, threads: int = 1
+) -> np.ndarray:
+    """Return sum exp(i k.r) of each frame, complex, shape (T, M), at wave vectors k = 2 pi n / L.
 
-    positions (N, d). The exponential is a product of one factor an axis, from tables over the integers. Those
-    of the axes after the first are multiplied once for all vectors that share them; the sum over particles is
-    a product of matrices where the vectors are a good part of its elements, and otherwise made for each.
+    frames: positions (T, N, d); waves: the integers n (M, d). Each thread sums whole frames.
     """
-    first, *others = (
-        _phases(positions[:, axis], float(length), int(np.abs(waves[:, axis]).max()))
-        for axis, length in enumerate(lengths)
-    )
-    number, strides = waves[:, 0], np.cumprod([1, *(len(table) for table in others[:0:-1])])[::-1]
-    rows = np.array([len(table) for table in others])
-    keys, place = np.unique((waves[:, 1:] % rows) @ strides, return_inverse=True)
-    inner = others[0][keys // strides[0]]
-    for table, stride in zip(others[1:], strides[1:], strict=True):
-        inner *= table[keys // stride % len(table)]
-    first = first[: int(number.max()) + 1] if number.min() >= 0 else first
-    if len(first) * len(keys) < _DEAR * len(waves):
-        return np.asarray((inner @ first.T)[place, number])
-    total = np.empty(len(waves), dtype=complex)
-    for each in np.unique(number):
-        here = np.flatnonzero(number == each)
-        total[here] = inner[place[here]] @ first[each]
-    return total
+    base = 2.0 * np.pi / np.asarray(lengths, dtype=float)
+    made, rows = _factor_rows(waves)
+
+    def of_frame(positions: np.ndarray) -> np.ndarray:
+        phases = np.asarray(positions, dtype=float).T * base[:, None]
+        sums = np.zeros((2, len(waves)))
+        sum_waves(np.cos(phases), np.sin(phases), made, rows, sums)
+        return sums[0] + 1j * sums[1]
+
+    return np.array(in_threads(of_frame, frames, threads)).reshape(len(frames), len(waves))
 
 
-def _phases(places: np.ndarray, length: float, most: int) -> np.ndarray:
-    """(2 most + 1, N) exp(2 pi i n x / L) of the integers n, the negative ones after the others."""
-    ahead = np.exp(2j * np.pi / length * np.outer(np.arange(most + 1), places))
-    return np.concatenate([ahead, ahead[:0:-1].conj()])
+def _factor_rows(waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the products that make all factors exp(2 pi i n x / L) of the waves (M, d), as `sum_waves` takes
+    them, and the rows (M, d) of the factors of each wave."""
+    dimension = waves.shape[1]
+    made: list[tuple[int, int]] = []
+    row_of = {(axis, 0): 0 for axis in range(dimension)} | {(axis, 1): 1 + axis for axis in range(dimension)}
+
+    def row(axis: int, n: int) -> int:
+        if (axis, n) not in row_of:
+            pair = (row(axis, -n), CONJUGATE) if n < 0 else (row(axis, n // 2), row(axis, n - n // 2))
+            made.append(pair)
+            row_of[axis, n] = dimension + len(made)
+        return row_of[axis, n]
+
+    rows = np.empty(waves.shape, dtype=np.int64)
+    for axis in range(dimension):
+        integers, position = np.unique(waves[:, axis], return_inverse=True)
+        rows[:, axis] = np.array([row(axis, int(n)) for n in integers], dtype=np.int64)[position]
+    return np.array(made, dtype=np.int64).reshape(-1, 2), rows
 
 
 _HIGHEST = 20.0
@@ -170,7 +179,7 @@ def structure_factor(
     with open_run(source, start) as run:
         require_defined("structure_factor", run.scene)
         lengths = run.scene.container.lengths
-        found, along = _measured(run, bins, highest, lambda frame, waves: factors(frame, lengths, waves))
+        found, along = _measured(run, bins, highest, lambda frames, waves: factors(frames, lengths, waves))
         about = described("structure_factor", run, along["wave_number"][0])
         return observable("structure_factor", along, *means_of(found), **about)
 
@@ -232,9 +241,9 @@ def partial_structure_factors(
         members = [np.flatnonzero(run.species == kind) for kind in range(len(run.scene.species))]
         lengths, pairs = run.scene.container.lengths, pairs_of(run.scene)
 
-        def of_pairs(frame: np.ndarray, waves: np.ndarray) -> np.ndarray:
-            each = [amplitudes(frame[one], lengths, waves) / max(1.0, len(one)) ** 0.5 for one in members]
-            return np.array([(each[a] * each[b].conj()).real for a, b in pairs])
+        def of_pairs(frames: np.ndarray, waves: np.ndarray) -> np.ndarray:
+            each = [amplitudes(frames[:, one], lengths, waves) / max(1.0, len(one)) ** 0.5 for one in members]
+            return np.stack([(each[a] * each[b].conj()).real for a, b in pairs], axis=1)
 
         found, along = _measured(run, bins, highest, of_pairs)
         names = np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"}
@@ -248,8 +257,9 @@ def _measured(
     highest: float | None,
     products: Callable[[np.ndarray, np.ndarray], np.ndarray],
 ) -> tuple[np.ndarray, dict[str, Any]]:
-    """(16, ..., wave_number) means over stretches of the run of `products` (..., M), of positions and M wave
-    vectors, in intervals of |k|, and the coordinate. Raises SceneError; see `structure_factor`."""
+    """Return means over 16 stretches of the run of `products` (T, ..., M), of frames and M wave vectors, in
+    intervals of |k|, shape (16, ..., wave_number), and the coordinate. Raises SceneError; see
+    `structure_factor`."""
     bins = count_of("bins", bins, least=2)
     lengths = run.scene.container.lengths
     run.require_all()
@@ -262,7 +272,7 @@ def _measured(
     room = max(STRETCHES, _WORK // (run.count * len(waves)))
     frames = frames[:: -(-len(frames) // room)]
     found = [
-        np.apply_along_axis(in_shells, -1, np.mean([products(frame, waves) for frame in part], axis=0), shell)
+        np.apply_along_axis(in_shells, -1, products(part, waves).mean(axis=0), shell)
         for part in np.array_split(frames, STRETCHES)
     ]
     return np.array(found), {"wave_number": (k, {"units": "1 / length", "long_name": "wave number"})}

@@ -25,13 +25,13 @@ from gaspart.cli.arguments import (
 )
 from gaspart.cli.engine_options import one_of
 from gaspart.cli.progress import waiting
-from gaspart.cli.run import run_options
+from gaspart.cli.stated_run import run_options
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
     from gaspart.accuracy.option import Option
     from gaspart.accuracy.plan import Plan
-    from gaspart.accuracy.reached import Scatter
+    from gaspart.accuracy.scatter import Scatter
 
 _EXAMPLES = """examples:
   gaspart advise scene.yaml --observable Z --accuracy 1e-3
@@ -199,7 +199,7 @@ def _differences(plan: Plan) -> list[str]:
 
 def _extra_cost(plan: Plan) -> str:
     """What a run costs beside the collisions of a plain gas."""
-    from gaspart.accuracy.cost_table import price_of
+    from gaspart.accuracy.price import price_of
 
     price = price_of(plan.target.scene, plan.best.engine, plan.target.observable)
     measured = ", ".join(f"{name} {ratio:.2f}" for name, ratio in price.ratios.items())

@@ -109,7 +109,7 @@ def _judged(file: str, given: argparse.Namespace) -> tuple[str, list]:
 
 def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:
     """The checks of a YAML file: a scene, with the lines of its scales, or a config of the workflow."""
-    from gaspart.accuracy.target import scales
+    from gaspart.accuracy.scales import scales
     from gaspart.inspection.written import judge_scene
 
     content, path = read_yaml(file), Path(file)

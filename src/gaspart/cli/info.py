@@ -27,9 +27,9 @@ def add_info(parser: Parser) -> None:
 
 
 def _info(given: argparse.Namespace) -> None:
-    from gaspart.accuracy.target import scales
+    from gaspart.accuracy.scales import scales
     from gaspart.cli.conventions import conventions
-    from gaspart.cli.run import run_options
+    from gaspart.cli.stated_run import run_options
     from gaspart.inspection.energy import certificate
     from gaspart.trajectory.opening import PARTIAL, check_frames, opened, partial_path
     from gaspart.trajectory.recipe import read_recipe
@@ -115,7 +115,7 @@ def _measurable(recipe: Recipe) -> list[str]:
 
 def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:
     """The accuracies that end a run of no fixed duration, and those that it has reached."""
-    from gaspart.cli.run import accuracy_lines
+    from gaspart.cli.stated_run import accuracy_lines
 
     if recipe.until is None:
         return []

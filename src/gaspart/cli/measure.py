@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.analysis.flow import ABOUT
-from gaspart.analysis.measure import measure, until_time
+from gaspart.analysis.measuring import measure, until_time
 from gaspart.analysis.observables import ALIASES, OBSERVABLES, known, selecting, selections
 from gaspart.cli.arguments import (
     Parser,
@@ -160,7 +160,7 @@ def _measured(
 ) -> Iterator[tuple[str, Observable]]:
     """Each observable with its name: of one file, or the mean of several. times: the start and the end of
     the frames that count; field: the arguments of a field."""
-    from gaspart.analysis.measure import replicas
+    from gaspart.analysis.combination import replicas
     from gaspart.trajectory.reading import open_trajectory
 
     if len(files) > 1:
@@ -193,8 +193,8 @@ def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | Non
 
 def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:
     """Return the remark that other seeds have other energies, if they have."""
-    from gaspart.accuracy.reached import scatter_of_run
-    from gaspart.cli.run import other_seeds
+    from gaspart.accuracy.scatter import scatter_of_run
+    from gaspart.cli.stated_run import other_seeds
 
     if not OBSERVABLES[name].power:
         return {}

@@ -209,7 +209,7 @@ class Engine:
 
     @property
     def timed_as(self) -> str:
-        """Its name in the table of costs (`gaspart.accuracy.cost_table`)."""
+        """Its name in the table of costs (`gaspart.accuracy.table`)."""
         return self.name
 
     @property

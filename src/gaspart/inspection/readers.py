@@ -1,6 +1,6 @@
 """Reading trajectories: AMBER and LAMMPS netCDF, GSD, and XYZ, extended or plain.
 
-`docs/formats.md` lists every field of these formats, and what is done with it.
+`docs/files.md` lists every field of these formats, and what is done with it.
 """
 
 from __future__ import annotations

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, kernel
-from gaspart.kernels.memory import fetch
 from gaspart.kernels.obstacles.interior_wall import to_wall
 from gaspart.kernels.physics.flight import box_coordinate
+from gaspart.kernels.prefetch import fetch
 
 BLOCK = 256  # trials of one block
 PLACES = 4  # of a box, for particles that are read in one go

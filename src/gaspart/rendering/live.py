@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from gaspart.accuracy.target import scales
+from gaspart.accuracy.scales import scales
 from gaspart.engines import Engine
 from gaspart.errors import SceneError, SimulationError, optional
 from gaspart.rendering.frames import Picture, render

@@ -7,11 +7,10 @@ from contextlib import chdir, contextmanager, suppress
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import resolved
-from gaspart.inspection.checks import Check
 from gaspart.keys import Kind, choice, names, record, require
 from gaspart.keys.values import finite, size
 from gaspart.reproduction.claims.table import filled, place_fault
@@ -22,6 +21,9 @@ from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import POINT, figure_points, points
 from gaspart.reproduction.report.page import divided
 from gaspart.yaml_text import DEEPEST, MOST_VALUES, is_exponential, read_yaml
+
+if TYPE_CHECKING:
+    from gaspart.inspection.checks import Check
 
 # The files that a config consists of: merged as by Snakemake, and which of them holds a key.
 
@@ -323,6 +325,8 @@ def judge_config(path: Path) -> list[Check]:
 
     A config next to `config.yaml` is merged over it, as in the workflow.
     """
+    from gaspart.inspection.checks import Check  # .5 s, which planning does not need
+
     with checked(path) as (merged, planned):
         counts = [point.extents.particles for points in planned.values() for point in points.values()]
     text = f"{len(planned)} experiments of {len(counts)} points, up to {max(counts)} particles; "

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart import theory
-from gaspart.accuracy import cost_table as speed
-from gaspart.accuracy import cost_table as table
+from gaspart.accuracy import speed, table
 from gaspart.errors import SceneError
 from gaspart.files import whole_file
 from gaspart.reproduction import job_time

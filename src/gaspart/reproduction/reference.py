@@ -1,7 +1,7 @@
-"""What is generated from the declarations of all keys: JSON schemas and the pages of the reference.
+"""Documents generated from the declarations of all keys: JSON schemas and pages of the reference.
 
-`python -m gaspart.reproduction.reference`, run in the folder of the project, writes the schemas of configs
-and scene files for editors, `docs/reference.md` and its pages.
+`python -m gaspart.reproduction.reference`, run in the folder of the project, writes the schemas of
+configs and scene files for editors. `make docs` makes the pages.
 """
 
 from __future__ import annotations
@@ -27,28 +27,31 @@ _TYPES = {"array": "list", "boolean": "`true` or `false`", "integer": "whole num
 _TYPES |= {"string": "text"}
 _INTRODUCTION = """# Reference
 
-Generated from the declarations in the code by `python -m gaspart.reproduction.reference`: do not edit these
-pages. For editors, `workflow/schemas` has the same rules as JSON schemas.
+Keys, features and observables, from their declarations in the code. For editors, `workflow/schemas`
+has the same rules as JSON schemas.
 
 """
 _KEYS = "A key without a default is required. A default of *none* means that the key is absent.\n"
 
 
-def documents() -> dict[str, str]:
-    """The text of each generated file, by its path from the folder of the project."""
-    schemas = {"config": schema(), "scene": scene_schema()}
-    texts = {
+def schemas() -> dict[str, str]:
+    """Return the text of each JSON schema, by its path from the folder of the project."""
+    contents = {"config": schema(), "scene": scene_schema()}
+    return {
         f"workflow/schemas/{name}.schema.json": json.dumps(content, indent=1, ensure_ascii=False) + "\n"
-        for name, content in schemas.items()
+        for name, content in contents.items()
     }
-    index = _INTRODUCTION
+
+
+def pages() -> dict[str, str]:
+    """Return the text of each page of the reference, by its path from `docs/generated`."""
+    texts, index = {}, _INTRODUCTION
     for name, page in _PAGES.items():
         start = f"# {page.title}\n\n{page.about} {page.more}\n"
-        texts[f"docs/reference/{name}.md"] = "\n".join([start, *page.content()])
-        index += f"- [{page.title}](reference/{name}.md): {page.about}\n"
-    pages = "".join(f"reference/{name}\n" for name in _PAGES)
-    texts["docs/reference.md"] = f"{index}\n```{{toctree}}\n:hidden:\n\n{pages}```\n"
-    return texts
+        texts[f"reference/{name}.md"] = "\n".join([start, *page.content()])
+        index += f"- [{page.title}]({name}.md): {page.about}\n"
+    names = "".join(f"{name}\n" for name in _PAGES)
+    return {**texts, "reference/index.md": f"{index}\n```{{toctree}}\n:hidden:\n\n{names}```\n"}
 
 
 def _scene_keys() -> list[str]:
@@ -231,7 +234,7 @@ _PAGES = {
     "scene": _Page(
         "Keys of a scene file",
         "What `gaspart run` and `gp.Scene.from_file` read.",
-        "[Scene files](../scenes.md) has an example of each.",
+        "[Scene files](../../scenes.md) has an example of each.",
         _scene_keys,
     ),
     "engines": _Page(
@@ -252,7 +255,7 @@ the Boltzmann or the Enskog equation.""",
     "config": _Page(
         "Keys of a config",
         "Experiments, points, engines, runs and films of the workflow.",
-        "[The config](../config.md) explains them.",
+        "[The workflow](../../workflow.md) explains them.",
         _experiment_keys,
     ),
     "figures": _Page(
@@ -265,8 +268,8 @@ the Boltzmann or the Enskog equation.""",
 
 
 def main() -> None:
-    """Write all generated files."""
-    for path, text in documents().items():
+    """Write all schemas."""
+    for path, text in schemas().items():
         Path(path).parent.mkdir(parents=True, exist_ok=True)
         Path(path).write_text(text, encoding="utf-8")
 

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.declaration import DIMENSIONS
-from gaspart.analysis.measure import measure
+from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import ByFace, Observable, label_of
 from gaspart.engines import Engine, engine_to_dict
 from gaspart.errors import SceneError, unknown_word

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Self
 
-from gaspart.accuracy.target import require_steady
+from gaspart.accuracy.steady import require_steady
 from gaspart.analysis.observables import (
     OBSERVABLES,
     having,
@@ -206,7 +206,7 @@ def require_reachable(asked: Requirement, scene: Scene, replicas: int) -> None:
     """
     if replicas == 1:
         return
-    from gaspart.accuracy.reached import start_scatter  # loads the analysis, which few runs need
+    from gaspart.accuracy.scatter import start_scatter  # loads the analysis, which few runs need
     from gaspart.accuracy.target import Target
 
     starts = start_scatter(Target(scene, asked.observable, asked.face))
@@ -246,7 +246,7 @@ def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlat
     SceneError
         If nothing moves.
     """
-    from gaspart.accuracy.target import scales, two_digits
+    from gaspart.accuracy.scales import scales, two_digits
 
     shortest = scales(scene).event_time
     if not math.isfinite(shortest):

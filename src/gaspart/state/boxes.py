@@ -252,7 +252,7 @@ def boxes_per_particle(scene: Scene) -> float:
     -----
     Eight particles are tested at once. So in a dilute gas of discs, which cross many boxes between contacts,
     wide boxes are best; measured with 10^4 particles at packing fractions of 0.01 to 0.4
-    (docs/design-notes.md).
+    (docs/performance.md).
     """
     dilute, by_density, limit = _BOXES[scene.dimension]
     best = min(dilute + by_density * scene.packing_fraction, limit)

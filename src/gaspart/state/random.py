@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.kernels.physics.rng import LN2, LOG_SERIES
+from gaspart.kernels.physics.logarithm import LN2, LOG_SERIES
 
 
 def stream(seed: int | tuple[int, ...], *purpose: int) -> np.random.Generator:

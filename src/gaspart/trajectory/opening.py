@@ -6,13 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
-
-import netCDF4
-import numpy as np
-import xarray as xr
-from xarray.backends import BackendArray, NetCDF4DataStore
-from xarray.core import indexing
+from typing import TYPE_CHECKING, BinaryIO
 
 from gaspart.errors import SceneError
 from gaspart.files import FileKind, may_replace, only_process, open_regular
@@ -199,58 +193,3 @@ def check_frames(path: Path, numbers: range | None = None) -> None:
 def damage(frame: int) -> str:
     """The message about a frame whose checksum is wrong."""
     return f"frame {frame} is damaged: its checksum does not match"
-
-
-# A trajectory for xarray, whose frames are checked against their sums before values of them are returned.
-
-
-_EVEN = 1e-9
-"""Relative deviation of a frame's time from a multiple of the interval, beyond which the frame is checked."""
-
-
-class CheckedStore(NetCDF4DataStore):
-    """The variables of a trajectory. Those of frames are read through the frames' checksums.
-
-    The times are read at once, and only those that are not multiples of `interval` through the checksums:
-    otherwise opening a file would read all of it.
-    """
-
-    def __init__(self, file: netCDF4.Dataset, path: Path, frames: CheckedFrames, interval: float) -> None:
-        super().__init__(file)
-        self._path, self._frames = path, frames
-        time = np.asarray(file["time"][:].data, dtype=float)
-        expected = interval * np.arange(len(time))
-        right = np.abs(time - expected) <= _EVEN * (expected + interval)  # False for NaN
-        self.require(np.flatnonzero(~right))
-
-    def require(self, numbers: np.ndarray) -> None:
-        """Raise SceneError if one of these frames is damaged."""
-        damaged = self._frames.damaged(numbers)
-        if damaged is not None:
-            raise SceneError("file", str(self._path), damage(damaged))
-
-    def open_store_variable(self, name: str, var: netCDF4.Variable) -> xr.Variable:
-        """A variable that is read as it is used."""
-        variable = super().open_store_variable(name, var)
-        if variable.dims[:1] != ("frame",) or name == "time":
-            return variable
-        var.set_auto_maskandscale(False)
-        data = indexing.LazilyIndexedArray(_CheckedArray(var, self))
-        return xr.Variable(variable.dims, data, variable.attrs, variable.encoding)
-
-
-class _CheckedArray(BackendArray):
-    """A variable of frames, of which any part can be read."""
-
-    def __init__(self, variable: netCDF4.Variable, store: CheckedStore) -> None:
-        self._variable, self._store = variable, store
-        self.shape, self.dtype = variable.shape, variable.dtype
-
-    def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
-        support = indexing.IndexingSupport.OUTER
-        return indexing.explicit_indexing_adapter(key, self.shape, support, self._part)
-
-    def _part(self, key: tuple) -> np.ndarray:
-        self._store.require(np.atleast_1d(np.arange(self.shape[0])[key[0]]))
-        with self._store.lock:
-            return self._variable[key]

@@ -88,7 +88,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     """
     import xarray as xr
 
-    from gaspart.trajectory.opening import CheckedStore
+    from gaspart.trajectory.checked_store import CheckedStore
 
     path = run_path(path)
     file, checked = open_checked(path)

@@ -8,9 +8,9 @@ import gaspart as gp
 from gaspart.kernels.compile.policy import kernel
 from gaspart.kernels.event.boxes import empty_lists
 from gaspart.kernels.event.simd import earliest
-from gaspart.kernels.memory import lowest
 from gaspart.kernels.model import IMAGE_BITS, NUMBER_BITS, Gravity, Space, flight_dtype
 from gaspart.kernels.physics.flight import mark_resting, time_of_contact
+from gaspart.kernels.simd import lowest
 from gaspart.state.boxes import make_boxes
 
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaspart.kernels.compile.policy import kernel
-from gaspart.kernels.physics.sums import DIGITS, WIDTH, add_exact, exact_parts, joined
+from gaspart.kernels.physics.exact_sum import DIGITS, WIDTH, add_exact, exact_parts, joined
 
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False, width=64)
 

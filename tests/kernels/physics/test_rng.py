@@ -7,13 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaspart.kernels.physics.rng import (
-    flux_speed,
-    log_of,
-    normal_pair,
-    random_words,
-    uniform,
-)
+from gaspart.kernels.physics.rng import flux_speed, log_of, normal_pair, random_words, uniform
 from gaspart.state.random import key_of, natural_log
 
 WORDS = st.integers(0, 2**63 - 1)

@@ -12,13 +12,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.kernels.compile.policy import kernel
-from gaspart.kernels.physics.sums import (
-    add,
-    add_whole,
-    net,
-    values,
-    whole_parts,
-)
+from gaspart.kernels.physics.running_sum import add, add_whole, net, values, whole_parts
 
 
 @kernel

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gaspart.kernels.physics.rng import sine_cosine
+from gaspart.kernels.physics.sine import sine_cosine
 
 
 @given(st.floats(0.0, 1.0))

@@ -7,7 +7,7 @@ from gaspart.kernels.compile.policy import kernel
 from gaspart.kernels.model import Space, flight_dtype
 from gaspart.kernels.physics import collision
 from gaspart.kernels.physics.contact import contact_root, exchange
-from gaspart.kernels.physics.sums import net
+from gaspart.kernels.physics.running_sum import net
 from gaspart.kernels.step.model import VIRIAL, StepModel, StepParticles, StepTally
 from gaspart.kernels.step.resolve import collide_smooth, entry_time, impulse_factors
 

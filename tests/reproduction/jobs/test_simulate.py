@@ -4,7 +4,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.reproduction.config import checked_points
-from gaspart.reproduction.jobs.data import from_plain
+from gaspart.reproduction.jobs.arguments import from_plain
 from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.modules import PACKAGE, closure
 

@@ -17,7 +17,7 @@ from gaspart.engines.features.faces import (
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Workspace
 from gaspart.kernels.model import ContactLaw, flight_dtype
-from gaspart.kernels.physics.sums import WIDTH
+from gaspart.kernels.physics.exact_sum import WIDTH
 from gaspart.scene.accessible import Accessible
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of

@@ -8,21 +8,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gaspart.engines.checkpoint_identity import check_parts
 from gaspart.engines.dsmc.arrays import TALLY, empty_particles, faces_for, kinds_of, law_for, workspace_for
 from gaspart.engines.dsmc.defaults import FINEST
 from gaspart.engines.dsmc.resolution import EPOCH, HIGHEST, Resolution
-from gaspart.engines.dynamics import SteppedDynamics, check_parts
 from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.part import Part, TallyPart, step_kicks
 from gaspart.engines.features.per_area import ThreadedPerAreaPart
 from gaspart.engines.step.limits import oversized_particles
+from gaspart.engines.stepped import SteppedDynamics
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.dsmc import loop
 from gaspart.kernels.dsmc import model as layout
 from gaspart.kernels.dsmc.boltzmann import Stress
 from gaspart.kernels.dsmc.model import kick_all
 from gaspart.kernels.model import Space
-from gaspart.kernels.physics.sums import WIDTH, exact_parts, joined
+from gaspart.kernels.physics.exact_sum import WIDTH, exact_parts, joined
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of

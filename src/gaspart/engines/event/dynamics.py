@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.engines.dynamics import Dynamics, EventLog
+from gaspart.engines.dynamics import Dynamics
 from gaspart.engines.event.search import chosen_search, make_lists, neighbour_lists
 from gaspart.engines.event.tally import (
     MANY,
@@ -22,6 +22,7 @@ from gaspart.engines.event.tally import (
     check_progress,
     tally_parts,
 )
+from gaspart.engines.event_log import EventLog
 from gaspart.engines.features.faces import (
     FacesPart,
     OpenPart,

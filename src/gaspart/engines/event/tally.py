@@ -14,7 +14,7 @@ from gaspart.errors import SimulationError
 from gaspart.kernels import model as kernels
 from gaspart.kernels.event.pair_contact import CollapseWatch
 from gaspart.kernels.model import Model
-from gaspart.kernels.physics.sums import net, values
+from gaspart.kernels.physics.running_sum import net, values
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State

@@ -15,7 +15,7 @@ from gaspart.kernels.event.entry import schedule_first
 from gaspart.kernels.model import NONE, STICKY, Faces, Model, Motion, Ramp, Sliding
 from gaspart.kernels.obstacles.face import NUMBERS, RULES
 from gaspart.kernels.obstacles.moving import advance_piston
-from gaspart.kernels.physics.sums import values
+from gaspart.kernels.physics.running_sum import values
 from gaspart.scene.faces import FACES, Open, Vibrating
 from gaspart.scene.open_faces import attempt_rate
 from gaspart.scene.scene import Scene

@@ -10,7 +10,7 @@ import numpy as np
 from gaspart.engines.features.faces import face_energy
 from gaspart.engines.features.part import Part
 from gaspart.kernels.model import NONE, ContactDuration, ContactLaw, Gravity, no_support
-from gaspart.kernels.physics import sums as running_sum
+from gaspart.kernels.physics import running_sum
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
 from gaspart.state.insertion import per_particle

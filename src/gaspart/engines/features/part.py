@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.kernels.model import Gravity, Model, Shear, no_support
-from gaspart.kernels.physics import sums as running_sum
+from gaspart.kernels.physics import running_sum
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.scene import Scene
 from gaspart.scene.thermostat import Thermostat

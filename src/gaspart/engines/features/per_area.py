@@ -12,7 +12,7 @@ import numpy as np
 
 from gaspart.engines.features.part import Part, TallyPart
 from gaspart.kernels.physics.per_area import PerArea
-from gaspart.kernels.physics.sums import values
+from gaspart.kernels.physics.running_sum import values
 from gaspart.scene.accessible import Accessible
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import PerAreaTally

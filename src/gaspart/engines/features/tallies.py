@@ -12,10 +12,10 @@ from gaspart.kernels.event import impulses as kernels
 from gaspart.kernels.event.impulses import MEETING, OTHERS, PairImpulses
 from gaspart.kernels.event.simd import PLACES
 from gaspart.kernels.event.stress import Stress, add_flights, add_sheared_flights
-from gaspart.kernels.memory import WIDTH
 from gaspart.kernels.model import Model
 from gaspart.kernels.physics.flight import advance_all
-from gaspart.kernels.physics.sums import values
+from gaspart.kernels.physics.running_sum import values
+from gaspart.kernels.simd import WIDTH
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.impulses import row_count

@@ -12,7 +12,7 @@ from gaspart.engines.features.law import LawPart, contact_law, scaled_masses
 from gaspart.engines.features.part import Part, TallyPart, gravity_of
 from gaspart.engines.features.tallies import rows_of
 from gaspart.kernels.model import Model, Space, empty_tally, flight_dtype
-from gaspart.kernels.physics.sums import whole_parts
+from gaspart.kernels.physics.running_sum import whole_parts
 from gaspart.kernels.step import model as layout
 from gaspart.kernels.step.boundaries import Rules
 from gaspart.kernels.step.box_search import StepBoxes

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.engines.dynamics import SteppedDynamics
 from gaspart.engines.features.law import largest_terms
 from gaspart.engines.features.per_area import ThreadedPerAreaPart, inverse_areas
 from gaspart.engines.step.arrays import (
@@ -27,7 +26,8 @@ from gaspart.engines.step.limits import (
     check_step,
     oversized_particles,
 )
-from gaspart.kernels.physics import sums as running_sum
+from gaspart.engines.stepped import SteppedDynamics
+from gaspart.kernels.physics import running_sum
 from gaspart.kernels.step import box_search as loop
 from gaspart.kernels.step import model as layout
 from gaspart.scene.scene import Scene

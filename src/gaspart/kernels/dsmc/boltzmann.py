@@ -32,7 +32,7 @@ from gaspart.kernels.dsmc.model import (
 )
 from gaspart.kernels.model import LOSS, ContactLaw
 from gaspart.kernels.physics.collision import collide_by_law
-from gaspart.kernels.physics.sums import add_exact
+from gaspart.kernels.physics.exact_sum import add_exact
 
 # One sampled collision: the direction of contact, and what passes there.
 #

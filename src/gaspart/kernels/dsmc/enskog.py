@@ -44,7 +44,7 @@ from gaspart.kernels.dsmc.model import (
     waiting_time,
     words_of,
 )
-from gaspart.kernels.physics.sums import add_exact
+from gaspart.kernels.physics.exact_sum import add_exact
 
 FILLED, SURFACE = range(2)
 KIND_BLOCK = 255  # of a trial's random words: the partner's kind

@@ -1,7 +1,7 @@
 """What the DSMC engine's kernels pass to one another: particles, grid, kinds, room, tally.
 
 A *slot* is a particle's present place in memory, the slots being in the order of the cells; `numbers` gives
-the particle's number. What several threads add up is exact (`physics.sums`), so that the sums
+the particle's number. What several threads add up is exact (`physics.exact_sum`), so that the sums
 do not depend on the order of adding. The structures hold arrays and plain numbers only, because numba
 passes nothing else to threads.
 """
@@ -15,8 +15,9 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.model import Ramp, Space
-from gaspart.kernels.physics.rng import LN2, LOG_SERIES, normal_pair
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.logarithm import LN2, LOG_SERIES
+from gaspart.kernels.physics.rng import normal_pair
+from gaspart.kernels.physics.running_sum import add
 
 COLLISIONS, TRIALS, EXCEEDED, UNFINISHED, FAR = range(5)
 PADDED = 8  # counts of a thread, a cache line

@@ -17,8 +17,8 @@ from gaspart.kernels.model import HARD, NONE, THERMAL
 from gaspart.kernels.obstacles.thermal import mirrors, temperature_at
 from gaspart.kernels.physics.ballistic import flown
 from gaspart.kernels.physics.collision import collide_wall_by_law
+from gaspart.kernels.physics.exact_sum import add_exact
 from gaspart.kernels.physics.rng import flux_speed, normal_pair
-from gaspart.kernels.physics.sums import add_exact
 
 _FEW = 64
 """Hits of a particle in a step that are made one by one in any case, and have draws of their own."""

@@ -15,9 +15,10 @@ from numpy import int64, uint64
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.event.simd import PLACES, earliest, list_box
-from gaspart.kernels.memory import WIDTH, aligned, lowest
+from gaspart.kernels.memory import aligned
 from gaspart.kernels.model import BOX_VISITS, IMAGE_BITS, NUMBER_BITS, PAIR_TESTS
 from gaspart.kernels.physics.flight import time_of_contact
+from gaspart.kernels.simd import WIDTH, lowest
 
 # Which particles are in which box: the first few in places of its own, any others in a linked list.
 #

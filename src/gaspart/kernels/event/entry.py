@@ -15,8 +15,9 @@ from gaspart.kernels.event.prediction import NOT_CROSSED, predict_after, without
 from gaspart.kernels.event.queue import count_event
 from gaspart.kernels.model import NONE
 from gaspart.kernels.obstacles.face import lowest_vacant, occupy
-from gaspart.kernels.physics.rng import flux_speed, log_of, mass_of, normal_pair, random_words, uniform
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.rng import flux_speed, log_of, normal_pair, random_words, uniform
+from gaspart.kernels.physics.running_sum import add
 
 _PLACE, _VELOCITY = 0, 1  # which random words of an attempt
 

@@ -22,7 +22,7 @@ from gaspart.kernels.model import COLLISIONS, NONE, VIRIAL
 from gaspart.kernels.physics.collision import gap_along
 from gaspart.kernels.physics.contact import time_to_growing_contact, time_to_plane
 from gaspart.kernels.physics.flight import advance, encounter
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.running_sum import add
 
 _PART = 2.0**-30  # of the rate of growth: particles part at least so fast
 

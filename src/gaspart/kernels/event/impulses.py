@@ -17,11 +17,11 @@ from numpy import int64, uint64
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.event.boxes import member
 from gaspart.kernels.event.simd import PLACES, list_box, load_row, load_rows
-from gaspart.kernels.memory import WIDTH, Lanes, fields
 from gaspart.kernels.model import COLLISIONS
 from gaspart.kernels.physics.collision import gap_along
 from gaspart.kernels.physics.flight import acceleration_of, bin_at, row_of
-from gaspart.kernels.physics.rng import mass_of
+from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.simd import WIDTH, Lanes, fields
 
 
 class Impulses(NamedTuple):
@@ -138,7 +138,7 @@ def separate(typingctx, flights, i, first, listed, vector, space, found):
 # Impulses by the distance of a pair of particles: what makes the radial distribution function accurate.
 #
 # An impulse dp on a particle, at r from another one, changes the relative momentum (p - p') / 2 of the
-# pair, and gives dp.r / (2 r^d) to all distances above r (docs/design-notes.md). At a contact this is so
+# pair, and gives dp.r / (2 r^d) to all distances above r (docs/estimators.md). At a contact this is so
 # of the two that meet, and of each of them with all others. Of the shells, the mean over that of the pair
 # itself has the part 1 - f, with f the part of its volume below r, and all higher ones have all: the shell
 # is given 1 - f, the next one f, and the mean over a shell is the sum of all up to it.

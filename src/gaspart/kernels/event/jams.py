@@ -27,7 +27,7 @@ from gaspart.kernels.obstacles.interior_wall import to_wall
 from gaspart.kernels.obstacles.support import leave_of
 from gaspart.kernels.physics.contact import SHORTEST
 from gaspart.kernels.physics.flight import acceleration_of, advance, flown, mark_resting, nearest
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.running_sum import add
 
 # Which particles of a scene under gravity have come to rest.
 

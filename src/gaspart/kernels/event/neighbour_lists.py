@@ -18,8 +18,9 @@ from numpy import int64, uint32, uint64
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.event.boxes import NUMBER, X, Y, Z, image_bits, number_of, opposite
 from gaspart.kernels.event.simd import earliest, equal, nearer
-from gaspart.kernels.memory import WIDTH, aligned, lowest
+from gaspart.kernels.memory import aligned
 from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, PAIR_TESTS
+from gaspart.kernels.simd import WIDTH, lowest
 
 _FAR = 1e30  # an empty place of a cell
 _STILL = 1e-280  # squared speeds below which a particle does not move

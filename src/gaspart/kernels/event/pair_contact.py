@@ -19,7 +19,7 @@ from gaspart.kernels.physics.collision import exchange_momentum, gap_along, meet
 from gaspart.kernels.physics.contact import SHORTEST, meet_often
 from gaspart.kernels.physics.flight import acceleration_of, advance
 from gaspart.kernels.physics.rng import normal_pair
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.running_sum import add
 
 # Contacts of two particles that gravity presses together, as in a stack at rest.
 #

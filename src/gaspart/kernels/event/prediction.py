@@ -13,12 +13,12 @@ from gaspart.kernels.event.boxes import find_contact, member, sort_in, withdraw
 from gaspart.kernels.event.neighbour_lists import is_renewed_first, next_renewal, search_list
 from gaspart.kernels.event.queue import EVENT_COUNT, bucket_of, fill, reschedule
 from gaspart.kernels.event.sheared import search_sheared
-from gaspart.kernels.memory import fetch
 from gaspart.kernels.model import BOX_VISITS, NONE, PAIR_TESTS, WALLS, Model
 from gaspart.kernels.obstacles.face import next_face
 from gaspart.kernels.obstacles.interior_wall import find_wall
 from gaspart.kernels.obstacles.moving import next_moving, next_piston
 from gaspart.kernels.physics.flight import mark_resting, time_of_contact
+from gaspart.kernels.prefetch import fetch
 
 # Particles too large for the boxes: how they are searched for, and search.
 #

@@ -13,8 +13,8 @@ from gaspart.kernels.compile.policy import inner_helper
 from gaspart.kernels.event.boxes import NUMBER, number_of
 from gaspart.kernels.event.neighbour_lists import cell_along
 from gaspart.kernels.event.queue import BUCKET
-from gaspart.kernels.memory import TOGETHER, fetch, fetch_numbered, fetch_two
 from gaspart.kernels.model import BOX_FACES, WELL_EDGES
+from gaspart.kernels.prefetch import TOGETHER, fetch, fetch_numbered, fetch_two
 
 CACHED = 1 << 15  # particles up to which the nearer caches suffice without,
 CACHED_LISTS = 3 << 12  # and with neighbour lists

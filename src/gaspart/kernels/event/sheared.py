@@ -19,8 +19,8 @@ from gaspart.kernels.physics.lees_edwards import (
     displacement,
     time_of_sheared_contact,
 )
-from gaspart.kernels.physics.rng import mass_of
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.running_sum import add
 
 
 @inner_kernel

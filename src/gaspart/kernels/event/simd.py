@@ -15,8 +15,8 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from gaspart.kernels.memory import WIDTH, Lanes, fields, mask_of
 from gaspart.kernels.model import IMAGE_BITS, NUMBER_BITS
+from gaspart.kernels.simd import WIDTH, Lanes, fields, mask_of
 
 PLACES = 4  # particles of a box that are listed at once
 _DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)

@@ -20,8 +20,8 @@ import numpy as np
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.physics.collision import gap_along
 from gaspart.kernels.physics.lees_edwards import FLOW, GRADIENT, flow_at
-from gaspart.kernels.physics.rng import mass_of
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.running_sum import add
 
 
 class Stress(NamedTuple):

@@ -41,9 +41,9 @@ from gaspart.kernels.physics.ballistic import time_against, time_along
 from gaspart.kernels.physics.contact import time_to_plane
 from gaspart.kernels.physics.flight import acceleration_of, advance, face_plane
 from gaspart.kernels.physics.lees_edwards import shift_image
+from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.per_area import add_per_area, spin_before, velocity_before
-from gaspart.kernels.physics.rng import mass_of
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.running_sum import add
 
 # Open faces: a particle that comes to one leaves the container, and its number is vacant.
 #

@@ -30,8 +30,8 @@ from gaspart.kernels.physics.ballistic import (
 from gaspart.kernels.physics.collision import collide_wall_by_law, least_speed, push, velocity_of
 from gaspart.kernels.physics.contact import normal_change, time_to_contact
 from gaspart.kernels.physics.flight import acceleration_of, advance
-from gaspart.kernels.physics.rng import mass_of
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.running_sum import add
 
 # When a sphere touches a plate, an interior wall of three dimensions: on a side, an edge or a corner.
 #

@@ -15,8 +15,9 @@ from gaspart.kernels.model import NONE, PISTON_CLOCK, PISTON_PLACE, PISTON_VELOC
 from gaspart.kernels.physics.ballistic import flown, time_to_side
 from gaspart.kernels.physics.collision import LEAST, collide_wall_by_law
 from gaspart.kernels.physics.flight import acceleration_of, face_plane
-from gaspart.kernels.physics.rng import TURN, mass_of, sine_cosine
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.running_sum import add
+from gaspart.kernels.physics.sine import TURN, sine_cosine
 
 # A piston: a face of finite mass, which a constant force pushes inwards and particles push back.
 #

@@ -13,7 +13,7 @@ from gaspart.kernels.physics.ballistic import time_to_side
 from gaspart.kernels.physics.collision import velocity_of
 from gaspart.kernels.physics.contact import SHORTEST, is_alone
 from gaspart.kernels.physics.flight import face_plane
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.running_sum import add
 
 _PARALLEL = 2.0**-40  # squared sine of an angle between planes that are taken for one
 

@@ -17,9 +17,10 @@ from gaspart.kernels.physics.collision import (
 )
 from gaspart.kernels.physics.contact import time_to_contact
 from gaspart.kernels.physics.flight import advance, face_plane
+from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.per_area import add_per_area, spin_before, velocity_before
-from gaspart.kernels.physics.rng import flux_speed, mass_of, normal_pair, random_words, uniform
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.rng import flux_speed, normal_pair, random_words, uniform
+from gaspart.kernels.physics.running_sum import add
 
 
 @inner_helper

@@ -19,7 +19,7 @@ from gaspart.kernels.physics.contact import (
     tangential_impulse,
 )
 from gaspart.kernels.physics.flight import nearest
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.running_sum import add
 
 LEAST = (
     2.0**-48

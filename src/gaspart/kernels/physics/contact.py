@@ -11,7 +11,7 @@ from __future__ import annotations
 from math import frexp, inf, ldexp, sqrt
 
 from gaspart.kernels.compile.policy import helper, inner_helper
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.running_sum import add
 
 
 @helper

@@ -161,7 +161,7 @@ def nearest(gap, length, periodic):
 # An impulse dp on a particle at z changes the momentum below every plane above z. Of the planes of one bin
 # that is the part 1 - f, where f is how far up in the bin the particle is: the bin is given dp (1 - f),
 # the next one dp f, and the mean over the planes of a bin is the sum of all up to it
-# (docs/design-notes.md). Impulses of any origin count, of contacts, walls and edges of wells: all that
+# (docs/estimators.md). Impulses of any origin count, of contacts, walls and edges of wells: all that
 # changes a velocity between two flights.
 
 

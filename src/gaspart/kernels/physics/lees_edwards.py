@@ -10,8 +10,8 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.physics.contact import time_to_contact
-from gaspart.kernels.physics.rng import mass_of
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.running_sum import add
 
 FLOW, GRADIENT = 0, 1  # as in `scene.faces`, which kernels do not import
 UPPER_FACE = 2 * GRADIENT + 1

@@ -4,21 +4,12 @@ nothing else, so that they do not depend on the order in which events are found.
 Everything made of the random words uses +, -, x, / and the square root only, as in `random`.
 """
 
-from __future__ import annotations
-
-from math import floor, frexp, sqrt
+from math import frexp, sqrt
 
 import numpy as np
 
-from gaspart.kernels.compile.policy import helper, inner_kernel, kernel
-
-# The constants of the logarithm that is the same bits on every machine; for numpy and for kernels alike.
-
-
-LN2 = 0.6931471805599453
-LOG_SERIES = tuple(1.0 / (2 * k + 1) for k in range(12))
-"""Coefficients of the series of artanh in odd powers, from which logarithms are computed."""
-
+from gaspart.kernels.compile.policy import helper, kernel
+from gaspart.kernels.physics.logarithm import LN2, LOG_SERIES
 
 _M0, _M1 = np.uint64(0xD2E7470EE14C6C93), np.uint64(0xCA5A826395121157)
 _W0, _W1 = np.uint64(0x9E3779B97F4A7C15), np.uint64(0xBB67AE8584CAA73B)
@@ -96,54 +87,3 @@ def normal_pair(key, particle, number, block):
             if s < 1.0:  # and above 0, since u and v are odd multiples of 2^-52
                 factor = sqrt(-2.0 * log_of(s) / s)
                 return u * factor, v * factor, block
-
-
-# Sine and cosine that are the same bits on every machine: by +, -, x and / alone.
-
-
-TURN = 6.283185307179586
-SINE_SERIES = (
-    1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362880.0, -1.0 / 39916800.0, 1.0 / 6227020800.0,
-    -1.0 / 1307674368000.0,
-)  # fmt: skip
-COSINE_SERIES = (
-    1.0, -1.0 / 2.0, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40320.0, -1.0 / 3628800.0, 1.0 / 479001600.0,
-    -1.0 / 87178291200.0, 1.0 / 20922789888000.0,
-)  # fmt: skip
-"""Coefficients of the series in even powers, the sine's without its first factor: within an eighth of a turn
-of 0 what they leave out is below 1e-16."""
-
-
-@helper
-def sine_cosine(turns):
-    """sin and cos of 2 pi turns, to 3e-16: the series about the nearest quarter of a turn."""
-    quarter = floor(4.0 * turns + 0.5)
-    x = TURN * (turns - 0.25 * quarter)
-    square = x * x
-    sine = cosine = 0.0
-    for n in range(len(SINE_SERIES) - 1, -1, -1):
-        sine = sine * square + SINE_SERIES[n]
-    for n in range(len(COSINE_SERIES) - 1, -1, -1):
-        cosine = cosine * square + COSINE_SERIES[n]
-    sine = sine * x
-    which = quarter - 4.0 * floor(0.25 * quarter)
-    if which == 0.0:
-        return sine, cosine
-    if which == 1.0:
-        return cosine, -sine
-    if which == 2.0:
-        return -sine, -cosine
-    return -cosine, sine
-
-
-# The mass of a particle, whichever entry of the model knows it.
-
-
-@inner_kernel
-def mass_of(i, masses, law):
-    """The mass of a particle that can move, in the kernel's unit."""
-    if law is not None:
-        return 1.0 / law.inverse_mass[i]
-    if masses is not None:
-        return masses[i]
-    return 1.0

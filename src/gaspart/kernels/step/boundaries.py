@@ -21,7 +21,7 @@ from gaspart.kernels.obstacles.thermal import cross_edge, time_to_edge
 from gaspart.kernels.physics.collision import collide_by_law
 from gaspart.kernels.physics.contact import time_to_plane
 from gaspart.kernels.physics.flight import advance, bin_at, face_plane, row_of
-from gaspart.kernels.physics.sums import add, add_whole
+from gaspart.kernels.physics.running_sum import add, add_whole
 from gaspart.kernels.step.model import LOSS, VIRIAL
 
 # Impulses by the place where a particle receives them, along one axis (`kernels.physics.flight`), in steps.

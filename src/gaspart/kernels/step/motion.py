@@ -8,7 +8,7 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_allocating_kernel, inner_helper, inner_kernel
 from gaspart.kernels.physics.flight import nearest
-from gaspart.kernels.physics.sums import add_whole
+from gaspart.kernels.physics.running_sum import add_whole
 from gaspart.kernels.step.boundaries import add_reflection, add_share, is_free, meet_faces
 from gaspart.kernels.step.model import DISPLACEMENT, FASTEST
 

@@ -19,7 +19,8 @@ from numba.extending import intrinsic
 from numpy.typing import DTypeLike
 
 from gaspart.kernels.compile.policy import inner_allocating_kernel, inner_helper, inner_kernel
-from gaspart.kernels.memory import WIDTH, Lanes, fetch, fields, lowest
+from gaspart.kernels.prefetch import fetch
+from gaspart.kernels.simd import WIDTH, Lanes, fields, lowest
 from gaspart.kernels.step.model import DISPLACEMENT, part_of
 from gaspart.kernels.step.resolve import examine
 

@@ -11,10 +11,10 @@ there is restitution: a test compares it bit for bit with `collision.collide_smo
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_allocating_kernel, inner_helper, inner_kernel
-from gaspart.kernels.memory import fetch
 from gaspart.kernels.physics.contact import contact_root, exchange
 from gaspart.kernels.physics.flight import nearest
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.running_sum import add
+from gaspart.kernels.prefetch import fetch
 from gaspart.kernels.step.boundaries import add_contact, collide_flights, place_and_speed
 from gaspart.kernels.step.model import (
     COLLISIONS,

@@ -18,7 +18,7 @@ from gaspart.kernels.compile.policy import (
     inner_parallel_kernel,
 )
 from gaspart.kernels.model import Space
-from gaspart.kernels.physics.sums import add
+from gaspart.kernels.physics.running_sum import add
 from gaspart.kernels.step.boundaries import own_impulses
 from gaspart.kernels.step.model import StepModel, StepParticles, StepTally, part_of
 from gaspart.kernels.step.resolve import fetch_ahead, resolve, resolve_all

@@ -227,7 +227,7 @@ def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: f
 
 def _timed(run: _Run, interval: float) -> tuple[tuple[float, float], dict]:
     """Processor time and time on the wall of one interval, in s, and what was counted in it."""
-    from gaspart.engines.dynamics import EventLog
+    from gaspart.engines.event_log import EventLog
     from gaspart.state.optional_tallies import StressTally
 
     scene, engine = run.scene, run.engine

@@ -102,8 +102,8 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     The choice is that of the table's machine, so that a config means the same everywhere. A length is set
     only if none is given. Raises SceneError.
     """
-    from gaspart.accuracy.cost_table import EQUILIBRATION
     from gaspart.accuracy.plan import tabulated
+    from gaspart.accuracy.table import EQUILIBRATION
 
     if "accuracy" not in settings:
         raise SceneError(f"{where}.accuracy", None, "is required with engine: auto")

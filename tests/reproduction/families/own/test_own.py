@@ -10,7 +10,7 @@ import pytest
 from reproduction.families.drawn import Points, draw, lines, shows
 
 import gaspart as gp
-from gaspart.analysis import measure as measuring
+from gaspart.analysis import measuring
 from gaspart.analysis.observable import observable as made
 from gaspart.analysis.observables import OBSERVABLES, having
 from gaspart.errors import SceneError

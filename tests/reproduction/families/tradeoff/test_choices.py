@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from gaspart import theory
-from gaspart.accuracy import tabulated as models
+from gaspart.accuracy import models
 from gaspart.analysis.estimate import Estimate
 from gaspart.engines.dsmc.defaults import contact_values
 from gaspart.reproduction.families.tradeoff import flows, relaxation, uniform

@@ -12,6 +12,7 @@ from gaspart import theory
 from gaspart.analysis import bond_order as structure
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.flow import Grid
+from gaspart.analysis.pairs import radial_distribution
 from gaspart.analysis.run import Run
 from gaspart.analysis.series import plateau
 from gaspart.analysis.statistics import average, correlated_mean, mean_of
@@ -218,7 +219,7 @@ def _picture(point: Point, settings: dict) -> dict[str, Any]:
     diameter = 2.0 * run.scene.largest_radius
     lengths = np.array(run.scene.container.lengths) / diameter
     frames = run.data["coordinates"].values[1:] / diameter
-    distance, g = structure.radial_distribution(frames, lengths, settings["bins"], settings["furthest"])
+    distance, g = radial_distribution(frames, lengths, settings["bins"], settings["furthest"])
     wave_x, wave_y, factor = structure.structure_factor(frames, lengths, settings["highest"])
     return {
         "x": frames[-1][:, 0],

@@ -18,8 +18,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.bond_order import radial_distribution
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.pairs import radial_distribution
 from gaspart.analysis.run import Run
 from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import fit_polynomial, jackknife, means_of
@@ -123,7 +123,7 @@ def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Av
         return pairs * radial_distribution(frames, sides, bins, end)[1]
 
     def s(frames: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-        return np.mean([factors(frame, sides, vectors) for frame in frames], axis=0)
+        return np.asarray(factors(frames, sides, vectors).mean(axis=0))
 
     contact = round(1.0 / WIDTH)
     return Averages(

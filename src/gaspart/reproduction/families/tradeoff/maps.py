@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from gaspart.accuracy.cost_table import PRECISIONS
+from gaspart.accuracy.table import PRECISIONS
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.shared.accuracy import costs
 from gaspart.reproduction.families.tradeoff import flows, uniform

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart import theory
-from gaspart.accuracy import cost_table as table
-from gaspart.accuracy.cost_table import EQUILIBRATION, LEAST, PRECISIONS
-from gaspart.accuracy.tabulated import model_error, step_error
+from gaspart.accuracy import table
+from gaspart.accuracy.models import model_error, step_error
+from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.reproduction.families.shared.accuracy import add_costs, errors

@@ -7,8 +7,6 @@ made, which are made in time: nothing overflows, and nothing is rounded. Sums of
 digit.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -127,56 +125,3 @@ def exact_parts(parts: np.ndarray) -> np.ndarray:
     found = np.empty((*total.shape[:-1], 2))
     evaluate(total.reshape(-1, WIDTH), UNITS, found.reshape(-1, 2))
     return found
-
-
-# Running sums of the tally: as accurate after 1e10 events as after 1e6.
-#
-# A plain sum in float64 loses digits as it grows. The event-driven engine adds in one fixed order and keeps
-# the rounding error of each addition beside the sum (Neumaier, ZAMM 54, 39 (1974)). The time-stepped engine
-# adds in an order that depends on slots and threads, so it sums integers, for which no order matters.
-# Both forms are two numbers; both belong to the checkpoint, and do not depend on where a run is split.
-
-
-_COARSE, _FINE = 2.0**-28, 2.0**-57  # of the largest term: each holds 2^35 such terms in 64 bits
-
-
-@inner_helper
-def add(sums, n, x):
-    """Add x to sums (K, 2), at n: the sum, and the sum of its rounding errors, which are exact (Knuth, The
-    Art of Computer Programming 2, 4.2.2).
-
-    After M additions the relative error is at most 2^-53 + (M 2^-53)^2 of the sum of all |x|.
-    """
-    before = sums[n, 0]
-    after = before + x
-    added = after - before
-    sums[n, 0] = after
-    sums[n, 1] += (before - (after - added)) + (x - added)
-
-
-@inner_helper
-def add_whole(sum_, x, largest):
-    """Add x to a sum (2,) of integers: multiples of a coarse unit, and of a fine one for the remainder.
-
-    largest: a power of two that few terms exceed, so that but for rint all here is exact, and the quotient
-    the same for all terms.
-    """
-    units = x * (1.0 / largest / _COARSE)
-    whole = np.rint(units)
-    sum_[0] += np.int64(whole)
-    sum_[1] += np.int64(np.rint((units - whole) * (_COARSE / _FINE)))
-
-
-def values(sums: np.ndarray) -> np.ndarray:
-    """(...) what `add` has summed in (..., 2)."""
-    return sums[..., 0] + sums[..., 1]
-
-
-def net(*sums: np.ndarray) -> float:
-    """The total of several such sums, rounded once: what remains when large sums cancel is exact."""
-    return math.fsum(np.concatenate([one.ravel() for one in sums]))
-
-
-def whole_parts(sums: np.ndarray, largest: float) -> np.ndarray:
-    """(..., 2) what `add_whole` has summed in (..., 2), each part as a float64."""
-    return sums * np.array([largest * _COARSE, largest * _FINE])

@@ -1,24 +1,24 @@
-"""An observable of a trajectory, by its name, and the part of a run until a time."""
+"""Replicas: an observable of several independent runs of one scene, with the scatter of the runs."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from gaspart import analysis
-from gaspart.analysis.flow import FLOW
 from gaspart.analysis.impulses import kept
-from gaspart.analysis.observable import Observable, scalar
-from gaspart.analysis.observables import OBSERVABLES, having, known, require_selection, selecting
-from gaspart.analysis.run import Run, Source, open_run, selected
+from gaspart.analysis.measuring import measure, until_time
+from gaspart.analysis.observable import Observable
+from gaspart.analysis.observables import OBSERVABLES
+from gaspart.analysis.run import Source
 from gaspart.analysis.statistics import means_of
 from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError, shown
@@ -28,234 +28,6 @@ from gaspart.state.optional_tallies import ImpulseTally
 from gaspart.state.state import by_number
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.yaml_text import parse_yaml
-
-if TYPE_CHECKING:
-    from gaspart.analysis.observable import Observable
-    from gaspart.analysis.run import Source
-
-
-@overload
-def measure(
-    source: Source, observable: str, start: float | None = ..., end: float | None = ..., **selection: Any
-) -> Observable: ...
-
-
-@overload
-def measure(
-    source: Source,
-    observable: Sequence[str],
-    start: float | None = ...,
-    end: float | None = ...,
-    **selection: Any,
-) -> dict[str, Observable]: ...
-
-
-def measure(
-    source: Source,
-    observable: str | Sequence[str],
-    start: float | None = None,
-    end: float | None = None,
-    **selection: Any,
-) -> Observable | dict[str, Observable]:
-    """Measure an observable of a trajectory or a simulation, or several, by name.
-
-    Parameters
-    ----------
-    source : path, xarray.Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
-    observable : str or sequence of str
-        Names as of `gaspart measure`, such as "pressure"; aliases are accepted, such as "viscosity".
-    start : float, [time], optional
-        Frames before this time are discarded. Default: the first quarter of the frames.
-    end : float, [time], optional
-        Frames after this time are discarded. Default: none.
-    **selection
-        Selections that the observables have, such as species=1 or axis="x".
-
-    Returns
-    -------
-    Observable or dict
-        The measured quantity with its uncertainty; of several names {name: Observable}.
-
-    Raises
-    ------
-    SceneError
-        If a name is unknown, the observable does not have a selection, fewer than two frames are left,
-        or the scene or the run does not have what the observable needs.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> scene = gp.Scene(
-    ...     container=gp.Container(lengths=(10.0, 10.0), boundary="periodic"),
-    ...     species=[gp.Species(count=32, radius=0.5, temperature=1.0, exact_temperature=True)],
-    ... )
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> measured = gp.measure(simulation, ["Z", "collision_rate"])
-    >>> list(measured)
-    ['Z', 'collision_rate']
-    """
-    if not isinstance(observable, str):
-        names = [known(name) for name in observable]
-        return {name: measure(source, name, start, end, **selection) for name in names}
-    name = known(observable)
-    one = OBSERVABLES[name]
-    require_selection(name, selection)
-    function = getattr(analysis, one.function)
-    with until_time(source, end, one.needs == "pairs") as part:
-        found: Observable = function(part, start=start, **one.arguments, **selection)
-    return found
-
-
-@contextmanager
-def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
-    """The frames of a source until a time, whatever it is; itself if the time is None. pairs: whether those
-    of a simulation count the collisions of each pair of species. Raises SceneError for fewer than two."""
-    if end is None:
-        yield source
-        return
-    from gaspart.analysis.run import repeated
-    from gaspart.keys.values import number
-    from gaspart.simulation import Simulation
-    from gaspart.trajectory.reading import open_trajectory
-
-    if isinstance(source, Simulation):
-        source = repeated(source, pairs)
-    with open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source) as data:
-        time = data["time"].values
-        last = number("end", end, "must be a finite number")
-        count = int((time <= last + 1e-9 * abs(last)).sum())
-        if count < 2:
-            longest = float(time[-1]) if len(time) else 0.0
-            raise SceneError("end", end, f"leaves {count} frames of a run until time {longest:g}")
-        yield data.isel(frame=slice(count))
-
-
-# A table of the properties of each species of a run.
-
-
-def by_species(source: Source, start: float | None = None, about: str = FLOW) -> xr.Dataset:
-    """Measure the properties of each species that moves.
-
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
-    about : {"flow", "rest"}, default "flow"
-        Frame of reference. "flow": velocities and paths are about the local flow where the gas flows,
-        otherwise about the centre of mass along axes on which the total momentum is conserved (see
-        `gaspart.analysis.flow`). "rest": in the frame of the container, without a correction.
-
-    Returns
-    -------
-    Dataset
-        Properties (species,) with standard uncertainties (suffix _error). The coordinate `species` has the
-        numbers of the scene; single particles have the number after the last. Variables:
-
-        - `count`, number of moving particles;
-        - `temperature` [energy], twice the mean kinetic energy of flight per degree of freedom;
-        - `mean_speed` [length/time];
-        - `D` [length^2/time], and the curves `msd` and `vacf` (species, lag), as of `gaspart measure` with a
-          species. NaN where a species cannot have one, such as a D between walls, for the reason in the
-          attribute `not_measured`, and where it has fewer lags than others.
-
-    Raises
-    ------
-    SceneError
-        If nothing moves, or there are too few frames.
-
-    Notes
-    -----
-    About the centre of mass the mean square of a particle of mass m is 1 - m / M of its value without this
-    condition, M the mass of all whose mean is subtracted (exact in equilibrium). Temperatures and speeds are
-    corrected for this. `to_dataframe` of the variables without lags is a table with a row for each species.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.by_species(simulation)["count"].values.tolist()
-    [20]
-    """
-    opened = open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source)
-    with opened as run_of_all:
-        with open_run(run_of_all, start, about=about) as run:
-            kinds = [int(kind) for kind in np.unique(run.species[run.moving])]
-            if not kinds:
-                raise SceneError("species", [], "none of the particles moves")
-            counts = [int((run.species[run.moving] == kind).sum()) for kind in kinds]
-            rows: list[dict[str, Observable]] = [_of_velocities(run, kind) for kind in kinds]
-        missing = {}
-        for kind, row in zip(kinds, rows, strict=True):
-            for name in _of_motion():
-                try:
-                    row[name] = measure(run_of_all, name, start, species=kind, about=about)
-                except SceneError as error:
-                    missing[f"{name} of species {kind}"] = error.rule
-    table = xr.Dataset(coords={"species": ("species", kinds, {"long_name": "number of the species"})})
-    table["count"] = ("species", counts, {"units": "1", "long_name": "moving particles"})
-    for name in ("temperature", "mean_speed", *_of_motion()):
-        table = table.merge(
-            _column(name, [row.get(name) for row in rows]), join="outer", compat="no_conflicts"
-        )
-    reasons = "; ".join(f"{what}: {reason}" for what, reason in missing.items())
-    return table.assign_attrs(not_measured=reasons)
-
-
-def _of_motion() -> tuple[str, ...]:
-    """The observables of the motion of particles that are of a species too."""
-    return tuple(name for name in selecting("species") if name in having(scatter="particles"))
-
-
-def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
-    """The temperature and the mean speed of the moving particles of a species."""
-    chosen, masses = selected(run, kind, None), run.masses[run.moving]
-    shape = run.motion.velocities.shape
-    velocities = run.motion.velocities[:, chosen]
-    free = np.broadcast_to(run.motion.freedom, shape)[:, chosen]
-    if not free.any():
-        raise SceneError("count", len(masses), "a single particle keeps its velocity")
-    energies = np.einsum("tnd,tnd,n->t", velocities, velocities, masses[chosen])
-    energies /= free.sum(axis=(1, 2)).mean()
-    known = (free > 0.0).all(axis=2)  # not alone in its cell of a flow
-    squares = np.divide(velocities**2, free, out=np.zeros(free.shape), where=free > 0.0).sum(axis=2)
-    speeds = (np.sqrt(squares) * known).sum(axis=1) / known.sum(axis=1).mean()
-    edges = np.append(run.time, 2.0 * run.time[-1] - run.time[-2])
-    about: dict[str, Any] = {"units": "energy", "long_name": "temperature"}
-    temperature = scalar("temperature", energies, edges, **about)
-    about = {"units": "length / time", "long_name": "mean speed"}
-    return {
-        "temperature": temperature,
-        "mean_speed": scalar("mean_speed", speeds, edges, **about),
-    }
-
-
-def _column(name: str, found: list[Observable | None]) -> xr.Dataset:
-    """One observable of all species with its uncertainty; nothing if it was measured of none."""
-    known = [one for one in found if one is not None]
-    if not known:
-        return xr.Dataset()
-    blank = xr.full_like(known[0].estimate, np.nan)
-    parts = {
-        name: [blank if one is None else one.estimate for one in found],
-        f"{name}_error": [blank if one is None else one.error for one in found],
-    }
-    columns = {}
-    for key, values in parts.items():
-        plain = [value.drop_vars("time", errors="ignore") for value in values]
-        column = xr.concat(plain, "species", join="outer", compat="equals")  # few particles have fewer lags
-        columns[key] = column.rename(key).assign_attrs(values[0].attrs)
-    columns[name].attrs.update(known[0].estimate.attrs)
-    columns[f"{name}_error"].attrs.update(known[0].error.attrs)
-    return xr.Dataset(columns)
-
-
-# Replicas: an observable of several independent runs of one scene, with the scatter of the runs.
 
 
 def replicas(

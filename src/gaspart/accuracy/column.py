@@ -1,0 +1,175 @@
+"""A gas in equilibrium under gravity, by theory: hydrostatics at one temperature, that of its energy.
+
+Heights are those of centres above the lowest place that they reach. Hard spheres and discs follow the
+reference equation of state; with `ideal` the gas is that of the Boltzmann model, which has no virial.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.analysis.observables import OBSERVABLES
+from gaspart.engines.dsmc.defaults import accessible
+from gaspart.scene.faces import Thermal
+from gaspart.scene.scene import Scene
+from gaspart.state.state import State
+
+_POINTS = 1200
+_SCALES = 25.0
+"""Scale heights above the floor beyond which nothing is left of a column."""
+_ROUNDS = 40
+
+
+@dataclass(frozen=True)
+class Column:
+    """heights (Z,); numbers: (S, Z) particles per height of kinds that differ in mass; masses (S,);
+    temperature; pull: the acceleration; area: across it; diameter, dimension: of the particles; ideal: see
+    the module."""
+
+    heights: np.ndarray
+    numbers: np.ndarray
+    masses: np.ndarray
+    temperature: float
+    pull: float
+    area: float
+    diameter: float
+    dimension: int
+    ideal: bool
+
+    @cached_property
+    def filled(self) -> np.ndarray:
+        """(Z,) packing fraction."""
+        return self.numbers.sum(axis=0) / self.area * theory.particle_volume(self.dimension, self.diameter)
+
+    @property
+    def energy(self) -> float:
+        """Of all particles, kinetic and potential."""
+        total = np.trapezoid(self.numbers, self.heights, axis=1)
+        raised = np.trapezoid(self.numbers * self.heights, self.heights, axis=1)
+        kinetic = 0.5 * self.dimension * self.temperature * total.sum()
+        return float(kinetic + self.pull * (self.masses @ raised))
+
+    @property
+    def collisions(self) -> float:
+        """Per time, in units that do not depend on the state: to compare two columns of one scene."""
+        contact = 1.0 if self.ideal else theory.contact_value(self.filled, self.dimension)
+        speed = np.sqrt(1.0 / self.masses[:, None] + 1.0 / self.masses)
+        pairs = np.einsum("iz,jz,ij->z", self.numbers, self.numbers, speed) * contact
+        return math.sqrt(self.temperature) * float(np.trapezoid(pairs, self.heights))
+
+    def pressure(self, top: bool) -> float:
+        """On the floor, or at the top."""
+        at = -1 if top else 0
+        ratio = 1.0 if self.ideal else theory.compressibility_factor(self.filled[at], self.dimension)
+        return float(self.numbers[:, at].sum() / self.area * self.temperature * ratio)
+
+
+@dataclass(frozen=True)
+class Pulled:
+    """What a column is of: a scene under gravity along one axis with walls. axis: its number; low: whether
+    the floor is the lower wall; pull; height: that centres have; area; masses, counts (S,); diameter."""
+
+    dimension: int
+    axis: int
+    low: bool
+    pull: float
+    height: float
+    area: float
+    masses: np.ndarray
+    counts: np.ndarray
+    diameter: float
+
+    def column(self, temperature: float, ideal: bool) -> Column:
+        """At a temperature. Raises ValueError if the fluid would be denser than its equation of state."""
+        d, weights = self.dimension, self.masses * self.pull / temperature
+        top = min(self.height, self._reaches(temperature))
+        z = np.linspace(0.0, top, _POINTS)
+        per_area = self.counts / self.area
+        if ideal:
+            densities = np.exp(-weights[:, None] * z)
+            densities *= (per_area / np.trapezoid(densities, z, axis=1))[:, None]
+        else:
+            densities = theory.hydrostatic_profiles(z, per_area, weights, d, self.diameter)
+        shape = self.masses, temperature, self.pull, self.area, self.diameter, d, ideal
+        return Column(z, densities * self.area, *shape)
+
+    def _reaches(self, temperature: float) -> float:
+        """How high the gas is: a close-packed bed, and above it an atmosphere of its lightest particles."""
+        volume = self.counts.sum() * theory.particle_volume(self.dimension, self.diameter) / self.area
+        return 2.0 * float(volume) + _SCALES * temperature / float(self.masses.min() * self.pull)
+
+    def of_energy(self, energy: float, ideal: bool) -> Column:
+        """At the temperature at which it has an energy. Raises ValueError as `column`, and for an energy that
+        no temperature has."""
+        if not energy > 0.0:
+            raise ValueError(f"energy: {energy} (must be positive)")
+        low, high = 0.0, 2.0 * energy / (self.dimension * float(self.counts.sum()))
+        for _ in range(_ROUNDS):
+            middle = 0.5 * (low + high)
+            try:
+                colder = self.column(middle, ideal).energy < energy
+            except ValueError:  # so cold that its floor would be denser than a fluid
+                colder = True
+            low, high = (middle, high) if colder else (low, middle)
+        return self.column(high, ideal)
+
+    def energy_of(self, state: State) -> float:
+        """Of a state, kinetic and potential; the floor is at 0."""
+        place, length = state.positions[:, self.axis], float(state.lengths[self.axis])
+        heights = (place if self.low else length - place) - 0.5 * (length - self.height)
+        return float(state.translational_energy + self.pull * (state.masses @ heights))
+
+    def settled(self, energy: float, heat: float | None, ideal: bool) -> Column:
+        """In equilibrium: at the temperature of its faces, `heat`, or else with its energy. Raises ValueError
+        as `of_energy`."""
+        return self.column(heat, ideal) if heat else self.of_energy(energy, ideal)
+
+
+def pulled(scene: Scene) -> Pulled | None:
+    """What theory knows of a scene under gravity, None if it knows nothing: of particles of one size between
+    hard walls, or ones at one temperature, that lose no energy."""
+    pull = [(k, g) for k, g in enumerate(scene.gravity or ()) if g]
+    kinds = [kind for kind in scene.kinds if kind.count]
+    law, thermal = scene.restitution, scene.face_temperatures
+    if len(pull) != 1 or scene.thermostat is not None or scene.walls or not kinds:
+        return None
+    if law is not None and (law.dissipative or law.rough):
+        return None
+    if len({kind.radius for kind in kinds}) > 1 or not all(kind.alike and not kind.fixed for kind in kinds):
+        return None
+    if len(thermal) > 1 or any(not isinstance(face, Thermal) or face.slides for face in scene.faces.values()):
+        return None
+    (k, g), (lower, upper) = pull[0], accessible(scene)
+    sides = upper - lower
+    masses = sorted({kind.mass for kind in kinds})
+    counts = [sum(kind.count for kind in kinds if kind.mass == mass) for mass in masses]
+    return Pulled(
+        scene.dimension, k, g < 0.0, abs(g), float(sides[k]), float(np.delete(sides, k).prod()),
+        np.array(masses), np.array(counts, dtype=float), 2.0 * kinds[0].radius,
+    )  # fmt: skip
+
+
+def between(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
+    """By how much an observable of a column of points differs from that of particles, relatively; top: of the
+    pressure, whether it is that at the top, None for any wall."""
+    differences = {
+        "collision_rate": abs(ideal.collisions / real.collisions - 1.0),
+        "temperature": abs(ideal.temperature / real.temperature - 1.0),
+        "density": _of_profiles(real, ideal),
+    }
+    if OBSERVABLES[observable].of_impulses and top is not None:
+        exact = real.pressure(top)
+        return abs(ideal.pressure(top) / exact - 1.0) if exact > 0.0 else math.inf
+    return differences.get(observable, max(differences.values()))
+
+
+def _of_profiles(real: Column, ideal: Column) -> float:
+    """Root mean square of the difference of two densities over that of the first."""
+    exact = real.numbers.sum(axis=0)
+    other = np.interp(real.heights, ideal.heights, ideal.numbers.sum(axis=0), right=0.0)
+    return float(np.sqrt(((other - exact) ** 2).sum() / (exact**2).sum()))

@@ -1,0 +1,158 @@
+"""The scales of a scene: a speed, a length and two times, from which a duration and an interval follow.
+
+They are those of the start: of a gas that fills its container evenly, with the speeds of its initial
+velocities or of its faces, whatever is hotter.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gaspart import theory
+from gaspart.engines.dsmc.defaults import rates, square_of
+from gaspart.scene.face_checks import piston_end
+from gaspart.scene.faces import Open
+from gaspart.scene.open_faces import attempt_rate
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Particle, Species
+
+_COLLISIONS, _CROSSINGS = 200.0, 10.0
+"""Of a particle, in the suggested duration: both."""
+_FRAMES = 1000  # the most that are suggested
+_KNUDSEN = 10.0
+"""Mean free path, in lengths of the shortest side, beyond which a gas is free-molecular."""
+_KINDS = 200
+"""Each pair of so many is evaluated; single particles are one each."""
+_REDUCED = 1e5
+"""Speeds beyond which, or below its inverse, units are hardly those of the particles."""
+
+
+@dataclass(frozen=True)
+class Scales:
+    """thermal_speed: sqrt(k_B T / m), 0 if nothing moves at the start; mean_free_path and collision_time, of
+    a particle between two collisions, infinite if there are none; crossing_time: in which a particle crosses
+    the shortest side of the container, as fast as it is or as it falls; packing_fraction; end: the longest
+    run that is suggested, where a piston moves at a stated speed; walled: whether any side is not periodic;
+    attempts: particles of reservoirs that try to enter per time."""
+
+    thermal_speed: float
+    mean_free_path: float
+    collision_time: float
+    crossing_time: float
+    packing_fraction: float
+    end: float = math.inf
+    walled: bool = False
+    attempts: float = 0.0
+
+    @property
+    def free_molecular(self) -> bool:
+        """True if particles meet walls far more often than one another."""
+        known = self.walled and math.isfinite(self.mean_free_path)
+        return known and self.collision_time > _KNUDSEN * self.crossing_time
+
+    @property
+    def event_time(self) -> float:
+        """The time between collisions, or, where there are none or a `free_molecular` gas has walls, to cross
+        the container; infinite if nothing moves."""
+        collides = math.isfinite(self.collision_time) and not self.free_molecular
+        return self.collision_time if collides else self.crossing_time
+
+    @property
+    def interval(self) -> float | None:
+        """A time between frames, to two digits: the `event_time`, or a longer one, so that the suggested
+        duration has 1000 frames at most; None if nothing moves."""
+        if not math.isfinite(self.event_time):
+            return None
+        return two_digits(min(max(self.event_time, self._longest / _FRAMES), 0.1 * self.end))
+
+    @property
+    def duration(self) -> float | None:
+        """A duration, a multiple of the interval: 200 collisions of a particle and ten crossings, or 200
+        crossings of a `free_molecular` gas."""
+        if self.interval is None:
+            return None
+        number = min(
+            math.ceil(self._longest / self.interval), math.floor(min(self.end / self.interval, 1e15))
+        )
+        return float(f"{max(1, number) * self.interval:.12g}")
+
+    @property
+    def _longest(self) -> float:
+        collisions = _COLLISIONS * self.event_time if math.isfinite(self.collision_time) else 0.0
+        return max(collisions, _CROSSINGS * self.crossing_time)
+
+    @property
+    def proposal(self) -> str:
+        """The suggestion as options of `gaspart run`; "" if nothing moves."""
+        return f"--duration {self.duration:.12g} --sample-interval {self.interval:g}" if self.interval else ""
+
+    @property
+    def lines(self) -> list[str]:
+        """The scales and the suggestion, for the command line."""
+        if self.interval is None:
+            return ["scales: nothing moves at the start, and nothing falls"]
+        known = {
+            "thermal speed": self.thermal_speed,
+            "mean free path": self.mean_free_path,
+            "time between collisions": self.collision_time,
+            "to cross the container": self.crossing_time,
+        }
+        words = [f"{name} {value:.3g}" for name, value in known.items() if 0.0 < value < math.inf]
+        lines = [f"scales: {', '.join(words)}; packing fraction {self.packing_fraction:.3g}"]
+        if self.attempts:
+            lines += [f"reservoirs: {self.attempts:.3g} particles try to enter per time"]
+        lines += [f"suggested: {self.proposal}"]
+        if self.thermal_speed and not 1.0 / _REDUCED < self.thermal_speed < _REDUCED:
+            rule = "k_B is 1: a temperature is an energy, of one system of units with the masses and lengths"
+            lines += [f"units: {rule} (docs/conventions.md)"]
+        return lines
+
+
+def scales(scene: Scene) -> Scales:
+    """The scales of a scene; collisions of a plain gas by theory, of others by the rates of all kinds."""
+    d, found = scene.dimension, rates(scene, True, _few_kinds(scene))
+    thermal = found.speed / math.sqrt(8.0 / math.pi if d == 3 else math.pi / 2.0)
+    side = min(scene.container.lengths)
+    fall = math.sqrt(math.hypot(*scene.gravity) * side) if scene.gravity else 0.0
+    fastest = max(thermal, fall)
+    frequency = collision_frequency(scene) or found.frequency
+    return Scales(
+        thermal_speed=thermal,
+        mean_free_path=found.speed / frequency if frequency else math.inf,
+        collision_time=1.0 / frequency if frequency else math.inf,
+        crossing_time=side / fastest if fastest else math.inf,
+        packing_fraction=scene.packing_fraction,
+        end=0.5 * piston_end(scene),  # at which there is no room left
+        walled=not all(scene.container.periodic),
+        attempts=sum(attempt_rate(scene, number, face) for number, face in scene.faces_of(Open)),
+    )
+
+
+def _few_kinds(scene: Scene) -> list[Species | Particle]:
+    """The kinds of particles that move; of very many one that stands for all, of their mean volume, mass and
+    energy."""
+    kinds, d = list(scene.moving_kinds), scene.dimension
+    if len(kinds) <= _KINDS:
+        return kinds
+    count = sum(kind.count for kind in kinds)
+    volume = sum(kind.count * kind.radius**d for kind in kinds) / count
+    mass = sum(kind.count * kind.mass for kind in kinds) / count
+    energy = sum(kind.count * kind.mass * square_of(kind, d) for kind in kinds) / count
+    return [Species(count, volume ** (1.0 / d), mass=mass, temperature=energy)]
+
+
+def collision_frequency(scene: Scene) -> float:
+    """Collisions of a particle of a plain gas per time, by theory; 0 where that does not know it."""
+    gas = scene.gas
+    if gas is None or gas.count < 2 or not gas.temperature > 0.0:
+        return 0.0
+    try:
+        return float(theory.collision_rate(**gas.parameters))
+    except ValueError:  # denser than theory goes
+        return 0.0
+
+
+def two_digits(value: float) -> float:
+    """`value`, rounded."""
+    return float(f"{value:.2g}")

@@ -1,0 +1,136 @@
+"""The table of measured costs and errors, and interpolation between its points.
+
+Columns: ``dimension``, ``packing_fraction``; ``engine`` (event; step, with its standard four passes and
+rewinding; dsmc and dsmc enskog, by its model), ``precision``, ``time_step`` in diameters over the thermal
+speed (kT / m)^(1/2), of DSMC in its own step, a fifth of a mean free time, 0 for event; ``quantity``, its
+``value`` and standard ``error``. Quantities: ``seconds`` of processor time for one exact contact of two
+particles; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance of an estimate
+times the contacts that it is made of; ``price_<feature>``, the time per event with a feature over that
+without it. Observables: Z, collision_rate, D. Other errors follow from theory (`gaspart.accuracy.tabulated`).
+"""
+
+from __future__ import annotations
+
+import csv
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from gaspart import theory
+
+COLUMNS = ("dimension", "packing_fraction", "engine", "precision", "time_step", "quantity", "value", "error")
+PATH = Path(__file__).parent / "data" / "accuracy.csv"
+PRECISIONS = {"4 passes": "float64", "4 passes, float32": "float32"}
+"""The settings of the time-stepped engine that are worth advising, by their names in figures."""
+EQUILIBRATION = 30.0
+"""Collisions per particle before anything is measured."""
+LEAST = 20.0
+"""Collisions per particle that are measured at least: a shorter run is no average over time."""
+REFERENCE, STEP = 0.1, 0.08
+"""Packing fraction of the gas by which times are carried over, and the time step with which it is timed."""
+_EXACT = "event"  # the engine by which noise, which is that of a gas with any engine, was measured
+_PRICE, _BIAS = "price_", "bias_"
+_SAFE = 2.0  # standard errors added to a bias
+_BEYOND = 1.05  # a packing fraction may exceed those of the table by this factor
+
+
+@cache
+def read() -> tuple[dict, ...]:
+    """All rows, with numbers as numbers."""
+    with PATH.open(encoding="utf-8") as file:
+        lines = [line for line in file if not line.startswith("#")]
+    kinds = (int, float, str, str, float, str, float, float)
+    return tuple(
+        {key: kind(row[key]) for key, kind in zip(COLUMNS, kinds, strict=True)}
+        for row in csv.DictReader(lines)
+    )
+
+
+def lowest(dimension: int) -> float:
+    """The lowest packing fraction at which an engine was timed, minus 5 %."""
+    timed = (row for row in read() if row["quantity"] == "seconds" and row["dimension"] == dimension)
+    return min(float(row["packing_fraction"]) for row in timed) / _BEYOND
+
+
+def steps(dimension: int, engine: str) -> list[tuple[str, float]]:
+    """(precision, time_step) of all timed settings of an engine."""
+    timed = (row for row in read() if row["engine"] == engine and row["quantity"] == "seconds")
+    found = (row for row in timed if row["dimension"] == dimension)
+    return list(dict.fromkeys((row["precision"], row["time_step"]) for row in found))
+
+
+def has_biases(engine: str) -> bool:
+    """Whether errors of an engine were measured; of the others they follow from theory."""
+    return any(row["engine"] == engine and row["quantity"].startswith(_BIAS) for row in read())
+
+
+def bias(
+    dimension: int, fraction: float, precision: str, step: float, observable: str, engine: str = "step"
+) -> float:
+    """A bound on the relative error of an engine, by default that of time steps, with two standard errors;
+    inf where none was measured.
+
+    Between packing fractions the larger of the neighbours' is taken: errors change their sign between them.
+    """
+    eta, value, error = _curve(dimension, engine, precision, step, f"{_BIAS}{observable}")
+    if not eta.size or not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND:
+        return np.inf
+    bound = np.abs(value) + _SAFE * error
+    at = int(np.clip(np.searchsorted(eta, fraction * 0.999), 0, eta.size - 1))
+    near = {at, max(0, at - 1)} if not np.isclose(eta[at], fraction, rtol=1e-3) else {at}
+    return float(max(bound[n] for n in near))
+
+
+def seconds(
+    dimension: int, fraction: float, engine: str, precision: str = "float64", step: float = 0.0
+) -> float:
+    """Processor time of one exact contact, on the machine of the table; inf where it was not measured. Beyond
+    the gases of the table that of an engine without steps is that of the nearest one."""
+    eta, value, _ = _curve(dimension, engine, precision, step, "seconds")
+    if not eta.size or (step and not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND):
+        return np.inf
+    return float(np.exp(np.interp(np.log(fraction), np.log(eta), np.log(value))))
+
+
+def noise(dimension: int, fraction: float, observable: str) -> float:
+    """Relative variance of an observable, times the contacts that it is made of; inf if there is none.
+
+    In a gas more dilute than those of the table that of Z falls with the square of (Z - 1) / Z, since Z - 1
+    is in proportion to the contacts, and the others are those of the most dilute one.
+    """
+    eta, value, _ = _curve(dimension, _EXACT, "float64", 0.0, f"noise_{observable}")
+    if not eta.size:
+        return np.inf
+    # A line through the logarithms: single values come from few blocks.
+    order = min(2, eta.size - 1)
+    fit = np.polyfit(np.log(eta), np.log(value), order)
+    found = float(np.exp(np.polyval(fit, np.log(np.clip(fraction, eta[0], eta[-1])))))
+    if observable == "Z" and fraction < eta[0]:
+        virial = [
+            1.0 - 1.0 / float(theory.compressibility_factor(at, dimension)) for at in (fraction, eta[0])
+        ]
+        found *= (virial[0] / virial[1]) ** 2
+    return found
+
+
+def prices(engine: str) -> dict[str, float]:
+    """The time per event with each feature that was measured over that without it (`price_of_features`)."""
+    rows = (row for row in read() if row["engine"] == engine and row["quantity"].startswith(_PRICE))
+    return {row["quantity"].removeprefix(_PRICE): row["value"] for row in rows}
+
+
+@cache
+def _curve(
+    dimension: int, engine: str, precision: str, step: float, quantity: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(packing fractions, values, errors) of one quantity."""
+    wanted = (dimension, engine, precision, step, quantity)
+    keys = ("dimension", "engine", "precision", "time_step", "quantity")
+    found = sorted(
+        (row["packing_fraction"], row["value"], row["error"])
+        for row in read()
+        if tuple(row[key] for key in keys) == wanted
+    )
+    eta, value, error = np.array(found, dtype=float).reshape(-1, 3).T
+    return eta, value, error

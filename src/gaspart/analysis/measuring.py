@@ -1,0 +1,114 @@
+"""An observable of a trajectory, by its name, and the part of a run until a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, overload
+
+from gaspart import analysis
+from gaspart.analysis.observables import OBSERVABLES, known, require_selection
+from gaspart.errors import SceneError
+
+if TYPE_CHECKING:
+    from gaspart.analysis.observable import Observable
+    from gaspart.analysis.run import Source
+
+
+@overload
+def measure(
+    source: Source, observable: str, start: float | None = ..., end: float | None = ..., **selection: Any
+) -> Observable: ...
+
+
+@overload
+def measure(
+    source: Source,
+    observable: Sequence[str],
+    start: float | None = ...,
+    end: float | None = ...,
+    **selection: Any,
+) -> dict[str, Observable]: ...
+
+
+def measure(
+    source: Source,
+    observable: str | Sequence[str],
+    start: float | None = None,
+    end: float | None = None,
+    **selection: Any,
+) -> Observable | dict[str, Observable]:
+    """Measure an observable of a trajectory or a simulation, or several, by name.
+
+    Parameters
+    ----------
+    source : path, xarray.Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    observable : str or sequence of str
+        Names as of `gaspart measure`, such as "pressure"; aliases are accepted, such as "viscosity".
+    start : float, [time], optional
+        Frames before this time are discarded. Default: the first quarter of the frames.
+    end : float, [time], optional
+        Frames after this time are discarded. Default: none.
+    **selection
+        Selections that the observables have, such as species=1 or axis="x".
+
+    Returns
+    -------
+    Observable or dict
+        The measured quantity with its uncertainty; of several names {name: Observable}.
+
+    Raises
+    ------
+    SceneError
+        If a name is unknown, the observable does not have a selection, fewer than two frames are left,
+        or the scene or the run does not have what the observable needs.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(
+    ...     container=gp.Container(lengths=(10.0, 10.0), boundary="periodic"),
+    ...     species=[gp.Species(count=32, radius=0.5, temperature=1.0, exact_temperature=True)],
+    ... )
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> measured = gp.measure(simulation, ["Z", "collision_rate"])
+    >>> list(measured)
+    ['Z', 'collision_rate']
+    """
+    if not isinstance(observable, str):
+        names = [known(name) for name in observable]
+        return {name: measure(source, name, start, end, **selection) for name in names}
+    name = known(observable)
+    one = OBSERVABLES[name]
+    require_selection(name, selection)
+    function = getattr(analysis, one.function)
+    with until_time(source, end, one.needs == "pairs") as part:
+        found: Observable = function(part, start=start, **one.arguments, **selection)
+    return found
+
+
+@contextmanager
+def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
+    """The frames of a source until a time, whatever it is; itself if the time is None. pairs: whether those
+    of a simulation count the collisions of each pair of species. Raises SceneError for fewer than two."""
+    if end is None:
+        yield source
+        return
+    from gaspart.analysis.run import repeated
+    from gaspart.keys.values import number
+    from gaspart.simulation import Simulation
+    from gaspart.trajectory.reading import open_trajectory
+
+    if isinstance(source, Simulation):
+        source = repeated(source, pairs)
+    with open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source) as data:
+        time = data["time"].values
+        last = number("end", end, "must be a finite number")
+        count = int((time <= last + 1e-9 * abs(last)).sum())
+        if count < 2:
+            longest = float(time[-1]) if len(time) else 0.0
+            raise SceneError("end", end, f"leaves {count} frames of a run until time {longest:g}")
+        yield data.isel(frame=slice(count))

@@ -1,0 +1,138 @@
+"""A table of the properties of each species of a run."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.flow import FLOW
+from gaspart.analysis.measuring import measure
+from gaspart.analysis.observable import Observable, scalar
+from gaspart.analysis.observables import having, selecting
+from gaspart.analysis.run import Run, Source, open_run, selected
+from gaspart.errors import SceneError
+from gaspart.trajectory.reading import open_trajectory
+
+
+def by_species(source: Source, start: float | None = None, about: str = FLOW) -> xr.Dataset:
+    """Measure the properties of each species that moves.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    start : float, [time], optional
+        Frames before this time are discarded. Default: a quarter of the run.
+    about : {"flow", "rest"}, default "flow"
+        Frame of reference. "flow": velocities and paths are about the local flow where the gas flows,
+        otherwise about the centre of mass along axes on which the total momentum is conserved (see
+        `gaspart.analysis.flow`). "rest": in the frame of the container, without a correction.
+
+    Returns
+    -------
+    Dataset
+        Properties (species,) with standard uncertainties (suffix _error). The coordinate `species` has the
+        numbers of the scene; single particles have the number after the last. Variables:
+
+        - `count`, number of moving particles;
+        - `temperature` [energy], twice the mean kinetic energy of flight per degree of freedom;
+        - `mean_speed` [length/time];
+        - `D` [length^2/time], and the curves `msd` and `vacf` (species, lag), as of `gaspart measure` with a
+          species. NaN where a species cannot have one, such as a D between walls, for the reason in the
+          attribute `not_measured`, and where it has fewer lags than others.
+
+    Raises
+    ------
+    SceneError
+        If nothing moves, or there are too few frames.
+
+    Notes
+    -----
+    About the centre of mass the mean square of a particle of mass m is 1 - m / M of its value without this
+    condition, M the mass of all whose mean is subtracted (exact in equilibrium). Temperatures and speeds are
+    corrected for this. `to_dataframe` of the variables without lags is a table with a row for each species.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1)
+    >>> simulation.advance(40.0)
+    >>> gp.analysis.by_species(simulation)["count"].values.tolist()
+    [20]
+    """
+    opened = open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source)
+    with opened as run_of_all:
+        with open_run(run_of_all, start, about=about) as run:
+            kinds = [int(kind) for kind in np.unique(run.species[run.moving])]
+            if not kinds:
+                raise SceneError("species", [], "none of the particles moves")
+            counts = [int((run.species[run.moving] == kind).sum()) for kind in kinds]
+            rows: list[dict[str, Observable]] = [_of_velocities(run, kind) for kind in kinds]
+        missing = {}
+        for kind, row in zip(kinds, rows, strict=True):
+            for name in _of_motion():
+                try:
+                    row[name] = measure(run_of_all, name, start, species=kind, about=about)
+                except SceneError as error:
+                    missing[f"{name} of species {kind}"] = error.rule
+    table = xr.Dataset(coords={"species": ("species", kinds, {"long_name": "number of the species"})})
+    table["count"] = ("species", counts, {"units": "1", "long_name": "moving particles"})
+    for name in ("temperature", "mean_speed", *_of_motion()):
+        table = table.merge(
+            _column(name, [row.get(name) for row in rows]), join="outer", compat="no_conflicts"
+        )
+    reasons = "; ".join(f"{what}: {reason}" for what, reason in missing.items())
+    return table.assign_attrs(not_measured=reasons)
+
+
+def _of_motion() -> tuple[str, ...]:
+    """The observables of the motion of particles that are of a species too."""
+    return tuple(name for name in selecting("species") if name in having(scatter="particles"))
+
+
+def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
+    """The temperature and the mean speed of the moving particles of a species."""
+    chosen, masses = selected(run, kind, None), run.masses[run.moving]
+    shape = run.motion.velocities.shape
+    velocities = run.motion.velocities[:, chosen]
+    free = np.broadcast_to(run.motion.freedom, shape)[:, chosen]
+    if not free.any():
+        raise SceneError("count", len(masses), "a single particle keeps its velocity")
+    energies = np.einsum("tnd,tnd,n->t", velocities, velocities, masses[chosen])
+    energies /= free.sum(axis=(1, 2)).mean()
+    known = (free > 0.0).all(axis=2)  # not alone in its cell of a flow
+    squares = np.divide(velocities**2, free, out=np.zeros(free.shape), where=free > 0.0).sum(axis=2)
+    speeds = (np.sqrt(squares) * known).sum(axis=1) / known.sum(axis=1).mean()
+    edges = np.append(run.time, 2.0 * run.time[-1] - run.time[-2])
+    about: dict[str, Any] = {"units": "energy", "long_name": "temperature"}
+    temperature = scalar("temperature", energies, edges, **about)
+    about = {"units": "length / time", "long_name": "mean speed"}
+    return {
+        "temperature": temperature,
+        "mean_speed": scalar("mean_speed", speeds, edges, **about),
+    }
+
+
+def _column(name: str, found: list[Observable | None]) -> xr.Dataset:
+    """One observable of all species with its uncertainty; nothing if it was measured of none."""
+    known = [one for one in found if one is not None]
+    if not known:
+        return xr.Dataset()
+    blank = xr.full_like(known[0].estimate, np.nan)
+    parts = {
+        name: [blank if one is None else one.estimate for one in found],
+        f"{name}_error": [blank if one is None else one.error for one in found],
+    }
+    columns = {}
+    for key, values in parts.items():
+        plain = [value.drop_vars("time", errors="ignore") for value in values]
+        column = xr.concat(plain, "species", join="outer", compat="equals")  # few particles have fewer lags
+        columns[key] = column.rename(key).assign_attrs(values[0].attrs)
+    columns[name].attrs.update(known[0].estimate.attrs)
+    columns[f"{name}_error"].attrs.update(known[0].error.attrs)
+    return xr.Dataset(columns)

@@ -1,0 +1,99 @@
+"""A run in words: what it was to reach and has reached, and the options with which it is made."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gaspart.cli.engine_options import joined, stated
+from gaspart.engines import engine_to_dict
+from gaspart.state.optional_tallies import option_of
+
+if TYPE_CHECKING:
+    from gaspart.accuracy.reached import AccuracyStatus
+    from gaspart.trajectory.recipe import Recipe
+
+
+def accuracy_lines(path: Path) -> list[str]:
+    """What a run with --until was to reach, and what it has reached."""
+    from gaspart.accuracy.reached import reached_accuracy
+    from gaspart.trajectory.opening import PARTIAL
+
+    lines, reached = [], reached_accuracy(path)
+    for one in reached:
+        where = f" ({one.component})" if one.component and one.asked.face is None else ""
+        required = f"required {one.asked.accuracy:g}"
+        if one.rule:
+            lines.append(f"{one.asked.name}: {required}, not measured: {one.rule}")
+            continue
+        low, high = one.interval
+        value = f"{one.value:.6g} +- {one.error:.2g}, 95 % interval {low:.6g} to {high:.6g}"
+        error = f"relative error {one.accuracy:.2g}, by its uncertainty at most {one.bound:.2g}"
+        verdict = "reached" if one.met else "not reached"
+        lines.append(f"{one.asked.name}{where} = {value}{_starts(one)}; {error}; {required}: {verdict}")
+    if path.suffix != PARTIAL and not all(one.met for one in reached):
+        lines.append(_why_ended(path, reached))
+    return lines
+
+
+def other_seeds(scatter: float) -> str:
+    """Return the remark beside the interval of a single run that keeps the energy of its start."""
+    return f"for the energy of this run; other seeds scatter by {100.0 * scatter:.2g} %"
+
+
+def _starts(reached: AccuracyStatus) -> str:
+    """Return a remark on the energies of the starts; "" if they do not scatter."""
+    if not reached.scatter:
+        return ""
+    if reached.replicas == 1:
+        return f" {other_seeds(reached.scatter)}"
+    return f", {100.0 * reached.of_starts:.2g} % of it by the energies of the starts"
+
+
+def _why_ended(path: Path, reached: list[AccuracyStatus]) -> str:
+    """Return the reason why a run with --until ended before it was accurate."""
+    from gaspart.trajectory.replicas import found
+
+    if limited := [one for one in reached if one.excess <= 1.0 and not one.met]:
+        remedy = f"no longer run makes the mean of {limited[0].replicas} replicas as accurate"
+        return f"{remedy}: the energies of their starts scatter; exact_temperature: true, or more replicas"
+    until = found(path)[1].until
+    if until is not None and until.at_most is None:
+        return "the run was given up: nothing that could be measured has happened; --at-most makes it longer"
+    return "the longest duration (--at-most) ended the run before all were reached"
+
+
+def run_options(path: Path, recipe: Recipe) -> list[str]:
+    """The options with which `gaspart run` has a recipe; of one of several replicas, all of them."""
+    from gaspart.trajectory.replicas import of_all, path_of_all
+
+    path, (recipe, replicas) = path_of_all(path, recipe), of_all(recipe)
+    settings = engine_to_dict(recipe.engine)
+    options = ["-o", str(path), "--engine", settings["name"], "--seed", joined(recipe.seed)]
+    if recipe.until is None:
+        options += ["--duration", repr(recipe.duration)]
+    else:
+        asked = recipe.until.accuracies
+        options += ["--until", ",".join(f"{one.name}={one.accuracy!r}" for one in asked)]
+        options += [] if asked[0].start is None else ["--start", repr(asked[0].start)]
+        options += [] if recipe.until.at_most is None else ["--at-most", repr(recipe.until.at_most)]
+    options += ["--sample-interval", repr(recipe.sample_interval)]
+    options += ["--replicas", str(replicas)] if replicas > 1 else []
+    options += stated(settings)
+    if recipe.initial is not None:
+        options += ["--from", "OTHER.nc"]  # whose last state the file holds
+    if recipe.displacements:
+        options.append("--displacements")
+    if recipe.pairs:
+        options.append("--pairs")
+    for tally in recipe.tallies:
+        options += option_of(tally)
+    if recipe.follow is not None:
+        options += ["--follow", str(recipe.follow)]
+    if recipe.keep is not None:
+        options += ["--keep", recipe.keep]
+    if recipe.correlations is not None:
+        asked = recipe.correlations
+        options += ["--correlations", f"{asked.interval!r},{asked.lags},{asked.start!r}"]
+        options += ["--stress"] if asked.stress else []
+    return options

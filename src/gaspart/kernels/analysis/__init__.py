@@ -1,0 +1,1 @@
+"""Kernels of observables: sums over pairs of particles, and over waves."""

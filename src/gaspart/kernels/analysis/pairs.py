@@ -1,0 +1,152 @@
+"""Distances of pairs of particles in a periodic container, counted in bins.
+
+The container is divided into columns along its last axis, and these into boxes. Particles are sorted by box,
+so that all particles of a column between two heights are adjacent. Each particle is compared with such a
+range of half of the columns around it: each pair is met once, by every image that can be near. Distances are
+computed in vectors of `WIDTH` particles; those beyond a range are computed too and overwritten. Counts are
+whole numbers, which do not depend on the order of the pairs.
+"""
+
+from math import floor, sqrt
+
+import numpy as np
+
+from gaspart.kernels.compile.policy import allocating_kernel, inner_allocating_kernel, inner_helper
+
+WIDTH = 16
+"""Number of particles whose distances are computed at once: a fixed number, of which vectors are made."""
+MARGIN = 1.0 + 1e-9
+"""Factor of the largest distance, so that no pair is missed by the rounding of a box's edge."""
+_ROOM = 4096  # bins of pairs that are found before they are counted
+_TABLES = 4  # of counts, so that one addition does not wait for another to the same bin
+
+
+@inner_allocating_kernel
+def sort_by_box(places, lengths, numbers, start, boxes):
+    """Return coordinates (3, N + WIDTH) in [0, L), in the order of boxes, and fill start (boxes + 1,)."""
+    count = places.shape[1]
+    wrapped, ordered = np.empty((3, count)), np.zeros((3, count + WIDTH))
+    start[:] = 0
+    for n in range(count):
+        box = 0
+        for k in range(3):
+            x = places[k, n] - lengths[k] * floor(places[k, n] / lengths[k])
+            if not 0.0 <= x < lengths[k]:  # by rounding; or no number
+                x = 0.0
+            wrapped[k, n] = x
+            box = box * numbers[k] + min(int(x * (numbers[k] / lengths[k])), numbers[k] - 1)
+        boxes[n] = box
+        start[box + 1] += 1
+    for box in range(len(start) - 1):
+        start[box + 1] += start[box]
+    following = start[:-1].copy()
+    for n in range(count):
+        position = following[boxes[n]]
+        following[boxes[n]] += 1
+        for k in range(3):
+            ordered[k, position] = wrapped[k, n]
+    return ordered
+
+
+@inner_helper
+def add_to_tables(found, number, tables):
+    """Count the first `number` bins that were found."""
+    for n in range(number):
+        tables[n % _TABLES, found[n]] += 1
+
+
+@inner_helper
+def find_bins(ordered, first, stop, place, scale, found):
+    """Write the bins of the distances of a place to the particles first ... stop - 1, rounded up to vectors.
+
+    scale: bins per distance, and the number of bins, which is the bin of all that are farther.
+    """
+    per_length, most = scale
+    x, y, z = place
+    for begin in range(0, stop - first, WIDTH):
+        for n in range(begin, begin + WIDTH):
+            u, v, w = ordered[0, first + n] - x, ordered[1, first + n] - y, ordered[2, first + n] - z
+            distance = sqrt(u * u + v * v + w * w) * per_length
+            found[n] = np.int32(distance if distance < most else most)
+
+
+@inner_helper
+def wrap_column(column, number, length):
+    """Return the column within the container, and the coordinate of the image in which it was met."""
+    if column < 0:
+        return column + number, -length
+    if column >= number:
+        return column - number, length
+    return column, 0.0
+
+
+@inner_helper
+def gap_to_column(x, column, width):
+    """Return how far a column is from a coordinate; 0 within it."""
+    return max(column * width - x, x - (column + 1) * width, 0.0)
+
+
+@inner_helper
+def count_of_particle(n, ordered, reach, image, boxes, tables, found, filled):
+    """Find the bins of a particle's pairs within a column; return how many bins wait to be counted.
+
+    reach: along the column; image: the first box of the column, how far its image is shifted, and whether it
+    is the particle's own; boxes: the length of all columns, their number of boxes, `start`, and the scale.
+    """
+    first_box, shift_x, shift_y, is_own = image
+    length, number, start, scale = boxes
+    z = ordered[2, n]
+    low, high = floor((z - reach) * number / length), floor((z + reach) * number / length)
+    for turn in range(0 if is_own else -1, 2):
+        bottom, top = max(low - turn * number, 0), min(high - turn * number, number - 1)
+        if bottom > top:
+            continue
+        first, stop = start[first_box + bottom], start[first_box + top + 1]
+        if is_own and turn == 0:
+            first = n + 1
+        if first < stop:
+            if filled + stop - first > len(found) - WIDTH:
+                add_to_tables(found, filled, tables)
+                filled = 0
+            place = ordered[0, n] - shift_x, ordered[1, n] - shift_y, z - turn * length
+            find_bins(ordered, first, stop, place, scale, found[filled:])
+            filled += stop - first
+    return filled
+
+
+@allocating_kernel
+def count_pairs(places, lengths, numbers, spans, furthest, counts):
+    """Add the pairs nearer than `furthest` to counts (bins,) of equal intervals of the distance.
+
+    places (3, N), of discs with 0 along the first axis; lengths (3,); numbers (3,): boxes along each axis;
+    spans (2,): columns on each side, along the first two axes, that are near enough. furthest: at most half
+    of the shortest side.
+    """
+    count, bins = places.shape[1], len(counts)
+    start = np.empty(numbers[0] * numbers[1] * numbers[2] + 1, np.int32)
+    ordered = sort_by_box(places, lengths, numbers, start, np.empty(count, np.int32))
+    tables = np.zeros((_TABLES, bins + 1), np.int64)
+    found = np.empty(max(count, _ROOM) + WIDTH, np.int32)
+    square, filled, widths = (furthest * MARGIN) ** 2, 0, lengths / numbers
+    boxes = lengths[2], numbers[2], start, (bins / furthest, float(bins))
+    for x in range(numbers[0]):
+        for y in range(numbers[1]):
+            own = (x * numbers[1] + y) * numbers[2]
+            for dx in range(spans[0] + 1):
+                other_x, shift_x = wrap_column(x + dx, numbers[0], lengths[0])
+                for dy in range(-spans[1] if dx else 0, spans[1] + 1):
+                    other_y, shift_y = wrap_column(y + dy, numbers[1], lengths[1])
+                    box = (other_x * numbers[1] + other_y) * numbers[2]
+                    image = box, shift_x, shift_y, dx == 0 and dy == 0
+                    for n in range(start[own], start[own + numbers[2]]):
+                        gap_x = gap_to_column(ordered[0, n], x + dx, widths[0]) if dx else 0.0
+                        gap_y = gap_to_column(ordered[1, n], y + dy, widths[1]) if dy else 0.0
+                        left = square - gap_x * gap_x - gap_y * gap_y
+                        if left > 0.0:
+                            filled = count_of_particle(
+                                n, ordered, sqrt(left), image, boxes, tables, found, filled
+                            )
+    add_to_tables(found, filled, tables)
+    for table in range(_TABLES):
+        for n in range(bins):
+            counts[n] += tables[table, n]

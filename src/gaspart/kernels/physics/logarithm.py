@@ -1,0 +1,5 @@
+"""The constants of the logarithm that is the same bits on every machine; for numpy and for kernels alike."""
+
+LN2 = 0.6931471805599453
+LOG_SERIES = tuple(1.0 / (2 * k + 1) for k in range(12))
+"""Coefficients of the series of artanh in odd powers, from which logarithms are computed."""

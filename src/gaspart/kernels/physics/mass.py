@@ -1,0 +1,13 @@
+"""The mass of a particle, whichever entry of the model knows it."""
+
+from gaspart.kernels.compile.policy import inner_kernel
+
+
+@inner_kernel
+def mass_of(i, masses, law):
+    """The mass of a particle that can move, in the kernel's unit."""
+    if law is not None:
+        return 1.0 / law.inverse_mass[i]
+    if masses is not None:
+        return masses[i]
+    return 1.0
