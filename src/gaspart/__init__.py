@@ -1,7 +1,7 @@
-"""gaspart: hard-sphere and hard-disc gases, simulated, measured, and compared with theory.
+"""Hard-sphere and hard-disc gases, simulated, measured, and compared with theory.
 
-The public names are in `__init__.pyi`. They are loaded when first used, so that planning a workflow starts no
-compiler.
+The public names of gaspart are in `__init__.pyi`. They are loaded when first used, so that planning a
+workflow starts no compiler.
 """
 
 from gaspart.public import attach as _attach

@@ -1,6 +1,6 @@
-"""The entry point of the command line: `gaspart`, and `python -m gaspart`.
+"""Entry point of the command line: `gaspart`, and `python -m gaspart`.
 
-Prepares signals and the three standard streams before anything large is imported.
+It prepares signals and the three standard streams before anything large is imported.
 """
 
 import os
@@ -26,13 +26,12 @@ def main() -> int:
 
 
 def _exit(signum: int, frame: object) -> None:
-    """The handler of the first milliseconds."""
+    """Handle a signal in the first milliseconds."""
     os._exit(128 + signum)
 
 
 def _open_closed_streams() -> set[int]:
-    """Give a process that was started with closed streams (`2>&-`) the null device in their place.
-    Returns their numbers.
+    """Open the null device in place of closed standard streams (`2>&-`); return their numbers.
 
     Otherwise the next file to be opened, such as a trajectory, would get the number of stderr, and the output
     of libraries.

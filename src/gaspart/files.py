@@ -1,4 +1,4 @@
-"""The one writer of results: complete files, which replace no files of other kinds."""
+"""Writer of all results: complete files, which replace no files of other kinds."""
 
 from __future__ import annotations
 
@@ -21,22 +21,26 @@ from gaspart.system import NO_LINK, OPEN_AS_IT_IS, is_own, is_running, rename_to
 
 _SPECIAL_FILES = {stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket", stat.S_IFLNK: "a link"}
 _SCRATCH = re.compile(r"\.gaspart-[0-9a-f]{12}-(\d+)-[0-9a-f]{8}\.partial")
-"""The name of a scratch file, with the number of the process that writes it."""
+"""Name of a scratch file, with the number of the process that writes it."""
 
 OVERWRITE = "overwrite it (overwrite=True)"
-"""The proposal in the rule of a file that exists; the command line has its own option for it."""
+"""Remedy in the message about a file that exists; the command line has its own option for it."""
 
 
 @dataclass(frozen=True)
 class FileKind:
-    """A kind of result: how messages name it, and whether a file is one, by its content."""
+    """Kind of result: its name in messages, and a test of a file's content."""
 
     name: str
     recognises: Callable[[Path], bool]
 
 
 def begins_with(*beginnings: bytes, at: int = 0) -> Callable[[Path], bool]:
-    """A test of a file's content: whether one of `beginnings` is in it, `at` bytes from its start."""
+    """Return a test whether a file has one of some byte strings at a position.
+
+    beginnings : byte strings
+    at : offset from the start of the file
+    """
 
     def recognises(path: Path) -> bool:
         with open_regular(path) as file:
@@ -47,7 +51,10 @@ def begins_with(*beginnings: bytes, at: int = 0) -> Callable[[Path], bool]:
 
 
 def output_path(path: str | Path) -> Path:
-    """`path` as the path of a file to be written. Raises SceneError if it names no file ("", "a/", ".")."""
+    """Return `path` as the path of a file to be written.
+
+    Raises SceneError if it names no file ("", "a/", ".").
+    """
     text = os.fspath(path)
     if os.path.basename(text) in ("", ".", "..") or "\0" in text:
         raise SceneError("path", text, "must be the name of a file")
@@ -55,7 +62,7 @@ def output_path(path: str | Path) -> Path:
 
 
 def open_regular(path: str | Path, follow: bool = True) -> BinaryIO:
-    """A file, open to read: the one way in which input is opened.
+    """Open a file to read; all input is opened by this function.
 
     Raises OSError, also for a folder, pipe, socket or device, which could block or never end, and, without
     `follow`, for a link; ValueError for a name that holds a NUL.
@@ -81,7 +88,10 @@ def _require_regular(found: os.stat_result, path: str | Path) -> None:
 
 
 def resolved(path: str | Path) -> Path:
-    """The absolute path without links, whatever is there: `Path.resolve` fails for links in a circle."""
+    """Return the absolute path without links, for any path.
+
+    `Path.resolve` fails for links in a circle.
+    """
     try:
         return Path(os.path.realpath(path))
     except ValueError:  # a NUL in it, which opening refuses
@@ -89,7 +99,10 @@ def resolved(path: str | Path) -> Path:
 
 
 def is_same_file(one: str | Path, other: str | Path) -> bool:
-    """Whether two names are those of one file, also through links and other spellings; False for no file."""
+    """Return True if two names are names of one file, also through links and other spellings.
+
+    The result is False if a file does not exist.
+    """
     try:
         return os.path.samefile(one, other)
     except (OSError, ValueError):
@@ -97,10 +110,10 @@ def is_same_file(one: str | Path, other: str | Path) -> bool:
 
 
 def may_replace(path: Path, kind: FileKind | None, overwrite: bool) -> bool:
-    """Whether there is a file at `path` that a result may replace; False if there is none.
+    """Return True if there is a file at `path` that a result may replace.
 
-    Raises SceneError for a folder, link or device, a file of another kind (None: any kind), and, without
-    `overwrite`, any file. An empty file is of every kind. May raise OSError.
+    Returns False without a file. Raises SceneError for a folder, link or device, a file of another kind
+    (None: any kind), and, without `overwrite`, any file. An empty file is of every kind. May raise OSError.
     """
     try:
         found = path.lstat()
@@ -126,8 +139,10 @@ def place(scratch: Path, path: Path, kind: FileKind | None, overwrite: bool) -> 
 
 
 def remove_own(path: Path, kind: FileKind) -> None:
-    """Remove a file of this kind, by its content, and what a killed process left of one. Nothing else is
-    removed: no link, no folder, no other file. May raise OSError."""
+    """Remove a file of this kind, by its content, and the remainders of a killed process.
+
+    No other file is removed, and no link or folder. May raise OSError.
+    """
     _remove_remainders(path)
     with suppress(FileNotFoundError, SceneError):
         if may_replace(path, kind, overwrite=True):
@@ -160,19 +175,19 @@ def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = Fa
     except OSError as error:
         why = error.strerror or "its writer has stopped"
         raise SceneError("path", str(path), f"cannot be written: {why}") from None
-    except UnicodeEncodeError:  # of a library that accepts UTF-8 names only
+    except UnicodeEncodeError:  # raised by a library that accepts UTF-8 names only
         rule = "cannot be written: the name of its folder must be UTF-8"
         raise SceneError("path", str(path), rule) from None
 
 
 def whole_file(path: str | Path) -> AbstractContextManager[Path]:
-    """`writing` for a declared output of the workflow, which may replace any file."""
+    """Perform `writing` for a declared output of the workflow, which may replace any file."""
     return writing(path, overwrite=True)
 
 
 @contextmanager
 def scratch_beside(path: Path) -> Iterator[Path]:
-    """A new file next to `path`, used by this process only, and removed at the end."""
+    """Make a new file next to `path` for this process, and remove it at the end."""
     _remove_remainders(path)
     scratch = path.with_name(f"{_beginning(path)}{os.getpid()}-{secrets.token_hex(4)}.partial")
     with scratch_file(scratch):
@@ -184,7 +199,7 @@ def scratch_beside(path: Path) -> Iterator[Path]:
 
 
 def _beginning(path: Path) -> str:
-    """How the names of scratch files for `path` on this machine begin."""
+    """Return the beginning of the names of scratch files for `path` on this machine."""
     of = hashlib.sha256(os.fsencode(path.name) + socket.gethostname().encode()).hexdigest()[:12]
     return f".gaspart-{of}-"
 
@@ -198,7 +213,7 @@ def _remove_remainders(path: Path) -> None:
 
 
 def is_remainder(path: Path) -> bool:
-    """Whether this is a scratch file that a process of this user has left which does not run any more."""
+    """Return True for a scratch file that an ended process of this user has left."""
     name = _SCRATCH.fullmatch(path.name)
     if name is None or is_running(int(name[1])):
         return False
@@ -207,7 +222,10 @@ def is_remainder(path: Path) -> bool:
 
 
 def _is_lock(path: Path) -> bool:
-    """Whether a file is a lock of filelock's where a file system has none: it begins with a process."""
+    """Return True for a lock of filelock where a file system has no locks.
+
+    It begins with the number of a process.
+    """
     with open_regular(path) as file:
         return file.read(1).isdigit()
 
@@ -217,11 +235,11 @@ _LOCK = FileKind("a lock", _is_lock)
 
 @contextmanager
 def only_process(path: Path, wait: bool = False) -> Iterator[None]:
-    """Be the only process within such a block for a path: it holds the file `path`.lock, which the system
-    releases when it ends, however it does.
+    """Hold the lock of a path, so that no other process has it within the block.
 
-    Raises BlockingIOError while another process does, unless it is to `wait`; SceneError for a file of that
-    name that is no lock. May raise OSError.
+    The lock is the file `path`.lock, which the system releases when the process ends, however it does. Raises
+    BlockingIOError while another process holds it, unless `wait` is set; SceneError for a file of that name
+    that is no lock. May raise OSError.
     """
     from filelock import FileLock, Timeout  # 0.3 s
 

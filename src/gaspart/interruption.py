@@ -33,8 +33,11 @@ _TOGETHER = 1.0  # seconds
 class Deferral:
     """Work during which signals wait.
 
-    pending: the signal that waits, if any, and since: when it arrived. unsaved: whether there is work that an
-    exit would lose; before that, a process of gaspart ends at once.
+    Attributes
+    ----------
+    pending : signal that waits, if any
+    since : time of its arrival
+    unsaved : whether there is work that an exit would lose; before that, a process of gaspart ends at once
     """
 
     def __init__(self) -> None:
@@ -44,13 +47,13 @@ class Deferral:
         self.handlers: dict[int, Callable | int] = {}
 
     def receive(self, signum: int, frame: object = None) -> None:
-        """Remember a signal: the handler while the work is under way."""
+        """Record a signal: the handler while the work is in progress."""
         self.pending, self.since = signum, time.monotonic()
 
     def deliver(self) -> None:
-        """Let the waiting signal, if any, take effect.
+        """Deliver the waiting signal, if there is one.
 
-        This ends a process of gaspart. Elsewhere the program's own handler is called: that of Python raises
+        This ends a process of gaspart. Elsewhere the program's own handler is called: Python's handler raises
         KeyboardInterrupt, and SIGTERM ends the process unless it is handled. If the handler returns, so does
         this method, and the work continues.
         """
@@ -69,8 +72,13 @@ class Deferral:
 
 
 class _Process:
-    """State shared with the watching thread. announce: prints the line; note: the part of the work that is
-    kept."""
+    """State shared with the watching thread.
+
+    Attributes
+    ----------
+    announce : function that prints the line
+    note : the part of the work that is kept
+    """
 
     def __init__(self) -> None:
         self.watched = False
@@ -85,10 +93,12 @@ _process = _Process()
 
 
 def exit_on_signals(announce: Callable[[str], None] | None = None) -> None:
-    """Let SIGINT and SIGTERM end this process: exit code 130 or 143, one line, no scratch files left.
+    """End this process at SIGINT and SIGTERM with exit code 130 or 143 and one line.
 
-    announce: prints that line; by default on stderr. Call it again to replace `announce`. Signals that are
-    ignored, as in a process in the background of a shell script, stay ignored. Main thread only.
+    No scratch files are left. Call it again to replace `announce`. Signals that are ignored, as in a process
+    in the background of a shell script, stay ignored. Main thread only.
+
+    announce : function that prints the line; by default on stderr
     """
     _process.announce = announce
     if _process.watched:
@@ -118,8 +128,11 @@ def _watch(reader: int) -> None:
 
 
 def _defer(signum: int) -> bool:
-    """Whether a signal can wait. A repeated one does not, because files are resumable at any moment; unless
-    it arrives with the first, as when a terminal and a parent process both send one."""
+    """Return True if a signal can wait.
+
+    A repeated signal does not wait, because files are resumable at any moment; unless it arrives with the
+    first, as when a terminal and a parent process both send one.
+    """
     with _process.lock:
         deferral = _process.deferral
         if deferral is None or not deferral.unsaved:
@@ -148,13 +161,13 @@ def _announce(text: str) -> None:
 
 
 def interrupted(signum: int = signal.SIGINT) -> str:
-    """One line about an interruption, and about the part of the work that is kept."""
+    """Return one line about an interruption, and about the part of the work that is kept."""
     how = "interrupted" if signum == signal.SIGINT else "terminated"
     return f"{how}; {_process.note}" if _process.note else how
 
 
 def set_note(text: str) -> None:
-    """Set the statement of the work that is kept, for the line that is printed at an interruption."""
+    """Set the text about the kept work for the line at an interruption."""
     _process.note = visible(text)
 
 
@@ -170,8 +183,11 @@ def scratch_file(path: Path) -> Iterator[None]:
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Let signals wait for the end of this block where their handlers might raise within it: in a program
-    that is none of gaspart, such as a notebook. In a process of gaspart they end it at once, as ever."""
+    """Defer signals to the end of this block where their handlers might raise within it.
+
+    This holds in programs other than gaspart, such as a notebook. In a process of gaspart signals end it at
+    once, as ever.
+    """
     if _process.watched:
         yield
         return
@@ -181,7 +197,7 @@ def uninterrupted() -> Iterator[None]:
 
 @contextmanager
 def deferred() -> Iterator[Deferral]:
-    """Let signals wait for `Deferral.deliver`, or for the end of the block.
+    """Defer signals until `Deferral.deliver` or the end of the block.
 
     Outside of the main thread, where Python calls no handlers, and for handlers that Python did not install,
     nothing is changed.

@@ -1,8 +1,8 @@
-"""The public names of packages, loaded when first used.
+"""Public names of packages, loaded when first used.
 
-A package states them once, in the stub `__init__.pyi` beside its `__init__.py`, a line for each:
-`from gaspart.scene.scene import Scene as Scene`, or `Z = compressibility_factor` for an alias. Type
-checkers and editors read the stub, and `attach` gives the package what it states.
+A package states them once, in the stub `__init__.pyi` next to its `__init__.py`, a line for each: `from
+gaspart.scene.scene import Scene as Scene`, or `Z = compressibility_factor` for an alias. Type checkers and
+editors read the stub, and `attach` gives its names to the package.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import sys
 from importlib import import_module
 
 TYPE_CHECKING = False
-if TYPE_CHECKING:  # it takes longer to import than all else here
+if TYPE_CHECKING:  # it takes longer to import than the rest of this module
     from collections.abc import Callable
     from typing import Any
 
@@ -23,7 +23,7 @@ def stated(path: str) -> dict[str, str]:
 
 
 def entries(path: str) -> tuple[dict[str, str], dict[str, str]]:
-    """Return the module of each name that a stub re-exports, and the name that each alias stands for."""
+    """Return the module of each name that a stub re-exports, and the target of each alias."""
     with open(path, encoding="utf-8") as file:
         lines = [line.split() for line in file]
     homes = {words[3]: words[1] for words in lines if len(words) == 6 and words[4] == "as"}
@@ -33,8 +33,10 @@ def entries(path: str) -> tuple[dict[str, str], dict[str, str]]:
 def attach(
     package: str, for_users: bool = False
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
-    """`__getattr__`, `__dir__` and `__all__` of a package that has a stub. for_users: whether its
-    functions and classes answer mistakes in their use (`gaspart.errors.guidance`)."""
+    """Return `__getattr__`, `__dir__` and `__all__` of a package that has a stub.
+
+    for_users : True if its functions and classes answer mistakes in their use (`gaspart.errors.guidance`)
+    """
     namespace = vars(sys.modules[package])
     homes, aliases = entries(f"{namespace['__file__']}i")
     names = [*homes, *aliases]

@@ -372,7 +372,7 @@ class Simulation:
             raise
 
     def _warn_at_rest(self) -> None:
-        """Warn if all particles are at rest and the scene has nothing that sets them in motion."""
+        """Warn if all particles are at rest and nothing in the scene moves them."""
         scene = self.scene
         moved = any(face.moves for face in scene.faces.values()) or scene.is_open or scene.moving_wall
         if self._moving or not scene.moving_count or scene.gravity or scene.thermostat or moved:
@@ -681,7 +681,7 @@ class Simulation:
         moving = state.kinetic_energy + state.vibrational_energy
         drift = abs(moving + state.potential_energy + self._dynamics.dissipated - self._energy)
         scale = max(moving, self._moving)
-        if state.gravity is not None:  # what a fall through the container can change
+        if state.gravity is not None:  # energy of a fall through the container
             masses = state.masses[np.isfinite(state.masses)]
             scale += float(masses.sum() * (abs(state.gravity) @ state.lengths))
         precision = self.engine.precision

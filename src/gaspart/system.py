@@ -1,7 +1,7 @@
-"""What operating systems do differently, in one place.
+"""Differences between operating systems.
 
-The rest of the package calls what is here, and otherwise only what Python has on all of them. Of Windows and
-macOS the tests simulate what is absent there (`tests/test_system.py`); nothing was run on them.
+The rest of the package uses this module, and otherwise only functions that Python has on all systems. Of
+Windows and macOS the tests simulate what is absent there (`tests/test_system.py`); nothing was run on them.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _position = threading.Lock()
 
 
 def memory() -> int | None:
-    """Bytes of this machine's memory; None where the system does not tell, as on Windows."""
+    """Return the bytes of this machine's memory; None if unknown, as on Windows."""
     try:
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, ValueError, OSError):
@@ -37,7 +37,7 @@ def memory() -> int | None:
 
 
 def largest_memory() -> float:
-    """Return the largest memory that this process has used, in bytes; nan where the system does not tell."""
+    """Return the largest memory that this process has used, in bytes; nan if unknown."""
     try:
         import resource
     except ImportError:
@@ -47,7 +47,7 @@ def largest_memory() -> float:
 
 
 def user() -> str:
-    """A short name of this user, for a folder among those of others."""
+    """Return a short name of this user, for a folder next to other users' folders."""
     if hasattr(os, "getuid"):
         return str(os.getuid())
     from getpass import getuser
@@ -56,17 +56,26 @@ def user() -> str:
 
 
 def is_own(found: os.stat_result) -> bool:
-    """Whether a file belongs to this user. True on Windows, where files have no number of a user."""
+    """Return True if a file belongs to this user, and on Windows.
+
+    Files on Windows have no number of a user.
+    """
     return not hasattr(os, "geteuid") or found.st_uid == os.geteuid()
 
 
 def is_private(found: os.stat_result) -> bool:
-    """Whether no other user may write to a file or folder. True on Windows, whose modes do not tell."""
+    """Return True if no other user may write to a file or folder, and on Windows.
+
+    The modes of files on Windows do not tell.
+    """
     return is_own(found) and not (POSIX and found.st_mode & 0o022)
 
 
 def is_running(process: int) -> bool:
-    """Whether there is a process of this number; True if that cannot be known, as on Windows."""
+    """Return True if there is a process of this number, or if that cannot be known.
+
+    It cannot be known on Windows.
+    """
     if not POSIX:  # where signal 0 is Ctrl-C
         return True
     try:
@@ -79,21 +88,28 @@ def is_running(process: int) -> bool:
 
 
 def descriptor_path(file: IO[bytes]) -> str:
-    """A path of an open file in ASCII, for libraries that accept UTF-8 names only; its own where the system
-    has none."""
+    """Return a path of an open file in ASCII, for libraries that accept only UTF-8 names.
+
+    If the system has no such path, it is the file's own.
+    """
     path = f"/proc/self/fd/{file.fileno()}"
     return path if os.path.exists(path) else str(file.name)
 
 
 def path_for_others(file: IO[bytes]) -> str:
-    """A path by which another process opens what this one has open, also when its name is gone; where the
-    system has none, its name."""
+    """Return a path by which another process opens a file that this process has open.
+
+    It works even when the file's name is gone; if the system has no such path, it is the file's name.
+    """
     path = f"/proc/{os.getpid()}/fd/{file.fileno()}"
     return path if os.path.exists(path) else str(file.name)
 
 
 def read_at(descriptor: int, size: int, offset: int) -> bytes:
-    """Up to `size` bytes from `offset` on; the position in the file stays. May raise OSError."""
+    """Read up to `size` bytes from `offset` on; the position in the file stays.
+
+    May raise OSError.
+    """
     if hasattr(os, "pread"):
         return os.pread(descriptor, size, offset)
     with _position:
@@ -120,7 +136,7 @@ def write_at(descriptor: int, data: bytes, offset: int) -> None:
 
 
 def rename_to_new(old: Path, new: Path) -> None:
-    """Rename a file or folder without replacing one. Raises FileExistsError where there is one."""
+    """Rename a file or folder without replacing one. Raises FileExistsError if there is one."""
     if not POSIX:  # where this never replaces
         os.rename(old, new)
         return

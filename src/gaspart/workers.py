@@ -31,7 +31,7 @@ _SIGNALLED = (130, 143)  # exit codes of a process that a signal has ended after
 
 @dataclass(frozen=True)
 class Lost:
-    """What a process leaves that has ended without a result, by its exit code."""
+    """Result of a process that has ended without a result: its exit code."""
 
     code: int
 
@@ -46,9 +46,23 @@ def require_processes(key: str, count: int) -> None:
 
 
 def in_threads(function: Callable[[Any], Any], items: Iterable[Any], threads: int) -> list[Any]:
-    """Return the results of a function for all items, in their order, of which so many are worked on at once.
+    """Return the results of a function for all items, in their order.
 
     It pays for functions whose time is spent in kernels, which hold no lock.
+
+    Parameters
+    ----------
+    function : callable
+        Function of an item.
+    items : iterable
+        The items.
+    threads : int
+        Number of items that are processed at once.
+
+    Returns
+    -------
+    list
+        The results.
     """
     if threads == 1:
         return [function(item) for item in items]
@@ -63,12 +77,16 @@ def in_processes(
     finished: Callable[[int, Any], None],
     received: Callable[[int, Any], None] | None = None,
 ) -> None:
-    """Call a function of a module, function(send, *arguments), in processes of which so many run at a time.
+    """Call a function of a module in several processes at a time.
 
-    calls: the arguments of each call. finished(n, result): is called when a call, number n, has returned, or
-    its process is `Lost`; received(n, message): when it has sent something, send(message). A signal takes
-    effect when all have ended after a checkpoint; where the caller's handler returns, they are begun again. A
-    SceneError or SimulationError of a call is raised, after all others have ended.
+    The call is function(send, *arguments). A signal takes effect when all calls have ended after a
+    checkpoint; if the caller's handler returns, they are begun again. A SceneError or SimulationError of a
+    call is raised after all others have ended.
+
+    calls : arguments of each call
+    workers : number of processes at a time
+    finished : finished(n, result) is called when call n has returned, or its process is `Lost`
+    received : received(n, message) is called when a process has sent a message, send(message)
     """
     waiting = list(reversed(range(len(calls))))
     running: list[_Worker] = []
@@ -98,7 +116,10 @@ def in_processes(
 
 
 class _Worker:
-    """A process that carries out one call. connection: to it, readable when it has sent something or ended"""
+    """Process that performs one call.
+
+    connection : to the process, readable when it has sent a message or ended
+    """
 
     def __init__(self, number: int, function: Callable[..., Any], arguments: tuple) -> None:
         self.number = number
@@ -109,11 +130,11 @@ class _Worker:
         )
         there.close()
         self._results: list[Any] = []
-        with suppress(BrokenPipeError):  # it has ended, for a reason that its exit code states
+        with suppress(BrokenPipeError):  # the process has ended; its exit code states the reason
             self.connection.send_bytes(pickle.dumps((function, arguments)))
 
     def receive(self, received: Callable[[int, Any], None] | None) -> bool:
-        """Take what it has sent; returns whether it goes on."""
+        """Receive a message of the process; return False if it has ended."""
         try:
             is_result, content = self.connection.recv()
         except (EOFError, OSError):
@@ -125,7 +146,7 @@ class _Worker:
         return True
 
     def result(self) -> Any:
-        """What the call of a process that has ended has returned. Raises what that raised."""
+        """Return the result of the call of a process that has ended, or raise its exception."""
         code = self._process.wait()
         self.connection.close()
         if code or not self._results:
@@ -135,7 +156,7 @@ class _Worker:
         return self._results[0]
 
     def end(self) -> None:
-        """Let it write a checkpoint and end."""
+        """Make the process write a checkpoint and end."""
         self._process.terminate()
 
     def wait(self) -> None:
@@ -178,7 +199,7 @@ def _serve(descriptor: int) -> None:
 def _end_with(other: connection.Connection) -> None:
     """End after a checkpoint when the process that began this one has ended, however it did."""
     with suppress(EOFError, OSError):
-        other.recv_bytes()  # it sends nothing more
+        other.recv_bytes()  # there are no further messages
     os.kill(os.getpid(), SIGTERM)
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 MOST_BYTES, MOST_VALUES, MOST_COPIES, DEEPEST = 2**26, 2_500_000, 100_000, 64
 """Limits of a text: its size, its values, those of them that come from aliases, and their nesting. The text
-of every valid scene is within them (`validation.MOST_LISTED`)."""
+of every valid scene is within them (`keys.values.MOST_LISTED`)."""
 _LONGEST_NUMBER = 1000  # characters
 _NUMBERS = re.compile(r"[-+]?(\d[\d_]*(\.[\d_]*)?|\.\d[\d_]*)[eE][-+]?\d+\Z")
 _SCALARS = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("null", "bool", "int", "float"))
@@ -30,7 +30,10 @@ _MERGING = object()  # marks the key <<
 
 
 def read_yaml(path: str | Path) -> Any:
-    """The content of a YAML file. Raises SceneError, naming the file, if it cannot be read."""
+    """Return the content of a YAML file.
+
+    Raises SceneError, naming the file, if it cannot be read.
+    """
     try:
         with open_regular(os.fspath(path)) as file:  # not Path, which accepts `file.yaml/`
             text = file.read(MOST_BYTES + 1).decode("utf-8")
@@ -44,7 +47,10 @@ def read_yaml(path: str | Path) -> Any:
 
 
 def parse_yaml(text: str, name: str = "YAML") -> Any:
-    """The content of a YAML text. Raises SceneError, naming `name`, line and column."""
+    """Return the content of a YAML text.
+
+    Raises SceneError, naming `name`, line and column.
+    """
     import yaml
 
     if not isinstance(text, str):
@@ -66,7 +72,7 @@ def parse_yaml(text: str, name: str = "YAML") -> Any:
 
 
 def dump_yaml(content: object) -> str:
-    """`content` as YAML text, keys in their own order."""
+    """Return `content` as YAML text, with keys in their own order."""
     import yaml
 
     return yaml.dump(content, Dumper=_dumper(), sort_keys=False, default_flow_style=None)
@@ -79,12 +85,15 @@ def write_yaml(path: str | Path, content: object) -> None:
 
 
 def is_exponential(text: str) -> bool:
-    """Whether this is a number here, but text in YAML 1.1, such as 1e3."""
+    """Return True for a number here that is text in YAML 1.1, such as 1e3."""
     return bool(_NUMBERS.match(text)) and len(text) <= _LONGEST_NUMBER
 
 
 def _with_exponents(base: Any) -> Any:
-    """A loader or dumper that reads 1e3 and 1.5e3 as numbers, which are text in YAML 1.1."""
+    """Return a loader or dumper that reads 1e3 and 1.5e3 as numbers.
+
+    They are text in YAML 1.1.
+    """
     made: Any = type("WithExponents", (base,), {})
     made.add_implicit_resolver(_SCALARS[-1], _NUMBERS, list("-+.0123456789"))
     return made
@@ -109,7 +118,7 @@ def _error(mark: yaml.Mark, value: object, rule: str) -> SceneError:
 
 
 class _Open:
-    """A list or mapping whose end has not been read."""
+    """List or mapping whose end has not been read."""
 
     def __init__(self, content: list | dict, start: yaml.CollectionStartEvent) -> None:
         self.content, self.start = content, start
@@ -118,7 +127,7 @@ class _Open:
         self.merged: dict[str, Any] = {}
 
     def close(self) -> list | dict:
-        """The content; what the mapping itself holds replaces what is merged into it."""
+        """Return the content; the mapping's own entries replace merged entries."""
         return {**self.merged, **self.content} if self.merged else self.content  # type: ignore[dict-item]
 
 
@@ -135,7 +144,7 @@ class _Document:
         self._open: list[_Open] = []
 
     def read(self) -> Any:
-        """The content. Raises SceneError with line and column, or yaml.YAMLError."""
+        """Return the content. Raises SceneError with line and column, or yaml.YAMLError."""
         yaml = self._yaml
         while True:
             event = self._loader.get_event()
@@ -214,7 +223,7 @@ class _Document:
 
     @staticmethod
     def _merge(top: _Open, value: Any, mark: yaml.Mark) -> None:
-        """Take over a mapping, or a list of them of which the first ones take precedence."""
+        """Merge a mapping, or a list of mappings of which the first take precedence."""
         parts = value if isinstance(value, list) else [value]
         if top.merged or not all(isinstance(part, dict) for part in parts):
             raise _error(mark, value, "<< must be given once, with a mapping or a list of mappings")
@@ -222,7 +231,7 @@ class _Document:
             top.merged.update(part)
 
     def _copy(self, value: Any, depth: int, mark: yaml.Mark) -> Any:
-        """A copy of an alias's value; its values count like written ones."""
+        """Return a copy of an alias's value; its values count like written ones."""
         self._count(depth, mark)
         self._copies += 1
         if self._copies > MOST_COPIES:

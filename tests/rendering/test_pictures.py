@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 import gaspart as gp
+from gaspart.rendering.camera import camera_for
+from gaspart.rendering.discs import Canvas
 from gaspart.rendering.frames import parameters_of, particles_of, render
 from gaspart.rendering.particles import FIXED, DrawnParticles, colours_of, legend_of
-from gaspart.rendering.pictures import Canvas, camera_for, picture, pixels_per_length
+from gaspart.rendering.pictures import picture, pixels_per_length
 from gaspart.rendering.surfaces import surfaces_of
 
 BLACK = np.zeros((1, 3))

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from gaspart.kernels.drawing.ray_tracing import sky
-from gaspart.rendering.pictures import EDGE, FLOOR, NOTHING, SPHERE, camera_for, cells, trace
+from gaspart.rendering.camera import camera_for
+from gaspart.rendering.tracer import EDGE, FLOOR, NOTHING, SPHERE, cells, trace
 
 LENGTHS = np.array([10.0, 8.0, 6.0])
 SIZE = (120, 90)

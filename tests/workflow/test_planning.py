@@ -150,7 +150,7 @@ def test_editing_a_docstring_or_a_comment_reruns_nothing(smoke):
 
 
 def test_editing_the_physics_of_a_contact_simulates_everything_again(smoke):
-    line = "from math import inf, sqrt\n"
+    line = "from math import frexp, inf, ldexp, sqrt\n"
     undo = smoke.edit("src/gaspart/kernels/physics/contact.py", line, f"{line}\n_EDITED = 1\n")
     try:
         plan = smoke.plan(*SMOKE)

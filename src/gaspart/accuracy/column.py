@@ -27,9 +27,17 @@ _ROUNDS = 40
 
 @dataclass(frozen=True)
 class Column:
-    """heights (Z,); numbers: (S, Z) particles per height of kinds that differ in mass; masses (S,);
-    temperature; pull: the acceleration; area: across it; diameter, dimension: of the particles; ideal: see
-    the module."""
+    """Column of a gas in equilibrium under gravity.
+
+    heights : (Z,), heights.
+    numbers : (S, Z), particles per height, of kinds that differ in mass.
+    masses : (S,), masses of the kinds.
+    temperature : temperature.
+    pull : acceleration of gravity.
+    area : area of the cross-section.
+    diameter, dimension : of the particles.
+    ideal : see the module.
+    """
 
     heights: np.ndarray
     numbers: np.ndarray
@@ -48,7 +56,7 @@ class Column:
 
     @property
     def energy(self) -> float:
-        """Of all particles, kinetic and potential."""
+        """Energy of all particles, kinetic and potential."""
         total = np.trapezoid(self.numbers, self.heights, axis=1)
         raised = np.trapezoid(self.numbers * self.heights, self.heights, axis=1)
         kinetic = 0.5 * self.dimension * self.temperature * total.sum()
@@ -56,14 +64,17 @@ class Column:
 
     @property
     def collisions(self) -> float:
-        """Per time, in units that do not depend on the state: to compare two columns of one scene."""
+        """Collisions per time, in units that do not depend on the state.
+
+        They serve to compare two columns of one scene.
+        """
         contact = 1.0 if self.ideal else theory.contact_value(self.filled, self.dimension)
         speed = np.sqrt(1.0 / self.masses[:, None] + 1.0 / self.masses)
         pairs = np.einsum("iz,jz,ij->z", self.numbers, self.numbers, speed) * contact
         return math.sqrt(self.temperature) * float(np.trapezoid(pairs, self.heights))
 
     def pressure(self, top: bool) -> float:
-        """On the floor, or at the top."""
+        """Compute the pressure on the floor, or at the top."""
         at = -1 if top else 0
         ratio = 1.0 if self.ideal else theory.compressibility_factor(self.filled[at], self.dimension)
         return float(self.numbers[:, at].sum() / self.area * self.temperature * ratio)
@@ -71,8 +82,16 @@ class Column:
 
 @dataclass(frozen=True)
 class Pulled:
-    """What a column is of: a scene under gravity along one axis with walls. axis: its number; low: whether
-    the floor is the lower wall; pull; height: that centres have; area; masses, counts (S,); diameter."""
+    """Scene under gravity along one axis with walls, whose columns are computed.
+
+    axis : number of the axis.
+    low : True if the floor is the lower wall.
+    pull : acceleration of gravity.
+    height : height that centres can reach.
+    area : area of the cross-section.
+    masses, counts : (S,), masses and numbers of particles of the kinds.
+    diameter : diameter of the particles.
+    """
 
     dimension: int
     axis: int
@@ -85,7 +104,10 @@ class Pulled:
     diameter: float
 
     def column(self, temperature: float, ideal: bool) -> Column:
-        """At a temperature. Raises ValueError if the fluid would be denser than its equation of state."""
+        """Compute the column at a temperature.
+
+        Raises ValueError if the fluid would be denser than its equation of state.
+        """
         d, weights = self.dimension, self.masses * self.pull / temperature
         top = min(self.height, self._reaches(temperature))
         z = np.linspace(0.0, top, _POINTS)
@@ -99,13 +121,18 @@ class Pulled:
         return Column(z, densities * self.area, *shape)
 
     def _reaches(self, temperature: float) -> float:
-        """How high the gas is: a close-packed bed, and above it an atmosphere of its lightest particles."""
+        """Return the height of the gas: a close-packed bed, and an atmosphere above it.
+
+        The atmosphere consists of the lightest particles.
+        """
         volume = self.counts.sum() * theory.particle_volume(self.dimension, self.diameter) / self.area
         return 2.0 * float(volume) + _SCALES * temperature / float(self.masses.min() * self.pull)
 
     def of_energy(self, energy: float, ideal: bool) -> Column:
-        """At the temperature at which it has an energy. Raises ValueError as `column`, and for an energy that
-        no temperature has."""
+        """Compute the column at the temperature at which it has an energy.
+
+        Raises ValueError as `column`, and for an energy that the column has at no temperature.
+        """
         if not energy > 0.0:
             raise ValueError(f"energy: {energy} (must be positive)")
         low, high = 0.0, 2.0 * energy / (self.dimension * float(self.counts.sum()))
@@ -119,20 +146,24 @@ class Pulled:
         return self.column(high, ideal)
 
     def energy_of(self, state: State) -> float:
-        """Of a state, kinetic and potential; the floor is at 0."""
+        """Compute the energy of a state, kinetic and potential; the floor is at 0."""
         place, length = state.positions[:, self.axis], float(state.lengths[self.axis])
         heights = (place if self.low else length - place) - 0.5 * (length - self.height)
         return float(state.translational_energy + self.pull * (state.masses @ heights))
 
     def settled(self, energy: float, heat: float | None, ideal: bool) -> Column:
-        """In equilibrium: at the temperature of its faces, `heat`, or else with its energy. Raises ValueError
-        as `of_energy`."""
+        """Compute the column in equilibrium: at the temperature of its faces, or with its energy.
+
+        The temperature of the faces is `heat`, if there is one. Raises ValueError as `of_energy`.
+        """
         return self.column(heat, ideal) if heat else self.of_energy(energy, ideal)
 
 
 def pulled(scene: Scene) -> Pulled | None:
-    """What theory knows of a scene under gravity, None if it knows nothing: of particles of one size between
-    hard walls, or ones at one temperature, that lose no energy."""
+    """Return the column of a scene under gravity, or None if theory does not know it.
+
+    Theory knows particles of one size that lose no energy, between hard walls, or walls at one temperature.
+    """
     pull = [(k, g) for k, g in enumerate(scene.gravity or ()) if g]
     kinds = [kind for kind in scene.kinds if kind.count]
     law, thermal = scene.restitution, scene.face_temperatures
@@ -155,8 +186,10 @@ def pulled(scene: Scene) -> Pulled | None:
 
 
 def between(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
-    """By how much an observable of a column of points differs from that of particles, relatively; top: of the
-    pressure, whether it is that at the top, None for any wall."""
+    """Compute the relative difference of an observable between columns of points and of particles.
+
+    For a pressure, `top` is True at the top, None for any wall.
+    """
     differences = {
         "collision_rate": abs(ideal.collisions / real.collisions - 1.0),
         "temperature": abs(ideal.temperature / real.temperature - 1.0),
@@ -169,7 +202,7 @@ def between(real: Column, ideal: Column, observable: str, top: bool | None) -> f
 
 
 def _of_profiles(real: Column, ideal: Column) -> float:
-    """Root mean square of the difference of two densities over that of the first."""
+    """Compute the root mean square of the difference of two densities, relative to the first."""
     exact = real.numbers.sum(axis=0)
     other = np.interp(real.heights, ideal.heights, ideal.numbers.sum(axis=0), right=0.0)
     return float(np.sqrt(((other - exact) ** 2).sum() / (exact**2).sum()))

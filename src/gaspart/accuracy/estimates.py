@@ -1,11 +1,11 @@
-"""What a trajectory knows of an observable, by component: of pilots, and of runs `until` accurate.
+"""Observables of a trajectory by component, with their errors: of pilots, and of runs `until` accurate.
 
 The squared error of a mean over a time t is S / t + C / t^2. S is the spectrum of the series at frequency 0,
-by `correlated_mean`. C is that of what is stored: a wall takes from the gas what the gas has stored of
-momentum and of sum m x v, and gives it back, so that impulses in consecutive intervals are anticorrelated. In
+by `correlated_mean`. C is due to stored quantities: a wall takes from the gas the momentum and the sum m x v
+that the gas has stored, and gives them back, so that impulses in consecutive intervals are anticorrelated. In
 a short run C dominates, and an error that is extrapolated as t^(-1/2) is too large; in a series of short
-intervals S is hidden by it. Both stores are known in each frame: the series is regressed on their changes, S
-is of the rest.
+intervals S is hidden by it. Both stored quantities are known in each frame: the series is regressed on their
+changes, and S is the spectrum of the rest.
 """
 
 from __future__ import annotations
@@ -28,8 +28,10 @@ if TYPE_CHECKING:
     from gaspart.analysis.run import Run
 
 LEAST_FREEDOM = 15.0
-"""Degrees of freedom of an error that can end a run, and of that of an observable that states none: of the
-scatter of 16 groups or blocks."""
+"""Minimum number of degrees of freedom of an error that ends a run, from 16 groups or blocks.
+
+An observable that states none is given this number.
+"""
 _SAME = 1e-12
 """Relative scatter of what does not change."""
 _DOUBT = 0.1
@@ -37,8 +39,10 @@ _DOUBT = 0.1
 
 
 def bound(freedom: float) -> float:
-    """The upper bound of an error with so many degrees of freedom, over the error: from the quantile of
-    chi-square."""
+    """Compute the upper bound of an error with some degrees of freedom, divided by the error.
+
+    It follows from the quantile of chi-square.
+    """
     from scipy.special import chdtri
 
     return 1.0 if math.isinf(freedom) else math.sqrt(freedom / float(chdtri(freedom, 1.0 - _DOUBT)))
@@ -46,10 +50,15 @@ def bound(freedom: float) -> float:
 
 @dataclass(frozen=True)
 class Component:
-    """The value of a face, an axis or a pair, or of all of an observable, from a part `time` of a run.
-    spectrum, stored: S and C of its squared error; freedom: degrees of freedom of this; scale: what the error
-    is relative to, the value unless that vanishes on average; places: of a curve, how many are known, and
-    are."""
+    """Value of a component of an observable, from a part `time` of a run.
+
+    The component is a face, an axis or a pair, or the whole observable.
+
+    spectrum, stored : S and C of its squared error.
+    freedom : degrees of freedom of the error.
+    scale : reference of the relative error, the value unless that vanishes on average.
+    places : for a curve, the number of known points and the number of points.
+    """
 
     value: float
     scale: float
@@ -70,12 +79,14 @@ class Component:
         return self.error(self.time) / self.scale if self.scale > 0.0 else math.inf
 
     def error(self, time: float) -> float:
-        """The standard error of a run with so long a measured part."""
+        """Compute the standard error of a run whose measured part has a duration."""
         return math.sqrt(self.spectrum / time + self.stored / time**2)
 
     def length(self, accuracy: float) -> float:
-        """The measured time with which the upper bound of the error is so small, as of a run `until`
-        accurate; inf if none is."""
+        """Compute the measured time after which the upper bound of the error has an accuracy.
+
+        A run `until` accurate uses this bound. The time is inf if no time suffices.
+        """
         if not self.accuracy < math.inf or not accuracy > 0.0:
             return math.inf
         left = accuracy * self.scale / bound(self.freedom)
@@ -83,15 +94,18 @@ class Component:
         return part + math.sqrt(part**2 + self.stored / left**2)
 
     def reaches(self, time: float) -> float:
-        """The inverse: that bound after a measured time, relative."""
+        """Compute the relative bound of the error after a measured time, the inverse of `length`."""
         if not self.accuracy < math.inf or not time > 0.0:
             return math.inf
         return self.error(time) / self.scale * bound(self.freedom)
 
 
 def components(data: xr.Dataset, observable: str, start: float | None = None) -> dict[str, Component]:
-    """An observable of `gaspart measure` of a trajectory, by component, "" for a scalar or a curve, whose
-    value and error are root mean squares. Raises SceneError as the functions of `gaspart.analysis`."""
+    """Estimate an observable of `gaspart measure` from a trajectory, by component.
+
+    The component is "" for a scalar or a curve, whose value and error are root mean squares. Raises
+    SceneError as the functions of `gaspart.analysis`.
+    """
     from gaspart.analysis.measuring import measure
     from gaspart.analysis.run import open_run
 
@@ -121,30 +135,30 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
 
 
 def of_face(name: str, face: str | None) -> bool:
-    """Whether a component is of a face of the container, any if that is None."""
+    """Return True if a component belongs to a face of the container; None means any."""
     return face is None or name == face or name.startswith(f"{face} ")
 
 
 def _freedom(found: Observable) -> np.ndarray | float:
-    """Degrees of freedom of the error, of each value where these are known."""
+    """Return the degrees of freedom of the error, of each value where these are known."""
     each = found.get(f"{found.attrs['quantity']}_freedom")
     return float(found.attrs.get("freedom", LEAST_FREEDOM)) if each is None else np.asarray(each)
 
 
 def _names(found: Observable) -> list[str]:
-    """Of the components of an observable, by the names along each of its dimensions."""
+    """Return the names of the components of an observable, from the names along each dimension."""
     return [
         " ".join(words) for words in product(*(found[dim].values.astype(str) for dim in found.estimate.dims))
     ]
 
 
 def _norm(values: np.ndarray) -> float:
-    """The root mean square, 0 of nothing."""
+    """Compute the root mean square; 0 for an empty array."""
     return float(np.sqrt(np.mean(values**2))) if values.size else 0.0
 
 
 def _on_walls(run: Run, observable: str) -> dict[str, Component]:
-    """The pressures or forces on walls, each from a series over intervals of frames."""
+    """Estimate the pressures or forces on walls, each from a series over intervals of frames."""
     from gaspart.analysis.counters import controlled_on_walls, on_walls
     from gaspart.analysis.impulses import stores
 
@@ -167,8 +181,10 @@ def _on_walls(run: Run, observable: str) -> dict[str, Component]:
 
 
 def without_stores(series: np.ndarray, interval: float, controls: int) -> Component:
-    """The mean of a series (K,) over intervals of one length, from which so many controls were taken, all
-    that is stored among them."""
+    """Estimate the mean of a series (K,) from which `controls` controls were subtracted.
+
+    The intervals have one length. All stored quantities are among the controls.
+    """
     from gaspart.analysis.statistics import correlated_mean
 
     found, time = correlated_mean(series).estimate, len(series) * interval
@@ -177,11 +193,11 @@ def without_stores(series: np.ndarray, interval: float, controls: int) -> Compon
 
 
 def with_stores(series: np.ndarray, stores: np.ndarray, interval: float) -> Component:
-    """The mean of a series (K,) over intervals of one length, some of which is the change of what is stored,
-    (K + 1, stores), at their ends.
+    """Estimate the mean of a series (K,) that contains changes of stored quantities.
 
-    The coefficients of the changes are those of a regression of the series. The sum of all changes remains in
-    the mean: it has twice the variance of what is stored.
+    The quantities (K + 1, stores) are given at the ends of the intervals, which have one length. The
+    coefficients of the changes come from a regression of the series. The sum of all changes remains in the
+    mean. This sum has twice the variance of the stored quantities.
     """
     from gaspart.analysis.statistics import correlated_mean
 

@@ -51,7 +51,7 @@ def _row(
 
 
 def _events(accuracy: xr.Dataset) -> Iterator[dict]:
-    """Times of the event-driven engine, in denser gases too than those of time steps."""
+    """Yield times of the event-driven engine, in denser gases than the time-stepped engine too."""
     for n in range(accuracy.sizes["timed"]):
         run = accuracy.isel(timed=n)
         gas = run.timed_dimension, run.timed_packing_fraction
@@ -59,7 +59,7 @@ def _events(accuracy: xr.Dataset) -> Iterator[dict]:
 
 
 def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
-    """Errors and times of the time-stepped engine."""
+    """Yield errors and times of the time-stepped engine."""
     for n in range(accuracy.sizes["row"]):
         row = accuracy.isel(row=n)
         gas = row.dimension, row.packing_fraction
@@ -78,7 +78,7 @@ def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
 
 
 def _models(accuracy: xr.Dataset) -> Iterator[dict]:
-    """Times of the models of the DSMC engine, with its own step and longer ones."""
+    """Yield times of the models of the DSMC engine, with its own step and longer ones."""
     names = {engine.equation: engine.timed_as for engine in DSMC.offered()}
     for n in range(accuracy.sizes["dsmc"]):
         run = accuracy.isel(dsmc=n)
@@ -91,7 +91,7 @@ def _models(accuracy: xr.Dataset) -> Iterator[dict]:
 
 
 def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:
-    """Relative variances of Z and of the collision rate, times the contacts that they come from."""
+    """Yield relative variances of Z and of the collision rate, times their numbers of contacts."""
     for n, fraction in enumerate(virial.packing_fraction.values):
         contacts = float(virial.collisions[n])
         for name, quantity in (("Z", "Z"), ("collision_rate", "collision_rate")):
@@ -101,8 +101,10 @@ def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:
 
 
 def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
-    """Relative variance of D of spheres, times the contacts that it comes from: one number, the median of all
-    gases (each has few replicas)."""
+    """Yield the relative variance of D of spheres, times its number of contacts.
+
+    It is one number, the median of all gases (each has few replicas).
+    """
     length = msd.time.max("lag") * 2.0 * msd.collision_rate  # lags reach to half a run
     contacts = 0.5 * msd["count"] * length * msd.replicas
     values = ((msd.diffusion_error / msd.diffusion) ** 2 * contacts).values
@@ -113,7 +115,7 @@ def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
 
 
 def _prices(price: xr.Dataset) -> Iterator[dict]:
-    """The cost of each feature, of 4000 spheres at a packing fraction of 0.2."""
+    """Yield the cost of each feature, for 4000 spheres at a packing fraction of 0.2."""
     for n in np.flatnonzero(price.feature.values != "plain"):
         at = price.isel(point=n)
         name = f"price_{str(at.feature.values).replace(' ', '_')}"

@@ -12,12 +12,13 @@ from gaspart.theory.dsmc import step_factor
 
 
 def model_error(packing_fraction: float, dimension: int, equation: str, observable: str) -> float:
-    """|error| of an observable by the equation that an engine solves (`Engine.equation`), relative to hard
-    spheres or discs; inf where one of them has none, as of D of discs.
+    """Return the |error| of an observable due to the equation that an engine solves.
 
-    The Boltzmann equation has a contact value of 1, and no virial. The Enskog model is given the contact
-    value of Carnahan and Starling, in two dimensions that of Henderson. D of neither has the memory of
-    correlated collisions [Erpenbeck 1991], whose uncertainty is added.
+    The equation is `Engine.equation`; the error is relative to hard spheres or discs, inf where either of
+    them has no value, like D of discs. The Boltzmann equation has a contact value of 1, and no virial. The
+    Enskog model is given the contact value of Carnahan and Starling, in two dimensions the value of
+    Henderson. In neither does D have the memory of correlated collisions [Erpenbeck 1991], whose uncertainty
+    is added.
     """
     if equation == bulk.EXACT:
         return 0.0
@@ -31,8 +32,10 @@ def model_error(packing_fraction: float, dimension: int, equation: str, observab
 
 
 def step_error(packing_fraction: float, step: float) -> float:
-    """By how much steps, in diameters over the thermal speed, make D of spheres too high. The law is stated
-    for a dilute gas; a dense one collides more often by the contact value, as if its free path were shorter
-    by that."""
+    """Compute the relative error of D of spheres due to steps, which make it too high.
+
+    Steps are in diameters divided by the thermal speed. The law is given for a dilute gas; a dense gas
+    collides more often by the contact value, as if its free path were shorter by this factor.
+    """
     path = float(theory.mean_free_path(packing_fraction, 3))
     return float(step_factor("diffusion", step * math.sqrt(2.0) / path)) - 1.0

@@ -1,8 +1,8 @@
-"""An engine with its settings for a scene, and what a run with it costs.
+"""Engine with its settings for a scene, and the cost of a run with it.
 
 The relative error of a run of a measured time t is its standard error sqrt(variance(t)) and, in full, the
-bound on its bias. The bias is bounded by the engine, from theory or from measurements; noise and processor
-time are those of a pilot run, or of the table, which has those of pilots that were kept.
+bound on its bias. The bias is bounded by the engine, from theory or from measurements; noise and CPU time
+come from a pilot run, or from the table, which has the results of earlier pilots.
 """
 
 from __future__ import annotations
@@ -23,17 +23,20 @@ from gaspart.scene.scene import Scene
 from gaspart.trajectory.recipe import MOST_REPLICAS
 
 WORTH = 1.5
-"""Cost of the exact engine, divided by that of another engine, from which on the other one is preferred."""
+"""Cost ratio of the exact engine to another engine above which the other one is preferred."""
 _PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilibration
 
 
 @dataclass(frozen=True)
 class Option:
-    """What a candidate needs for an accuracy.
+    """Candidate engine, with its cost for an accuracy.
 
-    bias: the bound on its systematic error, by pilots too; noise: of the observable; speed: processor seconds
-    per unit of time; accuracy: the wanted one; least, most: durations of the shortest run, and of the longest
-    that is of use and within the budget; settling: the time before anything is measured, at least.
+    bias : bound on its systematic error, by pilots too.
+    noise : noise of the observable.
+    speed : CPU seconds per unit of time.
+    accuracy : requested accuracy.
+    least, most : durations of the shortest run, and of the longest run that is of use and within the budget.
+    settling : minimum time before anything is measured.
     """
 
     candidate: Candidate
@@ -47,50 +50,55 @@ class Option:
 
     @property
     def engine(self) -> Engine:
-        """With its settings."""
+        """Engine with its settings."""
         return self.candidate.engine
 
     @property
     def measured(self) -> float:
-        """The measured time for the wanted accuracy, or the longest one; inf if it is never reached."""
+        """Measured time for the requested accuracy, or the longest one; inf if out of reach."""
         return max(0.0, min(self._length(self.accuracy), self.part(self.most)))
 
     @property
     def duration(self) -> float:
-        """Of the run, with what is not measured, inf likewise."""
+        """Duration of the run including its discarded part; inf if the accuracy is out of reach."""
         return self.whole(self.measured)
 
     @property
     def seconds(self) -> float:
-        """Of processor time, inf likewise."""
+        """CPU time of the run in seconds; inf if the accuracy is out of reach."""
         return self.duration * self.speed
 
     @property
     def error(self) -> float:
-        """Relative standard error that the run reaches, with the bound on its bias; inf likewise."""
+        """Relative standard error of the run plus the bound on its bias; inf without a run.
+
+        It is inf if the accuracy is out of reach.
+        """
         measured = self.measured
         return self.bias + self.noise.reaches(measured) if math.isfinite(measured) else math.inf
 
     def cost(self, accuracy: float) -> float:
-        """Processor seconds for an accuracy, without a budget; inf if it is never reached."""
+        """Compute the CPU seconds for an accuracy, without a budget; inf if out of reach."""
         return self.whole(self._length(accuracy)) * self.speed
 
     def whole(self, measured: float) -> float:
-        """The duration of a run with so long a measured part: a quarter of it is not measured, by default,
-        and the time of settling never."""
+        """Compute the duration of a run from the duration of its measured part.
+
+        A quarter of the run is discarded, by default, and the time of settling always.
+        """
         return max(measured + self.settling, measured / (1.0 - EQUILIBRATION))
 
     def part(self, duration: float) -> float:
-        """The inverse: the measured part of a duration."""
+        """Compute the measured part of a duration, the inverse of `whole`."""
         return min(duration - self.settling, (1.0 - EQUILIBRATION) * duration)
 
     def _length(self, accuracy: float) -> float:
-        """The measured time for an accuracy, of a run that is not too short."""
+        """Compute the measured time for an accuracy, of a run that is not too short."""
         return max(self.noise.length(accuracy - self.bias), self.part(self.least))
 
 
 def ordered(options: list[Option]) -> list[Option]:
-    """Sort the best first: the cheapest of those that reach the accuracy, or else the most accurate one.
+    """Sort options, the best first: the cheapest accurate option, or else the most accurate one.
 
     The exact engine is preferred unless another one is `WORTH` times as cheap.
     """
@@ -103,8 +111,11 @@ def ordered(options: list[Option]) -> list[Option]:
 
 
 def replicas_of(option: Option, longest: float) -> int:
-    """How many runs share the measured time: one for each processor, if each is much longer than its
-    equilibration and no shorter than a run may be, and so many that none is longer than `longest`."""
+    """Return the number of runs that share the measured time.
+
+    There is one for each processor, if each is much longer than its equilibration and not shorter than a run
+    may be, and enough of them that none is longer than `longest`.
+    """
     if not math.isfinite(option.measured):
         return 1
     shortest = max(_PER_EQUILIBRATION * option.settling, option.part(option.least))
@@ -119,8 +130,10 @@ def replicas_of(option: Option, longest: float) -> int:
 
 
 def suited(target: Target) -> tuple[list[Engine], dict[str, str]]:
-    """The engines that model a scene and an observable, the reference first, and why each other does not, by
-    its name in the table."""
+    """Return the engines that model a scene and an observable, the reference first.
+
+    For every other engine the reason is returned, by its name in the table.
+    """
     made, refused = [], {}
     for engine in offered():
         try:
@@ -135,8 +148,11 @@ def suited(target: Target) -> tuple[list[Engine], dict[str, str]]:
 def candidates(
     target: Target, accuracy: float, conditions: Conditions
 ) -> tuple[list[Candidate], dict[str, str]]:
-    """The `suited` engines with their settings, and why each other is none. accuracy: of the observable, for
-    which time steps are chosen; conditions: of the steady scene."""
+    """Return the `suited` engines with their settings, and the reason for each rejected engine.
+
+    accuracy : accuracy of the observable for which time steps are chosen.
+    conditions : conditions of the steady scene.
+    """
     engines, refused = suited(target)
     asked, made = asked_of(target, accuracy, conditions), []
     for engine in engines:
@@ -148,16 +164,21 @@ def candidates(
 
 
 def asked_of(target: Target, accuracy: float, conditions: Conditions) -> Asked:
-    """What engines are asked for."""
+    """Return the request to engines for a target and an accuracy."""
     governed = transported(target.scene, target.observable)
     presses = target.declared.of_impulses  # a force has the relative errors of a pressure
     observable = "pressure" if presses else target.observable
-    return Asked(observable, accuracy, conditions, target.face, governed, target.initial)
+    return Asked(
+        observable, accuracy, conditions, target.face, governed, target.initial,
+        memory=conditions.memory, points=conditions.of_points(observable, target.face),
+    )  # fmt: skip
 
 
 def transported(scene: Scene, observable: str) -> bool:
-    """Whether transport coefficients govern an observable: those of lags, and any where something drives a
-    flow of heat or of momentum."""
+    """Return True if transport coefficients govern an observable.
+
+    These are observables with lags, and any observable where something drives a flow of heat or of momentum.
+    """
     lost = scene.dissipates
     flows = len(scene.face_temperatures) > 1 or lost or bool(scene.sliding_faces)
     return OBSERVABLES[observable].memory or flows

@@ -1,6 +1,6 @@
-"""A short run of a scene, from which its cost and the noise of an observable are extrapolated.
+"""Short run of a scene, which predicts its cost and the noise of an observable.
 
-A pilot is kept in the folder `pilots` of the cache, and reused where the same is asked again.
+A pilot is stored in the folder `pilots` of the cache, and reused for the same request.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
 from gaspart.simulation import Simulation
 from gaspart.state.given import state_at_time_zero
-from gaspart.state.optional_tallies import tally_to_dict
+from gaspart.state.optional_tallies import tallies_to_json
 from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 _PROBE = 0.15
 """Processor seconds that the speed is measured for, at least."""
 _TIMED = 4
-"""Longest lags, likewise of a run with correlations."""
+"""Duration of a timed run with correlations, in longest lags."""
 _BRIEF, _TRIED = 1e-3, 24
 """The length of a run that shows whether there is an observable, in crossings of the container, and its
 frames."""
@@ -57,18 +57,21 @@ _SAME = 1e-6
 _USUAL, _RANGE = 2.0, 5.0
 """Standard deviations within which a start is like a steady run, and which that does not go beyond."""
 _CONTINUED = 2
-"""How often a pilot is made twice as long while it is in a transient."""
+"""Maximum number of times that a pilot in a transient is doubled in length."""
 
 
 @dataclass(frozen=True)
 class Pilot:
-    """What a short run of an engine has shown.
+    """Results of a short run of an engine.
 
-    speed: processor seconds per unit of time; seconds: that the pilot took, 0 if it was kept from before;
-    component: the one that is known worst, None where the observable could not be measured, for the reason in
-    `rule`; counted: the same without the impulses that the run has kept, None if it has none; interval:
-    between frames; settled: the time from which on the run is steady (`settling_time`); path: its file, None
-    of a run that failed.
+    speed : CPU seconds per unit of time.
+    seconds : CPU time of the pilot, 0 if it was stored before.
+    component : the least accurate component, None where the observable could not be measured, for the reason
+        in `rule`.
+    counted : this component without the impulses that the run has stored, None if it has none.
+    interval : time between frames.
+    settled : time from which the run is steady (`settling_time`).
+    path : file, None for a run that failed.
     """
 
     engine: Engine
@@ -88,23 +91,26 @@ class Pilot:
 
     @property
     def duration(self) -> float:
-        """Of the run, with what was not measured, 0 likewise."""
+        """Duration of the run, with its discarded part; 0 if nothing was measured."""
         return self.measured / (1.0 - EQUILIBRATION)
 
     @property
     def value(self) -> float:
-        """Of that component."""
+        """Value of the component."""
         return self.component.value if self.component else math.nan
 
     @property
     def accuracy(self) -> float:
-        """Its relative standard error."""
+        """Relative standard error of the component."""
         return self.component.accuracy if self.component else math.inf
 
 
 def speed_of(target: Target, engine: Engine) -> float:
-    """Processor seconds per unit of a scene's time, from a run of a fraction of a second after its kernels
-    were compiled. Raises SceneError for a scene that the engine does not model."""
+    """Measure the CPU seconds per unit of a scene's time.
+
+    The run takes a fraction of a second after its kernels were compiled. Raises SceneError for a scene that
+    the engine does not model.
+    """
     if target.correlated:  # samples take longer than what happens between them
         return _speed_of_sampling(target, engine)
     tallies = target.tallies(engine)
@@ -122,7 +128,7 @@ def speed_of(target: Target, engine: Engine) -> float:
 
 
 def _speed_of_sampling(target: Target, engine: Engine) -> float:
-    """The same of a run with correlations, by two short ones, of which the first compiles."""
+    """Measure the speed of a run with correlations, by two short ones; the first compiles."""
     took, correlations = math.inf, target.correlations(engine)
     interval = correlations.lags * correlations.interval
     with TemporaryDirectory() as folder:
@@ -141,8 +147,10 @@ def _make(
     scheduled: tuple[float, float, Correlations | None],
     displacements: bool = True,
 ) -> Path:
-    """Run a target as scheduled: duration, time between frames, correlations. displacements: kept by pilots,
-    which serve other observables too."""
+    """Run a target with a schedule: duration, time between frames, correlations.
+
+    Pilots store `displacements`, which serve other observables too.
+    """
     duration, interval, correlations = scheduled
     recipe = Recipe(
         target.scene, engine, SEED, duration, interval,
@@ -153,8 +161,10 @@ def _make(
 
 
 def require_defined(target: Target) -> None:
-    """Raise SceneError for an observable that a scene does not have, however long its run: by measuring it in
-    a very short one."""
+    """Raise SceneError for an observable that a scene does not have, however long its run.
+
+    The observable is measured in a very short run.
+    """
     if target.correlated:  # what these need, engines state
         return
     interval = _BRIEF * target.crossing / _TRIED
@@ -165,8 +175,10 @@ def require_defined(target: Target) -> None:
 
 
 def _measured(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | str:
-    """The components of an observable, or why the run is too short for it. Raises SceneError for one that the
-    scene does not have."""
+    """Return the components of an observable, or the reason if the run is too short.
+
+    Raises SceneError for an observable that the scene does not have.
+    """
     try:
         found = components(trajectory, target.observable)
     except SceneError as error:
@@ -178,10 +190,14 @@ def _measured(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | 
 
 
 def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, left: float = 1.0) -> Pilot:
-    """A run of about so many processor seconds, measured; speed: as from `speed_of`; left: the part of the
-    seconds that there is time for, unless a pilot was kept. One that is in a transient is continued, to four
-    times its length at most. An observable that it is too short for is not measured. Raises SceneError for
-    one that the scene does not have."""
+    """Make and measure a run of about a given number of CPU seconds.
+
+    speed : result of `speed_of`.
+    left : fraction of the seconds that remains, unless a pilot was stored.
+
+    A pilot in a transient is continued, to four times its length at most. An observable that needs a longer
+    run is not measured. Raises SceneError for an observable that the scene does not have.
+    """
     scheduled = target.schedule(engine, left * seconds / speed)
     folder = cache_directory() / "pilots" / _digest(target, engine, seconds)
     folder.mkdir(parents=True, exist_ok=True)
@@ -208,13 +224,15 @@ def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, left
 
 
 def _worst(found: dict[str, Component]) -> Component:
-    """The component that is known worst."""
+    """Return the least accurate component."""
     return max(found.values(), key=lambda one: one.accuracy)
 
 
 def _steadied(path: Path) -> float:
-    """The `settling_time` of a pilot, which is continued while it is not within the part that is not
-    measured."""
+    """Return the `settling_time` of a pilot, and continue the pilot until it is steady.
+
+    It is steady if the settling time is within the part that is discarded.
+    """
     for last in (False,) * _CONTINUED + (True,):
         with open_trajectory(path) as trajectory:
             settled, end = settling_time(trajectory), float(trajectory["time"][-1])
@@ -225,9 +243,11 @@ def _steadied(path: Path) -> float:
 
 
 def settling_time(trajectory: xr.Dataset) -> float:
-    """The time from which on a run is steady: when the kinetic energy, and the mean place of the particles
-    along each axis with walls, have reached their means of the second half, and have left the range of that
-    for the last time."""
+    """Return the time from which a run is steady.
+
+    From then on the kinetic energy, and the mean position of the particles along each axis with walls, have
+    reached their means of the second half, and have left the range of the second half for the last time.
+    """
     with open_run(trajectory, 0.0, sheared=True) as run:
         velocities, masses = run.peculiar, run.masses[run.moving]
         series = [np.einsum("tnd,tnd,n->t", velocities, velocities, masses)]
@@ -237,7 +257,7 @@ def settling_time(trajectory: xr.Dataset) -> float:
 
 
 def _settled_at(series: np.ndarray) -> int:
-    """The number of the frame from which on a series (T,) is steady."""
+    """Return the number of the frame from which a series (T,) is steady."""
     later = series[len(series) // 2 :]
     beyond = series - later.mean()
     scatter = max(float(later.std()), _SAME * abs(float(later.mean())))
@@ -248,11 +268,14 @@ def _settled_at(series: np.ndarray) -> int:
 
 
 def _digest(target: Target, engine: Engine, seconds: float) -> str:
-    """Of what a pilot is: runs of one kind, which keep the same, serve other observables too."""
+    """Return the digest of a pilot's content.
+
+    Runs of one kind, which store the same data, serve other observables too.
+    """
     kind = "motion" if target.correlated else target.declared.samples
     if target.declared.needs in KEPT:
         kind = target.declared.needs
-    kept = [tally_to_dict(tally) for tally in target.tallies(engine)]
+    kept = tallies_to_json(target.tallies(engine))
     content = [target.scene.to_dict(), engine_to_dict(engine), kind, kept, seconds, source_digest()]
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:24]
 
@@ -271,9 +294,14 @@ Announce: TypeAlias = Callable[[str], None]
 
 @dataclass
 class Trials:
-    """What is known of the engines for a target. seconds: of processor time for all pilots; speeds: processor
-    time of a unit of time by candidate; refused: why other engines are none; pilots: made so far, that of the
-    exact engine first; target: starts from a steady state where a pilot has shown one."""
+    """Speeds and pilots of the engines for a target.
+
+    seconds : CPU time for all pilots.
+    speeds : CPU time of a unit of time by candidate.
+    refused : reasons why other engines are rejected.
+    pilots : pilots made so far, the exact engine's first.
+    target : it starts from a steady state if a pilot has one.
+    """
 
     target: Target
     accuracy: float
@@ -285,9 +313,11 @@ class Trials:
     _begun: float = field(default_factory=time.process_time)
 
     def begin(self) -> None:
-        """Find the candidates and make the pilot of the exact engine: of half the time if another engine may
-        be cheaper. Raises SceneError if no engine runs the scene, and for an observable that it does not
-        have."""
+        """Find the candidates and make the pilot of the exact engine.
+
+        It takes half the time if another engine may be cheaper. Raises SceneError if no engine runs the
+        scene, and for an observable that the scene does not have.
+        """
         engines, self.refused = suited(self.target)
         if not engines or not engines[0].reference:
             raise self._no_engine()
@@ -314,7 +344,10 @@ class Trials:
         self._ask_another()
 
     def make(self, candidate: Candidate, part: float = 0.5) -> Pilot:
-        """One more pilot, with a part of the processor time; a third one, and a fourth, with less."""
+        """Make one more pilot, with a part of the CPU time.
+
+        A third and a fourth one have less time.
+        """
         if candidate not in self.speeds:
             raise self._no_engine()
         spent = 0.0 if self.pilots else time.process_time() - self._begun
@@ -326,23 +359,25 @@ class Trials:
         return found
 
     def _ask_another(self) -> None:
-        """Make a pilot of the cheapest accurate engine if that of the exact one has measured nothing."""
+        """Make a pilot of the cheapest accurate engine if the exact engine's has measured nothing."""
         able = [one for one in self.speeds if one.bias < self.accuracy and not self.has_pilot(one.engine)]
         if able and not self.known:
             self.make(min(able, key=lambda one: self.speeds[one]))
 
     def refuse(self, candidate: Candidate, rule: str) -> None:
-        """Let a candidate be none."""
+        """Reject a candidate for a reason."""
         self.refused[candidate.engine.timed_as] = rule
         del self.speeds[candidate]
 
     def has_pilot(self, engine: Engine) -> bool:
-        """Whether an engine has one."""
+        """Return True if an engine has a pilot."""
         return any(one.engine == engine for one in self.pilots)
 
     def bias(self, candidate: Candidate) -> float:
-        """The bound on a candidate's bias: that of theory, or what its pilot differs by from the exact
-        engine's."""
+        """Return the bound on a candidate's bias, from theory or from its pilot.
+
+        The pilot's bound is its difference from the exact engine's pilot.
+        """
         own = [one for one in self.known if one.engine == candidate.engine]
         return raised_bias(candidate, own[0], self.known) if own else candidate.bias
 
@@ -353,14 +388,16 @@ class Trials:
 
     @property
     def differing(self) -> tuple[Pilot, ...]:
-        """Those that differ from that of the exact engine by more than their bounds."""
+        """Pilots that differ from the exact engine's by more than their bounds."""
         found = ((one, self._candidate(one.engine)) for one in self.known)
         return tuple(pilot for pilot, one in found if one and self.bias(one) > one.bias)
 
     @property
     def reference(self) -> Pilot:
-        """The longest pilot of an engine that is accurate enough, of any if there is none. Raises SceneError
-        if the observable was not measured."""
+        """Longest pilot of an engine that is accurate enough, or else of any engine.
+
+        Raises SceneError if the observable was not measured.
+        """
         accurate = [one for one in self.known if self._is_accurate(one)] or self.known
         if accurate:
             return max(accurate, key=lambda one: one.measured)
@@ -371,8 +408,11 @@ class Trials:
         raise SceneError("observable", target.observable, rule)
 
     def noise(self, engine: Engine) -> Component:
-        """Of the observable in a run by an engine: of one that keeps impulses that in a pilot with these, of
-        any other that of counts. Raises SceneError as `reference`."""
+        """Return the noise of the observable in a run by an engine.
+
+        If the engine stores impulses, it is the noise in a pilot with impulses, otherwise the noise of
+        counts. Raises SceneError as `reference`.
+        """
         with_impulses = [one for one in self.known if one.counted]
         if with_impulses and self.target.tallies(engine):
             found = max(with_impulses, key=lambda one: one.measured).component
@@ -394,7 +434,7 @@ class Trials:
         return able
 
     def _time(self, able: list[Candidate]) -> None:
-        """Measure the speeds of candidates; those that cannot start are none."""
+        """Measure the speeds of candidates; reject a candidate that cannot start."""
         for one in able:
             self.announce(f"timing the {one.engine.title} engine")
             try:
@@ -416,7 +456,11 @@ class Trials:
 
 
 def raised_bias(candidate: Candidate, own: Pilot, pilots: list[Pilot]) -> float:
-    """The bound on a candidate's bias, with what its own pilot differs by from that of the exact engine."""
+    """Raise the bound on a candidate's bias to its difference from the exact engine.
+
+    The difference of its pilot from the pilot of the exact engine counts, with its error, if it is
+    significant.
+    """
     exact = [one for one in pilots if one.engine.reference]
     if candidate.engine.reference or not exact:
         return candidate.bias

@@ -33,14 +33,16 @@ from gaspart.trajectory.until import Requirement, Until
 ACCURACIES = 1e-8, 1.0
 """The best relative accuracy that float64 sums and the table support, and the worst."""
 _FRAMES = 384
-"""Of a run: 288 independent intervals give an error 17 degrees of freedom, and 15 are required."""
+"""Number of frames of a run: 288 independent intervals give an error 17 degrees of freedom, of 15 required.
+
+"""
 _LONGEST = 4.0
 """The longest duration of a run with `--until` over the predicted one: two examinations, and an error that
 chance made too small in the pilot."""
 _SETTLED = 2.0
 """The part of a run that is not measured, over the time in which the energy came to its mean in the pilot."""
 _CROSSINGS = 10.0
-"""How often a particle crosses a container with walls at least in a run."""
+"""Minimum number of times that a particle crosses a container with walls in a run."""
 _OF_STARTS = 0.5
 """Scatter of the mean of replicas by their starts, divided by the accuracy, beyond which one run is made."""
 _BULK = 4.0  # the finite size of a gas should cost no more than this part of the accuracy
@@ -48,11 +50,18 @@ _BULK = 4.0  # the finite size of a gas should cost no more than this part of th
 
 @dataclass(frozen=True)
 class Plan:
-    """The advice for a scene. options: of each engine, the best first; refused: why others cannot run it, by
-    their names in the table; value: of the observable, by the pilots or by theory; replicas: runs that share
-    the measured time; pilots: their results, none of what is in the table; differing: those that differ from
-    that of the exact engine by more than their bounds; places: of a curve, how many the pilots know, of which
-    the accuracy is, and how many there are; budget: processor time of the run in s, if it is limited."""
+    """Advice for a scene.
+
+    options : option of each engine, the best first.
+    refused : reasons why other engines cannot run the scene, by their names in the table.
+    value : value of the observable, by the pilots or by theory.
+    replicas : number of runs that share the measured time.
+    pilots : their results, none if the table has the answer.
+    differing : pilots that differ from the exact engine's by more than their bounds.
+    places : for a curve, the number of points that the pilots know, to which the accuracy refers, and the
+        number of points.
+    budget : CPU time of the run in s, if it is limited.
+    """
 
     target: Target
     accuracy: float
@@ -72,42 +81,44 @@ class Plan:
 
     @property
     def affordable(self) -> bool:
-        """Whether the best option reaches the accuracy within the budget."""
+        """True if the best option reaches the accuracy within the budget."""
         return self.best.error <= self.accuracy * (1.0 + 1e-6)
 
     @property
     def scatter(self) -> Scatter:
-        """Of the observable from run to run by that of the energy at the start, beyond the interval."""
+        """Scatter of the observable from run to run by the initial energy, beyond the interval."""
         return start_scatter(self.target)
 
     @property
     def gas(self) -> Gas | None:
-        """The fluid in a periodic container of which the table is; None where it is of pilots."""
+        """Fluid in a periodic container that the table describes; None for a plan by pilots."""
         return None if self.pilots else known.fluid_of(self.target.scene)
 
     @property
     def finite_size(self) -> tuple[float, float]:
-        """Relative difference from an infinite gas, to first order, and the particles for which that is a
-        quarter of the accuracy."""
+        """Relative difference from an infinite gas, to first order, and a sufficient number of particles.
+
+        For this number the difference is a quarter of the accuracy.
+        """
         gas = known.fluid_of(self.target.scene)
         differing, power = getattr(finite, self.target.declared.bulk)(gas)
         return differing, gas.count * (abs(differing) * _BULK / self.accuracy) ** power
 
     @property
     def duration(self) -> float:
-        """Of each run, with what is not measured."""
+        """Duration of each run, with its discarded part."""
         return self.best.whole(self.best.measured / self.replicas)
 
     @property
     def runs(self) -> int:
-        """Number of runs like the best option whose mean has the accuracy, if one run lacks it."""
+        """Number of runs like the best option whose mean is accurate, if one run is not."""
         best = self.best
         noise, left = best.error - best.bias, self.accuracy - best.bias
         return math.ceil((noise / left) ** 2) if left > 0.0 and math.isfinite(noise) else 0
 
     @property
     def seconds(self) -> float:
-        """Processor time of all replicas, with what is not measured in each; inf if it is never reached."""
+        """CPU time of all replicas, with their discarded parts; inf if out of reach."""
         return self.replicas * self.duration * self.best.speed
 
     @property
@@ -119,8 +130,11 @@ class Plan:
 
     @property
     def longest_interval(self) -> float:
-        """Between frames: of diffusion by its lags; of an observable that they sample that of the pilot,
-        whose noise is known."""
+        """Maximum time between frames.
+
+        For diffusion it follows from the lags; an observable that frames sample has the time of the pilot,
+        whose noise is known.
+        """
         declared = self.target.declared
         if declared.samples == "paths":
             return self.target.span[0]
@@ -129,8 +143,11 @@ class Plan:
 
     @property
     def recipe(self) -> Recipe:
-        """The run to make, one of the replicas: of a fixed duration where the noise is in the table or
-        nothing ends a run, else until it is accurate."""
+        """Recipe of the run to make, one of the replicas.
+
+        Its duration is fixed where the noise is in the table or the observable ends no run; otherwise it runs
+        until it is accurate.
+        """
         target, duration = self.target, self.duration
         scene, engine, correlations = target.scene, self.best.engine, None
         interval = float(f"{min(duration / _FRAMES, self.longest_interval):.3g}")
@@ -151,7 +168,7 @@ class Plan:
         )  # fmt: skip
 
     def _until(self, duration: float) -> Until:
-        """What ends a run of about a duration."""
+        """Return the condition that ends a run of about a duration."""
         target = self.target
         left = self.accuracy - self.best.bias
         relative = float(f"{0.99 * left if self.best.bias else left:.3g}")
@@ -169,20 +186,22 @@ def plan(
     pilot_seconds: float = PILOT_SECONDS,
     announce: Announce = lambda text: None,
 ) -> Plan:
-    """The cheapest run for a relative accuracy of an observable of `gaspart measure`; of the pressure on one
-    wall as `pressure:x low`.
+    """Find the cheapest run for a relative accuracy of an observable of `gaspart measure`.
 
-    accuracy: the standard error and, in full, the bound on systematic errors, divided by the value: without
-    these what `--until` requires.
+    The observable may be the pressure on one wall, like `pressure:x low`.
 
-    budget: processor time in seconds of the run; if it does not suffice, the most accurate run within it is
-    advised. The others are of scenes and observables that the table does not cover: pilot_seconds: of the two
-    pilots that most scenes have, or of the only one; up to half of it goes to what comes before them, if that
-    takes more than 5 s, as to compress particles. More is needed where a third engine turns out to be the
-    best, and by a pilot in a transient, which is continued. announce(text): is called before each pilot.
+    accuracy : standard error plus, in full, the bound on systematic errors, divided by the value; without
+        these bounds it is the accuracy that `--until` requires.
+    budget : CPU time in seconds of the run; if it does not suffice, the most accurate run within it is
+        advised.
+    pilot_seconds : for scenes and observables that the table does not cover, CPU time of the two pilots that
+        most scenes have, or of the only one. Up to half of it is spent on the preparation, if that takes more
+        than 5 s, for example to compress particles. More is needed where a third engine turns out to be the
+        best, and by a pilot in a transient, which is continued.
+    announce : function of a text, called before each pilot.
 
-    Raises SceneError for a scene without a steady state, and for an observable that it does not have, or of
-    which the pilots are too short to say anything.
+    Raises SceneError for a scene without a steady state, and for an observable that it does not have, or for
+    which the pilots are too short.
     """
     if known.is_tabulated(scene, observable):
         return tabulated(scene, observable, accuracy, budget)
@@ -195,8 +214,10 @@ def tabulated(
     accuracy: float,
     budget: float | None = None,
 ) -> Plan:
-    """`plan` by the table, whose machine the times are of. Raises SceneError for anything that the table does
-    not cover."""
+    """Make a `plan` by the table; its times hold for the machine of the table.
+
+    Raises SceneError for anything that the table does not cover.
+    """
     gas, target = known.tabulated_target(scene, observable)
     accuracy, budget = _checked(accuracy, budget)
     engines, refused = suited(target)
@@ -217,7 +238,7 @@ def piloted(
     pilot_seconds: float = PILOT_SECONDS,
     announce: Announce = lambda text: None,
 ) -> Plan:
-    """`plan` by pilot runs, whatever is in the table."""
+    """Make a `plan` by pilot runs, even if the table covers the scene."""
     target = Target.named(scene, observable)
     accuracy, budget = _checked(accuracy, budget)
     pilot_seconds = number("pilot", pilot_seconds, "must be positive", above=0.0)
@@ -245,15 +266,17 @@ def piloted(
 
 
 def _checked(accuracy: float, budget: float | None) -> tuple[float, float | None]:
-    """The arguments. Raises SceneError."""
+    """Return valid arguments; raise SceneError for others."""
     low, high = ACCURACIES
     accuracy = number("accuracy", accuracy, f"must be from {low:g} to {high:g}", least=low, most=high)
     return accuracy, None if budget is None else number("budget", budget, "must be positive", above=0.0)
 
 
 def _options(trials: Trials, budget: float | None) -> list[Option]:
-    """What each candidate needs, the best first. Raises SceneError if no pilot has measured the
-    observable."""
+    """Return an option for each candidate, the best first.
+
+    Raises SceneError if no pilot has measured the observable.
+    """
     target, longest = trials.target, trials.reference
     assert longest.component is not None
     options = []
@@ -269,14 +292,20 @@ def _options(trials: Trials, budget: float | None) -> list[Option]:
 
 
 def _shared(target: Target, engine: Engine) -> bool:
-    """Return True if replicas can share the measured time: runs until accurate, which differ by their
-    seeds. Otherwise the scatter of a few runs would be the error."""
+    """Return True if replicas can share the measured time.
+
+    These are runs until accurate, which differ by their seeds. Otherwise the scatter of a few runs would be
+    the error.
+    """
     return target.declared.ends_runs and differ(target.scene, engine)
 
 
 def _longest(target: Target, pilot: Pilot) -> float:
-    """The longest duration that is of use: what is of positions is of a number of frames, and those of the
-    pilot say how much each of them contributes; more time between them is not known to help."""
+    """Return the longest duration that is of use.
+
+    An observable of positions has a limited number of frames, and the frames of the pilot show how much each
+    of them contributes; more time between them is not known to help.
+    """
     if target.declared.samples != "structure":
         return math.inf
     frames = pilot.measured / pilot.interval
@@ -284,9 +313,12 @@ def _longest(target: Target, pilot: Pilot) -> float:
 
 
 def _least(target: Target, engine: Engine, pilot: Pilot) -> float:
-    """The shortest duration: what the table equilibrates and measures at least, crossings of a container with
-    walls, the time in which the pilot came to its steady state, and the steps between frames; with
-    correlations the frames that give an error."""
+    """Return the shortest duration of a run.
+
+    It covers the least equilibration and measurement of the table, crossings of a container with walls, the
+    time in which the pilot became steady, and the steps between frames; with correlations, the frames that
+    give an error.
+    """
     scene, frequency = target.scene, target.frequency
     collisions = (EQUILIBRATED + LEAST) / frequency if frequency > 0.0 else 0.0
     crossings = 0.0 if scene.is_periodic else _CROSSINGS * target.crossing

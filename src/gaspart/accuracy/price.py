@@ -25,9 +25,13 @@ _MEASURED = ("gravity", "roughness")
 
 @dataclass(frozen=True)
 class Price:
-    """What a scene pays for beside its collisions. ratios: time per event with each measured feature over
-    that without it; unknown: features of the scene whose cost was not measured; single: time in single over
-    that in double precision, None for an engine that has one precision only."""
+    """Cost of the features of a scene, in addition to its collisions.
+
+    ratios : time per event with each measured feature, divided by the time without it.
+    unknown : features of the scene whose cost was not measured.
+    single : time in single precision divided by the time in double precision, None for an engine that has one
+        precision only.
+    """
 
     ratios: dict[str, float]
     unknown: tuple[str, ...]
@@ -35,8 +39,11 @@ class Price:
 
 
 def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
-    """The price of an observable of a scene with an engine, measured in a gas of 4000 spheres at a packing
-    fraction of 0.2 (figure `price_of_features`), where a feature that is absent costs nothing."""
+    """Return the price of an observable of a scene with an engine.
+
+    It was measured in a gas of 4000 spheres at a packing fraction of 0.2 (figure `price_of_features`), where
+    a feature that is absent costs nothing.
+    """
     has = {
         "walls": not scene.is_periodic,
         "gravity": any(scene.gravity or ()),
@@ -52,8 +59,10 @@ def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
 
 
 def _single(engine: Engine, dimension: int) -> float | None:
-    """Time per contact in single over that in double precision, of the gas at which the engine is timed; None
-    of an engine that was not timed in both."""
+    """Compute the time per contact in single precision divided by the time in double precision.
+
+    The gas is the one at which the engine is timed; None for an engine that was not timed in both.
+    """
     fraction, step = engine.timed_at
     single, double = (
         table.seconds(dimension, fraction, engine.timed_as, precision, step)

@@ -58,11 +58,16 @@ _UNCHANGED = "frames: all are the same so far, which tells no error"
 class AccuracyStatus:
     """Estimate of an observable by a run, compared with the required accuracy.
 
-    asked: what is required; component: the face or axis that is known worst, "" for a scalar; value; noise:
-    its standard error at the energies of the runs, correlations included, the larger one of the last two
-    examinations, inf where nothing was measured, for the reason in `rule`; freedom: degrees of freedom of the
-    noise; confirmed: whether there were two examinations; scatter: relative standard deviation of the value
-    from seed to seed by the energy of the start, beyond the noise; replicas: number of runs.
+    asked : requirement.
+    component : the least accurate face or axis, "" for a scalar.
+    value : its value.
+    noise : its standard error at the energies of the runs, correlations included, the larger one of the last
+        two examinations, inf where nothing was measured, for the reason in `rule`.
+    freedom : degrees of freedom of the noise.
+    confirmed : True if there were two examinations.
+    scatter : relative standard deviation of the value from seed to seed by the energy of the start, beyond
+        the noise.
+    replicas : number of runs.
     """
 
     asked: Requirement
@@ -77,13 +82,18 @@ class AccuracyStatus:
 
     @property
     def of_starts(self) -> float:
-        """Relative standard error of the mean of replicas by the energies of their starts; 0 for a single
-        run, whose interval is for its energy."""
+        """Relative standard error of the mean of replicas by the energies of their starts.
+
+        It is 0 for a single run, whose interval is for its energy.
+        """
         return self.scatter / math.sqrt(self.replicas) if self.replicas > 1 else 0.0
 
     @property
     def error(self) -> float:
-        """The standard error: of a single run for its energy, of replicas with the scatter of the starts."""
+        """Standard error: for replicas with the scatter of the starts.
+
+        For a single run it is the error at its energy.
+        """
         return math.hypot(self.noise, self.of_starts * self.value) if self.of_starts else self.noise
 
     @property
@@ -108,7 +118,7 @@ class AccuracyStatus:
 
     @property
     def excess(self) -> float:
-        """The upper bound of the noise divided by the required one; above 1 while it is not confirmed."""
+        """Upper bound of the noise divided by the required one; above 1 until confirmed."""
         if not self.confirmed or not math.isfinite(self.accuracy):
             return math.inf
         few = math.sqrt(LEAST_FREEDOM / self.freedom)
@@ -127,12 +137,15 @@ class AccuracyStatus:
 
 
 def noise_allowed(accuracy: float, of_starts: float) -> float:
-    """Return the relative noise at which a run ends, beside a relative error of the mean by its starts."""
+    """Return the relative noise at which a run ends, given the error due to its starts.
+
+    Both errors are relative.
+    """
     return math.sqrt(accuracy**2 - of_starts**2) if of_starts < accuracy else accuracy
 
 
 def _student(freedom: float) -> float:
-    """Half the width of a 95 % interval, in standard errors."""
+    """Return half the width of a 95 % interval, in standard errors."""
     from scipy.special import ndtri, stdtrit
 
     beyond = 0.5 * (1.0 + _CONFIDENCE)
@@ -140,8 +153,10 @@ def _student(freedom: float) -> float:
 
 
 def confirmed(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
-    """An estimate with the larger one of its error and that of the examination before, for a run whose
-    measured part was shorter by `ratio`."""
+    """Return an estimate with the larger error of two examinations.
+
+    The measured part at the examination before was shorter by `ratio`.
+    """
     from gaspart.analysis.estimate import Estimate
 
     if before is None:
@@ -150,18 +165,40 @@ def confirmed(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
 
 
 def merged(estimates: Sequence[Estimate]) -> Estimate:
-    """The mean of independent estimates, as of `gaspart.analysis.replicas`, with the error that follows from
-    theirs: the scatter of a few replicas says less."""
+    """Average independent estimates, with the error that follows from their errors.
+
+    `gaspart.analysis.replicas` does the same: the scatter of a few replicas says less.
+    """
     first, *others = estimates
     return sum(others, first) / len(estimates) if others else first
 
 
 def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
-    """What a run `until` some accuracies has reached, in their order, by all of its frames, finished or not;
-    with replicas, of which `path` may be one, by those that all of them have.
+    """Return the accuracies that a run until accurate has reached.
 
-    An empty list for a run of a fixed duration. Raises SceneError as `open_trajectory` does, and for replicas
-    that are missing.
+    Parameters
+    ----------
+    path : str or Path
+        The trajectory, finished or not; one of several replicas stands for all.
+
+    Returns
+    -------
+    list of AccuracyStatus
+        Reached accuracies in the order of the required ones, by all frames of the run; for replicas, by the
+        frames that all of them have. Empty for a run of a fixed duration.
+
+    Raises
+    ------
+    SceneError
+        If `open_trajectory` rejects the file, or replicas are missing.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> path = gp.run(scene, seed=1, duration=2.0, sample_interval=0.1, path="gas.nc")
+    >>> gp.reached_accuracy(path)
+    []
     """
     paths = files_of(path)
     until = read_recipe(paths[0]).until
@@ -172,8 +209,10 @@ def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
 
 
 class Examiner:
-    """Examines a run, or all replicas of one, and calls `report` with the result. Remembers the last
-    examination, whose frames do not change any more."""
+    """Examination of a run, or of all replicas, which is given to `report`.
+
+    It remembers the last examination, whose frames do not change any more.
+    """
 
     def __init__(self, report: Callable[[list[AccuracyStatus]], None] | None = None) -> None:
         self._report = report
@@ -181,8 +220,11 @@ class Examiner:
         self._scatters: dict[Requirement, float] = {}
 
     def __call__(self, runs: Sequence[xr.Dataset], until: Until, frames: int) -> float:
-        """The largest error over the required one, by the first frames of open trajectories; 0 for a run
-        without a longest duration that is given up, since nothing happens that could be measured."""
+        """Return the largest error divided by the required one, by the first frames of trajectories.
+
+        The trajectories are open. It is 0 for a run without a longest duration that is given up, since
+        nothing happens that could be measured.
+        """
         reached = self.examine(runs, until.accuracies, frames)
         collisions = sum(_contacts(data.isel(frame=frames - 1)) for data in runs)
         if self._report:
@@ -194,7 +236,7 @@ class Examiner:
     def examine(
         self, runs: Sequence[xr.Dataset], accuracies: tuple[Requirement, ...], frames: int
     ) -> list[AccuracyStatus]:
-        """What the first frames of open trajectories give."""
+        """Compute the accuracies from the first frames of open trajectories."""
         from gaspart.analysis.run import EQUILIBRATION
 
         before, results = examined_before(frames), []
@@ -225,7 +267,7 @@ class Examiner:
         return results
 
     def _scatter(self, run: xr.Dataset, asked: Requirement) -> float:
-        """Return the relative scatter of an observable from seed to seed by the energy of the start."""
+        """Return the relative scatter of an observable from seed to seed by the initial energy."""
         from gaspart.accuracy.scatter import scatter_of_run  # loads the analysis
 
         if asked not in self._scatters:
@@ -235,7 +277,7 @@ class Examiner:
     def _estimates(
         self, runs: Sequence[xr.Dataset], asked: Requirement, frames: int
     ) -> dict[str, Estimate] | str:
-        """The components of an observable, or the rule that the frames break."""
+        """Return the components of an observable, or the rule that the frames break."""
         key = asked, frames
         if key not in self._known:
             self._known = {known: it for known, it in self._known.items() if 2 * known[1] >= frames}
@@ -249,15 +291,18 @@ class Examiner:
 
 
 def _contacts(frame: xr.Dataset) -> float:
-    """Return the number of collisions until a frame; with open faces, also of particles that entered or hit
-    a face."""
+    """Count collisions until a frame; with open faces, also particles that entered or hit a face."""
     entered = "entries" in frame and bool(frame["entries"].any())  # not of every engine
     names = ("collisions", "entries", "wall_hits") if entered else ("collisions",)
     return float(sum(frame[name].sum() for name in names))
 
 
 def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
+<<<<<<< HEAD
     """Return True if an observable is made of contacts of which there was none, or never changed."""
+=======
+    """Return True if an observable is made of contacts and there was no contact."""
+>>>>>>> main
     return any(
         one.rule == _UNCHANGED
         or (one.value == 0.0 if "face" in OBSERVABLES[one.asked.observable].along else collisions == 0.0)
@@ -266,8 +311,10 @@ def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
 
 
 def _measure(runs: Sequence[xr.Dataset], asked: Requirement) -> dict[str, Estimate]:
-    """An observable by component, "" for a scalar, as the mean over runs; of pressures those that are asked
-    for."""
+    """Measure an observable by component, as the mean over runs.
+
+    The component is "" for a scalar. Pressures are restricted to the requested face.
+    """
     found = [components(data, asked.observable, asked.start) for data in runs]
     known = [name for name in found[0] if of_face(name, asked.face) and all(name in one for one in found)]
     return {name: merged([one[name].estimate for one in found]) for name in known}

@@ -18,23 +18,29 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
 
 _COLLISIONS, _CROSSINGS = 200.0, 10.0
-"""Of a particle, in the suggested duration: both."""
+"""Numbers of collisions and of crossings of a particle in the suggested duration; both hold."""
 _FRAMES = 1000  # the most that are suggested
 _KNUDSEN = 10.0
 """Mean free path, in lengths of the shortest side, beyond which a gas is free-molecular."""
 _KINDS = 200
-"""Each pair of so many is evaluated; single particles are one each."""
+"""Maximum number of kinds whose pairs are evaluated; each single particle is a kind."""
 _REDUCED = 1e5
-"""Speeds beyond which, or below its inverse, units are hardly those of the particles."""
+"""Speed beyond which, or below its inverse, the units hardly suit the particles."""
 
 
 @dataclass(frozen=True)
 class Scales:
-    """thermal_speed: sqrt(k_B T / m), 0 if nothing moves at the start; mean_free_path and collision_time, of
-    a particle between two collisions, infinite if there are none; crossing_time: in which a particle crosses
-    the shortest side of the container, as fast as it is or as it falls; packing_fraction; end: the longest
-    run that is suggested, where a piston moves at a stated speed; walled: whether any side is not periodic;
-    attempts: particles of reservoirs that try to enter per time."""
+    """Characteristic scales of a scene.
+
+    thermal_speed : sqrt(k_B T / m), 0 if nothing moves at the start.
+    mean_free_path, collision_time : of a particle between two collisions, infinite without collisions.
+    crossing_time : time in which a particle crosses the shortest side of the container, with its speed or by
+        falling.
+    packing_fraction : packing fraction.
+    end : longest run that is suggested, where a piston moves at a prescribed speed.
+    walled : True if any side is not periodic.
+    attempts : particles of reservoirs that try to enter per time.
+    """
 
     thermal_speed: float
     mean_free_path: float
@@ -53,23 +59,29 @@ class Scales:
 
     @property
     def event_time(self) -> float:
-        """The time between collisions, or, where there are none or a `free_molecular` gas has walls, to cross
-        the container; infinite if nothing moves."""
+        """Time between collisions, or the time to cross the container; infinite if nothing moves.
+
+        The latter holds without collisions, and for a `free_molecular` gas that has walls.
+        """
         collides = math.isfinite(self.collision_time) and not self.free_molecular
         return self.collision_time if collides else self.crossing_time
 
     @property
     def interval(self) -> float | None:
-        """A time between frames, to two digits: the `event_time`, or a longer one, so that the suggested
-        duration has 1000 frames at most; None if nothing moves."""
+        """Suggested time between frames, to two digits; None if nothing moves.
+
+        It is the `event_time`, or a longer time, so that the suggested duration has 1000 frames at most.
+        """
         if not math.isfinite(self.event_time):
             return None
         return two_digits(min(max(self.event_time, self._longest / _FRAMES), 0.1 * self.end))
 
     @property
     def duration(self) -> float | None:
-        """A duration, a multiple of the interval: 200 collisions of a particle and ten crossings, or 200
-        crossings of a `free_molecular` gas."""
+        """Suggested duration, a multiple of the interval.
+
+        It covers 200 collisions of a particle and ten crossings, or 200 crossings of a `free_molecular` gas.
+        """
         if self.interval is None:
             return None
         number = min(
@@ -110,7 +122,10 @@ class Scales:
 
 
 def scales(scene: Scene) -> Scales:
-    """The scales of a scene; collisions of a plain gas by theory, of others by the rates of all kinds."""
+    """Compute the scales of a scene.
+
+    Collisions of a plain gas follow from theory, otherwise from the rates of all kinds.
+    """
     d, found = scene.dimension, rates(scene, True, _few_kinds(scene))
     thermal = found.speed / math.sqrt(8.0 / math.pi if d == 3 else math.pi / 2.0)
     side = min(scene.container.lengths)
@@ -130,8 +145,10 @@ def scales(scene: Scene) -> Scales:
 
 
 def _few_kinds(scene: Scene) -> list[Species | Particle]:
-    """The kinds of particles that move; of very many one that stands for all, of their mean volume, mass and
-    energy."""
+    """Return the kinds of particles that move; one representative for very many kinds.
+
+    The representative has their mean volume, mass and energy.
+    """
     kinds, d = list(scene.moving_kinds), scene.dimension
     if len(kinds) <= _KINDS:
         return kinds
@@ -143,7 +160,10 @@ def _few_kinds(scene: Scene) -> list[Species | Particle]:
 
 
 def collision_frequency(scene: Scene) -> float:
-    """Collisions of a particle of a plain gas per time, by theory; 0 where that does not know it."""
+    """Compute the collisions of a particle of a plain gas per time, by theory.
+
+    It is 0 where theory does not know it.
+    """
     gas = scene.gas
     if gas is None or gas.count < 2 or not gas.temperature > 0.0:
         return 0.0
@@ -154,5 +174,5 @@ def collision_frequency(scene: Scene) -> float:
 
 
 def two_digits(value: float) -> float:
-    """`value`, rounded."""
+    """Round a number to two digits."""
     return float(f"{value:.2g}")

@@ -39,7 +39,8 @@ _DENSEST = 0.45
 class Scatter:
     """Relative standard deviation of an observable from seed to seed by the energy of the start.
 
-    value: it; drawn, placed: whether drawn velocities and random positions contribute.
+    value : the deviation.
+    drawn, placed : True if drawn velocities and random positions contribute.
     """
 
     value: float = 0.0
@@ -77,7 +78,7 @@ def start_scatter(target: Target) -> Scatter:
 
 
 def _of_velocities(scene: Scene) -> float:
-    """Standard deviation of the kinetic energy at the start."""
+    """Compute the standard deviation of the kinetic energy at the start."""
     drawn = [kind for kind in scene.species if kind.temperature is not None and not kind.exact_temperature]
     return math.sqrt(
         sum(0.5 * scene.dimension * kind.count * (kind.temperature or 0.0) ** 2 for kind in drawn)
@@ -85,8 +86,10 @@ def _of_velocities(scene: Scene) -> float:
 
 
 def _of_places(scene: Scene) -> float:
-    """Standard deviation of the potential energy at the start: that of even places in a region, the less the
-    denser it is."""
+    """Compute the standard deviation of the potential energy at the start.
+
+    It is the deviation of uniform positions in a region, reduced by the density.
+    """
     kinds = [kind for kind in scene.species if kind.count and kind.arrangement == "random" and not kind.fixed]
     square = 0.0
     for axis, pull in enumerate(scene.gravity or ()):
@@ -96,7 +99,7 @@ def _of_places(scene: Scene) -> float:
 
 
 def _range(scene: Scene, kind: Species, axis: int) -> float:
-    """The length along an axis in which a species is placed."""
+    """Return the length along an axis in which a species is placed."""
     lower, upper = (one[axis] for one in scene.reach(kind.radius))
     if kind.region is None:
         return float(upper - lower)
@@ -105,7 +108,10 @@ def _range(scene: Scene, kind: Species, axis: int) -> float:
 
 
 def _smoothed(scene: Scene, kinds: list[Species]) -> float:
-    """By how much excluded volume reduces the scatter of places: the compressibility of the fluid."""
+    """Return the factor by which excluded volume reduces the scatter of positions.
+
+    It is the reduced compressibility of the fluid.
+    """
     d = scene.dimension
     filled = 0.0
     for kind in kinds:
@@ -115,7 +121,7 @@ def _smoothed(scene: Scene, kinds: list[Species]) -> float:
 
 
 def _of_observable(target: Target, deviation: float) -> float:
-    """Relative standard deviation of an observable with one of the energy."""
+    """Compute the relative standard deviation of an observable from a deviation of the energy."""
     scene = target.scene
     freedom = 0.5 * scene.dimension * scene.count
     power = target.declared.power
@@ -138,7 +144,10 @@ def _of_observable(target: Target, deviation: float) -> float:
 
 
 def _of_column(target: Target, deviation: float) -> float | None:
-    """The same under gravity, by hydrostatics; None where that knows nothing."""
+    """Compute the deviation of an observable under gravity, by hydrostatics.
+
+    None where hydrostatics knows nothing.
+    """
     column = pulled(target.scene)
     assert column is not None
     energy = column.energy_of(target.initial)
@@ -151,7 +160,7 @@ def _of_column(target: Target, deviation: float) -> float | None:
 
 
 def _change(target: Target, low: Column, middle: Column, high: Column) -> float:
-    """Of the observable between two columns, over its value."""
+    """Compute the change of the observable between two columns, divided by its value."""
     by_temperature = (high.temperature - low.temperature) / middle.temperature
     if target.observable == "collision_rate":
         return abs(high.collisions - low.collisions) / middle.collisions

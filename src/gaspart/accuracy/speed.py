@@ -22,10 +22,10 @@ _CONTACTS = 2e4
 
 @cache
 def factor(dimension: int, engine: str, precision: str, count: int) -> float:
-    """Processor time of a contact here over that of the table, for `count` particles; engine: its name in the
-    table.
+    """Measure the CPU time of a contact here, divided by the time in the table.
 
-    The gas at which the engine is `timed_at` is timed three times, after a short run from a lattice.
+    The gas at which the engine is `timed_at` is timed three times, with `count` particles, after a short run
+    from a lattice. `engine` is its name in the table.
     """
     growth = max(1.0, count / _MOST) ** _GROWTH
     count = min(max(count, _LEAST), _MOST)
@@ -48,5 +48,5 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
 
 
 def _named(name: str) -> Engine:
-    """An engine by its name in the table."""
+    """Return an engine by its name in the table."""
     return next(one for one in offered() if one.timed_as == name)

@@ -8,8 +8,10 @@ from gaspart.scene.scene import Scene
 
 
 def require_steady(scene: Scene) -> None:
-    """Raise SceneError for an empty scene, and for one that cools or heats: its observables depend on the
-    time."""
+    """Raise SceneError for an empty scene, and for a scene that cools or heats.
+
+    The observables of the latter depend on the time.
+    """
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
     law = scene.restitution
@@ -24,19 +26,21 @@ def require_steady(scene: Scene) -> None:
 
 
 def is_driven(scene: Scene) -> bool:
-    """Whether a thermostat, or a face that is at a temperature or moves, exchanges energy with the
-    particles."""
+    """Return True if something exchanges energy with the particles.
+
+    It is a thermostat, or a face that is at a temperature or moves.
+    """
     moves = any(face.moves for face in scene.faces.values())
     return scene.thermostat is not None or moves or at_temperature(scene)
 
 
 def at_temperature(scene: Scene) -> bool:
-    """Whether a face or an interior wall gives particles the velocities of a temperature."""
+    """Return True if a face or an interior wall draws velocities at a temperature."""
     return bool(scene.face_temperatures)
 
 
 def keeps_energy(scene: Scene) -> bool:
-    """Return True if a run keeps the energy of its start, or its enthalpy under a piston with a load."""
+    """Return True if a run keeps its initial energy, or its enthalpy under a loaded piston."""
     loaded = [piston for _, piston in scene.pistons if piston.pressure is not None]
     moved = any(face.moves for face in scene.faces.values() if face not in loaded)
     exchanged = moved or at_temperature(scene) or scene.thermostat is not None or scene.is_open

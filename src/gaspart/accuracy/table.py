@@ -1,12 +1,13 @@
-"""The table of measured costs and errors, and interpolation between its points.
+"""Table of measured costs and errors, and interpolation between its points.
 
 Columns: ``dimension``, ``packing_fraction``; ``engine`` (event; step, with its standard four passes and
-rewinding; dsmc and dsmc enskog, by its model), ``precision``, ``time_step`` in diameters over the thermal
-speed (kT / m)^(1/2), of DSMC in its own step, a fifth of a mean free time, 0 for event; ``quantity``, its
-``value`` and standard ``error``. Quantities: ``seconds`` of processor time for one exact contact of two
-particles; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance of an estimate
-times the contacts that it is made of; ``price_<feature>``, the time per event with a feature over that
-without it. Observables: Z, collision_rate, D. Other errors follow from theory (`gaspart.accuracy.tabulated`).
+rewinding; dsmc and dsmc enskog, by its model), ``precision``, ``time_step`` in diameters divided by the
+thermal speed (kT / m)^(1/2), for DSMC in its own step, a fifth of a mean free time, 0 for event;
+``quantity``, its ``value`` and standard ``error``. Quantities: ``seconds`` of CPU time for one exact contact
+of two particles; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance of an
+estimate times the number of its contacts; ``price_<feature>``, the time per event with a feature divided by
+the time without it. Observables: Z, collision_rate, D. Other errors follow from theory
+(`gaspart.accuracy.tabulated`).
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ _BEYOND = 1.05  # a packing fraction may exceed those of the table by this facto
 
 @cache
 def read() -> tuple[dict, ...]:
-    """All rows, with numbers as numbers."""
+    """Read all rows, and convert numbers."""
     with PATH.open(encoding="utf-8") as file:
         lines = [line for line in file if not line.startswith("#")]
     kinds = (int, float, str, str, float, str, float, float)
@@ -48,30 +49,30 @@ def read() -> tuple[dict, ...]:
 
 
 def lowest(dimension: int) -> float:
-    """The lowest packing fraction at which an engine was timed, minus 5 %."""
+    """Return the lowest packing fraction at which an engine was timed, minus 5 %."""
     timed = (row for row in read() if row["quantity"] == "seconds" and row["dimension"] == dimension)
     return min(float(row["packing_fraction"]) for row in timed) / _BEYOND
 
 
 def steps(dimension: int, engine: str) -> list[tuple[str, float]]:
-    """(precision, time_step) of all timed settings of an engine."""
+    """Return precision and time step of all timed settings of an engine."""
     timed = (row for row in read() if row["engine"] == engine and row["quantity"] == "seconds")
     found = (row for row in timed if row["dimension"] == dimension)
     return list(dict.fromkeys((row["precision"], row["time_step"]) for row in found))
 
 
 def has_biases(engine: str) -> bool:
-    """Whether errors of an engine were measured; of the others they follow from theory."""
+    """Return True if errors of an engine were measured; otherwise they follow from theory."""
     return any(row["engine"] == engine and row["quantity"].startswith(_BIAS) for row in read())
 
 
 def bias(
     dimension: int, fraction: float, precision: str, step: float, observable: str, engine: str = "step"
 ) -> float:
-    """A bound on the relative error of an engine, by default that of time steps, with two standard errors;
-    inf where none was measured.
+    """Return a bound on the relative error of an engine, with two standard errors.
 
-    Between packing fractions the larger of the neighbours' is taken: errors change their sign between them.
+    The default engine is the one with time steps. The bound is inf where no error was measured. Between
+    packing fractions the larger error of both neighbours is taken: errors change their sign between them.
     """
     eta, value, error = _curve(dimension, engine, precision, step, f"{_BIAS}{observable}")
     if not eta.size or not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND:
@@ -85,8 +86,11 @@ def bias(
 def seconds(
     dimension: int, fraction: float, engine: str, precision: str = "float64", step: float = 0.0
 ) -> float:
-    """Processor time of one exact contact, on the machine of the table; inf where it was not measured. Beyond
-    the gases of the table that of an engine without steps is that of the nearest one."""
+    """Return the CPU time of one exact contact, on the machine of the table.
+
+    It is inf where it was not measured. Outside the gases of the table an engine without steps has the time
+    of the nearest gas.
+    """
     eta, value, _ = _curve(dimension, engine, precision, step, "seconds")
     if not eta.size or (step and not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND):
         return np.inf
@@ -94,10 +98,11 @@ def seconds(
 
 
 def noise(dimension: int, fraction: float, observable: str) -> float:
-    """Relative variance of an observable, times the contacts that it is made of; inf if there is none.
+    """Return the relative variance of an observable times the number of its contacts.
 
-    In a gas more dilute than those of the table that of Z falls with the square of (Z - 1) / Z, since Z - 1
-    is in proportion to the contacts, and the others are those of the most dilute one.
+    It is inf if it was not measured. In a gas more dilute than the gases of the table the variance of Z falls
+    with the square of (Z - 1) / Z, since Z - 1 is in proportion to the contacts, and the others are those in
+    the most dilute gas.
     """
     eta, value, _ = _curve(dimension, _EXACT, "float64", 0.0, f"noise_{observable}")
     if not eta.size:
@@ -115,7 +120,10 @@ def noise(dimension: int, fraction: float, observable: str) -> float:
 
 
 def prices(engine: str) -> dict[str, float]:
-    """The time per event with each feature that was measured over that without it (`price_of_features`)."""
+    """Return the time per event with each measured feature, divided by the time without it.
+
+    The features are measured by `price_of_features`.
+    """
     rows = (row for row in read() if row["engine"] == engine and row["quantity"].startswith(_PRICE))
     return {row["quantity"].removeprefix(_PRICE): row["value"] for row in rows}
 
@@ -124,7 +132,7 @@ def prices(engine: str) -> dict[str, float]:
 def _curve(
     dimension: int, engine: str, precision: str, step: float, quantity: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(packing fractions, values, errors) of one quantity."""
+    """Return packing fractions, values and errors of one quantity."""
     wanted = (dimension, engine, precision, step, quantity)
     keys = ("dimension", "engine", "precision", "time_step", "quantity")
     found = sorted(

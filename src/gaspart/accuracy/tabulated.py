@@ -1,7 +1,7 @@
-"""Options from the table: for the fluids and observables whose errors, noise and times were measured.
+"""Options from the table, for fluids and observables whose errors, noise and times were measured.
 
-A row of the table is a pilot that was kept: its noise is that of a pilot, in contacts instead of time, and
-its processor time that of the machine of the table. Nothing is run or compiled for a look-up.
+A row of the table is a stored pilot: its noise is in contacts instead of time, and its CPU time holds for the
+machine of the table. Nothing is run or compiled for a look-up.
 """
 
 from __future__ import annotations
@@ -24,12 +24,17 @@ from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
 
 FEWEST = 64
-"""Particles of a gas that is like those of the table, to 1 % of Z - 1: fewer have pilots of their own."""
+"""Minimum number of particles of a gas to which the table applies, to 1 % of Z - 1.
+
+Smaller gases have pilots of their own.
+"""
 
 
 def fluid_of(scene: Scene) -> Gas:
-    """The gas of a scene, a fluid in a periodic container. Raises SceneError for a scene whose errors were
-    not measured."""
+    """Return the gas of a scene, a fluid in a periodic container.
+
+    Raises SceneError for a scene whose errors were not measured.
+    """
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
     gas, container = plain_gas(scene), scene.container
@@ -54,15 +59,17 @@ def fluid_of(scene: Scene) -> Gas:
 
 
 def tabulated_target(scene: Scene, observable: str) -> tuple[Gas, Target]:
-    """The gas of a scene, and what is to be measured of it. Raises SceneError for a scene, and an observable,
-    that the table does not cover."""
+    """Return the gas of a scene, and the target to measure.
+
+    Raises SceneError for a scene, and an observable, that the table does not cover.
+    """
     if observable not in having(tabulated=True):
         raise SceneError("observable", observable, f"must be one of {', '.join(having(tabulated=True))}")
     return fluid_of(scene), Target.named(scene, observable)
 
 
 def is_tabulated(scene: Scene, observable: str) -> bool:
-    """Whether errors and costs of an observable of a scene are in the table."""
+    """Return True if errors and costs of an observable of a scene are in the table."""
     try:
         tabulated_target(scene, observable)
     except SceneError:
@@ -84,7 +91,10 @@ def options_of(target: Target, engines: list[Engine], accuracy: float, budget: f
 
 
 def _option(target: Target, engine: Engine, accuracy: float, budget: float | None, step: float) -> Option:
-    """That of an engine with the settings of a row; step: in the unit of the table."""
+    """Return the option of an engine with the settings of a row of the table.
+
+    `step` is in the unit of the table.
+    """
     gas = fluid_of(target.scene)
     frequency = float(theory.collision_rate(**gas.parameters))
     row = gas.dimension, gas.packing_fraction, engine.timed_as, engine.precision, step
@@ -104,8 +114,10 @@ def _option(target: Target, engine: Engine, accuracy: float, budget: float | Non
 
 
 def _bounded(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate:
-    """With its errors: those that were measured, or by theory those of its equation, and of its cells and
-    steps as the engine states them."""
+    """Return the engine with bounds of its errors, measured or by theory.
+
+    By theory they are the errors of its equation, and of its cells and steps as the engine states them.
+    """
     observable, row = target.observable, (gas.dimension, gas.packing_fraction)
     if table.has_biases(engine.timed_as):
         error = table.bias(*row, engine.precision, step, observable, engine.timed_as)
@@ -116,5 +128,5 @@ def _bounded(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate
 
 
 def value_of(gas: Gas, observable: str) -> float:
-    """An observable by theory."""
+    """Compute an observable by theory."""
     return float(getattr(bulk, OBSERVABLES[observable].bulk)(gas, bulk.EXACT))

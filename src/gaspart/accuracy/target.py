@@ -1,4 +1,4 @@
-"""What is to be measured of a scene, and how often and how long a run of it is sampled for that."""
+"""Observable to measure in a scene, and the schedule of samples that it needs."""
 
 from __future__ import annotations
 
@@ -38,11 +38,13 @@ _FRAMES = 48, 512
 _HELD = 20_000_000
 """Numbers that the frames of a pilot hold, at most, unless there are only few frames."""
 _PLACED = 100_000
-"""Particles in all frames of which pairs are measured, likewise: that takes longer than their run."""
+"""Maximum number of particles in all frames of which pairs are measured, which takes longer than their run.
+
+"""
 _LONGEST_LAG = 10.0
-"""Of correlations, in collisions of a particle."""
+"""Longest lag of correlations, in collisions of a particle."""
 _LEAST_FRAMES = 24
-"""Of a run with correlations: three quarters of them give an error."""
+"""Minimum number of frames of a run with correlations: three quarters of them give an error."""
 _FALL = 8.0
 """Crossings of the container in which particles that start at rest are set in motion."""
 _COLLIDED = 40.0
@@ -51,8 +53,11 @@ _COLLIDED = 40.0
 
 @dataclass(frozen=True)
 class Target:
-    """An observable of `gaspart measure` of a scene; face: of what walls are given, the wall (`x low`), by
-    default each of them; settled: a state in which the scene has become steady, if one is known."""
+    """Observable of `gaspart measure` of a scene.
+
+    face : for observables of walls, the wall (`x low`), by default each of them.
+    settled : state in which the scene has become steady, if one is known.
+    """
 
     scene: Scene
     observable: str
@@ -61,8 +66,11 @@ class Target:
 
     @classmethod
     def named(cls, scene: Scene, name: str) -> Target:
-        """From a name as on the command line: `Z`, or `pressure:x low`. Raises SceneError for an unknown one,
-        one that the scene does not have, and a wall that is not there."""
+        """Return the target of a name as on the command line: `Z`, or `pressure:x low`.
+
+        Raises SceneError for an unknown name, an observable that the scene does not have, and a wall that
+        does not exist.
+        """
         observable, colon, face = str(name).partition(":")
         face = wall_of(face)
         observable = known(observable)
@@ -77,8 +85,10 @@ class Target:
 
     @cached_property
     def start(self) -> State | None:
-        """The state from which pilots start: one that is settled, or that at time 0 of particles that are
-        compressed, which takes long; None of others."""
+        """State from which pilots start; None for the usual start.
+
+        It is a settled state, or the state at time 0 of particles that are compressed, which takes long.
+        """
         if self.settled is not None:
             return self.settled
         compressed = any(kind.arrangement == "compressed" for kind in self.scene.species if kind.count)
@@ -86,7 +96,7 @@ class Target:
 
     @cached_property
     def initial(self) -> State:
-        """That state, or the one at time 0 of the pilots' seed."""
+        """State at the start of pilots, by default the one at time 0 of their seed."""
         return self.start or initial_state(self.scene, SEED)
 
     @cached_property
@@ -96,8 +106,11 @@ class Target:
 
     @cached_property
     def frequency(self) -> float:
-        """Collisions of a particle per time: by theory in a gas as hot as at the start, or in the column that
-        it becomes; or, if its particles start at rest, in the second half of a short run."""
+        """Collisions of a particle per time.
+
+        By theory in a gas as hot as at the start, or in the column that it becomes; or, if its particles
+        start at rest, in the second half of a short run.
+        """
         found = rates(self.scene, dense=True).frequency
         if found > 0.0:
             gas = self.conditions if self.scene.gravity else None
@@ -113,8 +126,10 @@ class Target:
 
     @cached_property
     def crossing(self) -> float:
-        """The time in which a particle crosses the shortest side of the container. Raises SceneError if
-        nothing moves."""
+        """Time in which a particle crosses the shortest side of the container.
+
+        Raises SceneError if nothing moves.
+        """
         scene = self.scene
         squares = [
             kind.temperature / kind.mass if kind.temperature else (kind.speed or 0.0) ** 2
@@ -131,7 +146,7 @@ class Target:
 
     @property
     def declared(self) -> Named:
-        """What is declared of the observable."""
+        """Declaration of the observable."""
         return OBSERVABLES[self.observable]
 
     @property
@@ -141,17 +156,20 @@ class Target:
 
     @property
     def needs_paths(self) -> bool:
-        """Whether frames need displacements."""
+        """True if frames need displacements."""
         return self.declared.needs == "paths"
 
     @property
     def correlated(self) -> bool:
-        """Whether the run accumulates correlations."""
+        """True if the run accumulates correlations."""
         return self.declared.lags > 0
 
     def tallies(self, engine: Engine) -> tuple[ImpulseTally, ...]:
-        """The optional tallies that make the observable more accurate in a run by an engine: impulses along
-        the last axis, or of pressures along the only one that they are asked for across."""
+        """Return the optional tallies that make the observable more accurate in a run by an engine.
+
+        They are impulses along the last axis; for pressures, along the only axis across which they are
+        requested.
+        """
         if not self.declared.by_impulses:
             return ()
         axes = {self.scene.dimension - 1}
@@ -164,15 +182,18 @@ class Target:
 
     @property
     def span(self) -> tuple[float, float]:
-        """The longest time between frames and the longest run from which the observable is measured without
-        loss: of diffusion by the lags of its slope, and by the number of frames that are correlated."""
+        """Maximum time between frames and maximum length of a run without loss of accuracy.
+
+        For diffusion they follow from the lags of its slope, and from the number of frames that are
+        correlated.
+        """
         if self.declared.samples != "paths" or not self.frequency > 0.0:
             return math.inf, math.inf
         interval = 0.5 * LINEAR_FROM / self.frequency
         return interval, interval * MOST_FRAMES / (1.0 - EQUILIBRATION)
 
     def schedule(self, engine: Engine, length: float) -> tuple[float, float, Correlations | None]:
-        """Duration, time between frames and correlations of a run of about a length."""
+        """Return duration, time between frames and correlations of a run of about a length."""
         if self.correlated:
             return self._correlated(engine, length)
         least, most = _FRAMES
@@ -189,7 +210,10 @@ class Target:
         return frames * interval, interval, None
 
     def correlations(self, engine: Engine) -> Correlations:
-        """Those that the observable needs. Raises SceneError for a scene whose particles do not collide."""
+        """Return the correlations that the observable needs.
+
+        Raises SceneError for a scene whose particles do not collide.
+        """
         lags = self.declared.lags
         if not self.frequency > 0.0:
             raise SceneError("observable", self.observable, "needs particles that collide")
@@ -199,7 +223,7 @@ class Target:
         return Correlations(sample, lags, stress=self.declared.needs == "fluxes")
 
     def _correlated(self, engine: Engine, length: float) -> tuple[float, float, Correlations]:
-        """`schedule` with correlations, whose longest lag frames are apart or more."""
+        """Return the `schedule` with correlations; frames are at least the longest lag apart."""
         correlations = self.correlations(engine)
         sample = correlations.interval
         per_frame = max(correlations.lags, round(length / sample / _FRAMES[0]))
@@ -212,7 +236,7 @@ class Target:
 
 
 def _require_defined(scene: Scene, observable: str, name: str) -> None:
-    """Raise SceneError, with the name that was asked for, for an observable that a scene does not have."""
+    """Raise SceneError, with the name on the command line, for an observable that a scene lacks."""
     try:
         require_defined(observable, scene)
         require_steady_value(observable, scene)
@@ -222,5 +246,5 @@ def _require_defined(scene: Scene, observable: str, name: str) -> None:
 
 
 def rounded_to_12_digits(multiple: float) -> float:
-    """A multiple without its rounding error, which a command would show."""
+    """Return a multiple without its rounding error, which a command would show."""
     return float(f"{multiple:.12g}")

@@ -28,7 +28,10 @@ def _freud() -> ModuleType:
 
 
 def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tuple[Any, np.ndarray]:
-    """Box and positions in freud's convention: the origin in the middle, and z = 0 for discs."""
+    """Return the box and the positions in the convention of freud.
+
+    The origin is in the middle of the box; discs have z = 0.
+    """
     box = _freud().box.Box(*map(float, lengths), is2D=len(lengths) == 2)
     points = np.zeros((len(positions), 3), dtype=np.float32)
     points[:, : len(lengths)] = np.asarray(positions) - 0.5 * np.asarray(lengths)
@@ -36,10 +39,11 @@ def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tup
 
 
 def hexatic(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.ndarray:
-    """(N,) complex psi_6 = mean of exp(6 i theta) over the bonds of a disc to its Voronoi neighbours.
+    """Compute the hexatic order parameter psi_6 of each disc, complex, shape (N,).
 
-    |psi_6| is 1 in a triangular lattice; the mean over discs measures whether all have one orientation.
-    Halperin and Nelson, Phys. Rev. Lett. 41, 121 (1978).
+    It is the mean of exp(6 i theta) over the bonds of a disc to its Voronoi neighbours. |psi_6| is 1 in a
+    triangular lattice; the mean over discs measures whether all have one orientation. Halperin and Nelson,
+    Phys. Rev. Lett. 41, 121 (1978).
     """
     system = _system(positions, lengths)
     neighbours = _freud().locality.Voronoi().compute(system).nlist  # by default freud takes the 6 nearest
@@ -49,16 +53,22 @@ def hexatic(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.
 
 
 def global_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> float:
-    """Q_6 of all bonds of spheres to their 12 nearest neighbours: 0.5745 in a face-centred cubic lattice,
-    about 1 / sqrt(12 N) in a fluid. Steinhardt, Nelson and Ronchetti, Phys. Rev. B 28, 784 (1983)."""
+    """Compute the order parameter Q_6 of all bonds of spheres to their 12 nearest neighbours.
+
+    Q_6 is 0.5745 in a face-centred cubic lattice, about 1 / sqrt(12 N) in a fluid. Steinhardt, Nelson and
+    Ronchetti, Phys. Rev. B 28, 784 (1983).
+    """
     order = _freud().order.Steinhardt(l=6, average=False, wl=False, weighted=False, wl_normalize=False)
     order.compute(_system(positions, lengths), neighbors={"num_neighbors": NEIGHBOURS})
     return float(order.order)
 
 
 def local_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.ndarray:
-    """(N,) q_6 of each sphere, averaged over it and its 12 neighbours: some 0.48 in a crystal near melting,
-    0.15 in the fluid. Lechner and Dellago, J. Chem. Phys. 129, 114707 (2008)."""
+    """Compute q_6 of each sphere, averaged over the sphere and its 12 neighbours, shape (N,).
+
+    The value is about 0.48 in a crystal near melting, 0.15 in the fluid. Lechner and Dellago, J. Chem. Phys.
+    129, 114707 (2008).
+    """
     order = _freud().order.Steinhardt(l=6, average=True, wl=False, weighted=False, wl_normalize=False)
     order.compute(_system(positions, lengths), neighbors={"num_neighbors": NEIGHBOURS})
     return order.particle_order
@@ -67,11 +77,12 @@ def local_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarra
 def structure_factor(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, highest: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Wave numbers (K,), (L,) along x and y up to `highest`, and S(k) = |sum exp(i k.r)|^2 / N there, (K, L).
+    """Compute S(k) = |sum exp(i k.r)|^2 / N of discs on a grid of wave vectors.
 
-    Discs: mean over frames (T, N, 2), at the wave vectors that the container admits; S(0) is NaN. Computed
-    here, because freud's structure factors refuse two dimensions, and its diffraction pattern boxes that are
-    not square.
+    Returned are the wave numbers (K,) and (L,) along x and y up to `highest`, and S(k), shape (K, L): the
+    mean over frames (T, N, 2), at the wave vectors that the container admits; S(0) is NaN. Computed here,
+    because the structure factors of freud reject two dimensions, and its diffraction pattern rejects boxes
+    that are not square.
     """
     unit = 2.0 * np.pi / np.asarray(lengths)
     waves = [step * np.arange(-int(highest / step), int(highest / step) + 1) for step in unit]

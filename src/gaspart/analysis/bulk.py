@@ -20,7 +20,7 @@ EXACT, BOLTZMANN, ENSKOG = "exact", "boltzmann", "enskog"
 
 
 def contact_value(gas: Gas, equation: str) -> float:
-    """The pair distribution at contact by which pairs collide."""
+    """Return the pair distribution at contact that determines the collision rate."""
     if equation == BOLTZMANN:
         return 1.0
     if equation == ENSKOG:
@@ -31,24 +31,27 @@ def contact_value(gas: Gas, equation: str) -> float:
 
 
 def excess(gas: Gas, equation: str) -> float:
-    """Z - 1."""
+    """Compute Z - 1."""
     if equation == BOLTZMANN:
         return 0.0
     return 2.0 ** (gas.dimension - 1) * gas.packing_fraction * contact_value(gas, equation)
 
 
 def compressibility_factor(gas: Gas, equation: str) -> float:
-    """Z."""
+    """Compute Z."""
     return 1.0 + excess(gas, equation)
 
 
 def collision_rate(gas: Gas, equation: str) -> float:
-    """Collisions of a particle per time."""
+    """Compute the number of collisions of a particle per time."""
     return float(theory.collision_rate(**gas.parameters, contact=contact_value(gas, equation)))
 
 
 def diffusion(gas: Gas, equation: str) -> float:
-    """D of spheres: Erpenbeck and Wood's, or that of the kinetic equation. Discs have none."""
+    """Compute the coefficient of self-diffusion of spheres; NaN for discs.
+
+    It is Erpenbeck and Wood's for the exact dynamics, otherwise the coefficient of the kinetic equation.
+    """
     if gas.dimension == 2 or (equation == EXACT and not _fluid(gas)):
         return math.nan
     value = float(theory.enskog_diffusion(**gas.parameters, contact=contact_value(gas, equation)))
@@ -56,7 +59,10 @@ def diffusion(gas: Gas, equation: str) -> float:
 
 
 def shear_viscosity(gas: Gas, equation: str) -> float:
-    """Chapman and Enskog's, Enskog's, or that with the ratio that was measured in a dense gas of spheres."""
+    """Compute the shear viscosity of Chapman and Enskog, or of Enskog.
+
+    For the exact dynamics of spheres it is multiplied by the ratio that was measured in a dense gas.
+    """
     value = float(theory.enskog_viscosity(**_transported(gas, equation)))
     if equation == EXACT and gas.dimension == 3:
         return value * float(theory.viscosity_ratio(gas.packing_fraction)) if _fluid(gas) else math.nan
@@ -64,29 +70,32 @@ def shear_viscosity(gas: Gas, equation: str) -> float:
 
 
 def bulk_viscosity(gas: Gas, equation: str) -> float:
-    """Enskog's; 0 of points."""
+    """Compute Enskog's bulk viscosity; 0 for points."""
     return float(theory.enskog_bulk_viscosity(**_transported(gas, equation)))
 
 
 def thermal_conductivity(gas: Gas, equation: str) -> float:
-    """Chapman and Enskog's, or Enskog's."""
+    """Compute the thermal conductivity of Chapman and Enskog, or of Enskog."""
     return float(theory.enskog_conductivity(**_transported(gas, equation)))
 
 
 def chemical_potential(gas: Gas, equation: str) -> float:
-    """Beyond an ideal gas's, over k_B T."""
+    """Compute the excess chemical potential divided by k_B T."""
     if equation != EXACT:
         return 0.0 if equation == BOLTZMANN else math.nan
     return float(theory.excess_chemical_potential(gas.packing_fraction, gas.dimension))
 
 
 def _fluid(gas: Gas) -> bool:
-    """Whether spheres are as dilute as those of which transport was measured."""
+    """Return True if spheres are in the range of density in which transport was measured."""
     return gas.packing_fraction <= theory.ERPENBECK_WOOD_HIGHEST
 
 
 def _transported(gas: Gas, equation: str) -> dict[str, Any]:
-    """The arguments of Enskog's transport coefficients: those of points do not depend on the density."""
+    """Return the arguments of Enskog's transport coefficients.
+
+    The coefficients of points do not depend on the density.
+    """
     if equation == BOLTZMANN:
         return {**gas.parameters, "packing_fraction": 0.0, "contact": 1.0}
     return {**gas.parameters, "contact": contact_value(gas, equation)}

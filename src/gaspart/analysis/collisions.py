@@ -1,8 +1,8 @@
-"""A data set of collisions: the particles, the geometry of the contact, and the flights before it.
+"""Data set of collisions: the particles, the geometry of the contact, the flights before it.
 
-What kinetic theory averages over, one row per collision of two particles: free times and free paths since
-each particle's last event, the normal at contact, the speeds of approach. Hits of walls end flights but are
-no rows.
+These are the quantities that kinetic theory averages over, one row per collision of two particles: free times
+and free paths since each particle's last event, the normal at contact, the speeds of approach. Hits of walls
+end flights but are no rows.
 """
 
 from __future__ import annotations
@@ -200,7 +200,7 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
     Parameters
     ----------
     data : Dataset
-        Collisions, as of `collision_data`.
+        Collisions, from `collision_data`.
     blocks : int, default 20
         Number of blocks whose scatter is the error.
 
@@ -217,7 +217,7 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
     Notes
     -----
     chi = 2 M / (N t S rho sigma^(d-1) sqrt(kT / (pi m))), with S = 2 pi (2D) or 4 pi (3D), exact in
-    equilibrium [1]_. The temperature is that of the mean approach, sqrt(pi kT / m).
+    equilibrium [1]_. The temperature follows from the mean approach, sqrt(pi kT / m).
 
     References
     ----------
@@ -253,7 +253,7 @@ def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tupl
     Parameters
     ----------
     events : dict of str to ndarray
-        The events, as of `Simulation.events`.
+        The events, from `Simulation.events`.
     last : tuple of ndarray
         Time and velocity of each particle after its last event before these.
     scene : Scene
@@ -399,7 +399,10 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
 
 
 def _theory(simulation: Simulation, edges: np.ndarray) -> tuple[np.ndarray, tuple[float, float]] | None:
-    """(bins,) the mean density in each bin, and the mean time and path; None where there is no theory."""
+    """Compute the expected density of free times in each bin, and their mean time and path.
+
+    The density has the shape (bins,). None if there is no theory.
+    """
     gas, state = simulation.scene.gas, simulation.state
     if gas is None or gas.packing_fraction > theory.HIGHEST_PACKING_FRACTION[gas.dimension]:
         return None

@@ -42,12 +42,12 @@ def replicas(
     Parameters
     ----------
     name : str
-        Name of the observable as of `gaspart measure`.
+        Name of the observable as in `gaspart measure`.
     sources : sequence of str, Path, Dataset or Simulation
         At least two runs of different seeds or initial states: trajectories, by their paths or open, or
         simulations.
     start : float, [time], optional
-        Frames before this time are discarded, as of the observable's function.
+        Frames before this time are discarded, as by the observable's function.
     end : float, [time], optional
         Frames after this time are discarded. Default: none.
     **selection
@@ -119,10 +119,16 @@ def _in_joint_bins(
 
 @dataclass(frozen=True)
 class _Recipe:
-    """What a run was made from, and what it has become. name: of the run, for its user; settings: its scene
-    and engine; seed; draws: whether this matters after the start; times: of its states, all until the last
-    one if `every`; state: the bits of that at a time, as a file has them; impulses: what it has kept of
-    them."""
+    """Recipe of a run, and its outcome.
+
+    name : name of the run, for its user.
+    settings : scene and engine.
+    seed : seed.
+    draws : True if the seed matters after the start.
+    times : times of its states, all until the last one if `every`.
+    state : function that returns the bits of the state at a time, as a file has them.
+    impulses : the impulses that it has stored.
+    """
 
     name: str
     settings: dict[str, Any]
@@ -135,7 +141,7 @@ class _Recipe:
 
 
 def _recipe(run: Any, name: str) -> _Recipe:
-    """The recipe of an open trajectory or a simulation."""
+    """Return the recipe of an open trajectory or a simulation."""
     if isinstance(run, Simulation):
         settings = {"scene": run.scene.to_dict(), "engine": engine_to_dict(run.engine)}
         times = np.array([0.0, run.time])
@@ -153,18 +159,21 @@ def _recipe(run: Any, name: str) -> _Recipe:
 
 
 def _named(tally: ImpulseTally | None) -> str:
-    """What a run has kept of impulses, as its user asked for it."""
+    """Return the impulses that a run has stored, in the words of its option."""
     return "none" if tally is None else tally.to_text()
 
 
 def _stored(frames: dict[str, np.ndarray], time: float) -> bytes:
-    """The state of a trajectory in the frame at a time."""
+    """Return the state of a trajectory in the frame at a time."""
     number = int(np.searchsorted(frames["time"], time))
     return _bits(*(frames[one][number] for one in ("coordinates", "velocities") if one in frames))
 
 
 def _simulated(simulation: Simulation, time: float) -> bytes:
-    """The state of a simulation at a time until the present one, for which it is run again."""
+    """Return the state of a simulation at a time until the present one.
+
+    For an earlier time the simulation is run again.
+    """
     if time < simulation.time:
         simulation = simulation.again()
         simulation.advance(until=time)
@@ -173,12 +182,15 @@ def _simulated(simulation: Simulation, time: float) -> bytes:
 
 
 def _bits(*vectors: np.ndarray) -> bytes:
-    """Of positions and velocities (N, d), in single precision."""
+    """Return the bytes of positions and velocities (N, d), in single precision."""
     return np.stack(vectors).astype(np.float32).tobytes()
 
 
 def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
-    """Raise SceneError unless a run is a replica of others: the same but for the seed or the first state."""
+    """Raise SceneError unless a run is a replica of others.
+
+    Replicas differ in nothing but the seed or the first state.
+    """
     for other in others:
         if difference := _difference(recipe.settings, other.settings):
             key, one, two = difference
@@ -194,7 +206,7 @@ def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
 
 
 def _last_common(one: _Recipe, other: _Recipe) -> float | None:
-    """The last time at which both have a state; None if they have not even the first one."""
+    """Return the last time at which both have a state; None without a common start."""
     if one.every and other.every:
         return float(min(one.times[-1], other.times[-1]))
     if one.every or other.every:
@@ -206,7 +218,10 @@ def _last_common(one: _Recipe, other: _Recipe) -> float | None:
 
 
 def _difference(one: Any, two: Any, key: str = "") -> tuple[str, Any, Any] | None:
-    """The first difference of two trees, as its dotted key and both values; None if they are equal."""
+    """Find the first difference of two trees: its dotted key and both values.
+
+    None if they are equal.
+    """
     if isinstance(one, dict) and isinstance(two, dict):
         pairs = {str(name): (one.get(name), two.get(name)) for name in {**one, **two}}
         form = f"{key}.{{}}" if key else "{}"
@@ -240,7 +255,7 @@ def _described(values: np.ndarray) -> str:
 
 
 def _mean(found: list[Observable], recipes: list[_Recipe]) -> Observable:
-    """The mean of independent measurements of one observable, of runs with these recipes."""
+    """Average independent measurements of one observable, of runs with these recipes."""
     first, quantity = found[0], str(found[0].attrs["quantity"])
     dims = first.estimate.dims
     for one, recipe in zip(found[1:], recipes[1:], strict=True):

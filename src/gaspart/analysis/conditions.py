@@ -1,7 +1,7 @@
-"""Where observables are defined: conditions of a scene, each of which raises SceneError with its reason.
+"""Conditions of a scene in which observables are defined; each raises SceneError with its reason.
 
-They are asked before a run is made and when it is measured, so that both refuse alike. A selection is what a
-caller has chosen: `species`, `particles`, `axis`, `at`, `lag`, `per_axis`.
+They are tested before a run is made and when it is measured, so that both reject the same scenes. A selection
+is the choice of a caller: `species`, `particles`, `axis`, `at`, `lag`, `per_axis`.
 """
 
 from __future__ import annotations
@@ -105,8 +105,12 @@ def walled_axis(scene: Scene, selection: Selection) -> None:
 
 
 def walled_axis_of(scene: Scene, name: str | None) -> int:
-    """The number of the named axis, by default of the last one with open faces, or else with walls. Raises
-    SceneError for one without, and for an unknown one."""
+    """Return the number of the named axis.
+
+    The default is the last axis with open faces, or else with walls.
+
+    Raises SceneError for an axis without walls, and for an unknown one.
+    """
     has_axis(scene, {"axis": name})
     walled = [axis for axis, periodic in enumerate(scene.container.periodic) if not periodic]
     axis = "xyz".index(name) if name is not None else max(scene.open_axes or walled, default=0)
@@ -151,7 +155,7 @@ def some_move(scene: Scene, selection: Selection) -> None:
 
 
 def _moving(scene: Scene) -> int:
-    """The number of particles that are not fixed."""
+    """Return the number of particles that are not fixed."""
     return scene.moving_count
 
 
@@ -202,7 +206,10 @@ def _enough(scene: Scene) -> None:
 
 
 def _in_species(scene: Scene, species: Any) -> int:
-    """Moving particles of a species by its number; single particles have the number after the last."""
+    """Count the moving particles of a species, given by its number.
+
+    Single particles have the number after the last species.
+    """
     kinds = len(scene.species) + bool(scene.particles)
     if count_of("species", species) >= kinds:
         raise SceneError("species", species, f"there are {kinds}, numbered from 0")

@@ -34,7 +34,7 @@ _SLIGHT = 1e-6  # of the weight: rounding of the momentum of single-precision ve
 
 
 def compressibility_factor(source: Source, start: float | None = None) -> Observable:
-    """Measure the compressibility factor Z = P V / (N k_B T) of a periodic scene by the virial theorem.
+    """Measure Z = P V / (N k_B T) of a periodic scene by the virial theorem.
 
     Parameters
     ----------
@@ -46,8 +46,8 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
     Returns
     -------
     Observable
-        Z, dimensionless. Theory is that of the fluid, with the correction of first order in 1/N; of mixtures
-        an approximation, without an uncertainty.
+        The compressibility factor Z, dimensionless. Theory is given for the fluid, with the correction of
+        first order in 1/N; of mixtures an approximation, without an uncertainty.
 
     Raises
     ------
@@ -168,7 +168,10 @@ def wall_force(source: Source, start: float | None = None) -> Observable:
 
 @contextmanager
 def _open_walls(source: Source, start: float | None, name: str) -> Iterator[tuple[Run, np.ndarray]]:
-    """Open a run and the ends (K + 1,) of the blocks of an observable of faces. Raises SceneError."""
+    """Open a run, and return the block ends (K + 1,) of an observable of faces.
+
+    Raises SceneError.
+    """
     with open_run(source, start, sheared=True, varying=True) as run:
         require_defined(name, run.scene)
         blocks = min(_BLOCKS, len(run.time) - 1)
@@ -178,7 +181,7 @@ def _open_walls(source: Source, start: float | None, name: str) -> Iterator[tupl
 
 
 def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) -> Observable:
-    """The result of a function of this name, from blocks of a run."""
+    """Return the result of the function of this name, from blocks of a run."""
     name = name_of(function)
     faces, found = on_walls(run, ends, name)
     freedoms = np.full(len(faces), len(found) - 1.0)
@@ -261,14 +264,15 @@ def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndar
 
 
 def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
-    """(K, 2d) momentum that contacts at rest give each face between the frames `ends` (K + 1,).
+    """Compute the momentum (K, 2d) that contacts at rest give each face between frames.
 
-    On a floor it is the difference of both sides in the balance
+    The frames are `ends` (K + 1,). On a floor it is the difference of both sides in the balance
 
-        change of the momentum = its gain by gravity + impulses of the lower face - those of the upper one.
+        change of the momentum = its gain by gravity + impulses of the lower face - impulses of the upper one.
 
-    On a ceiling it is 0; on side walls 0, or NaN if that of a floor is more than a millionth of the weight.
-    Raises SceneError if particles rest where something else than faces may carry them.
+
+    On a ceiling it is 0; on side walls 0, or NaN if the momentum on a floor is more than a millionth of the
+    weight. Raises SceneError if particles rest where something other than faces may carry them.
     """
     carried = np.zeros((len(ends) - 1, 2 * run.dimension))
     if not run.has_gravity or (run.is_subset and not run.dissipates):

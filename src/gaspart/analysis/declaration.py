@@ -1,4 +1,4 @@
-"""The form in which an observable is declared: its units, its result, where it is defined, how it transforms.
+"""Declaration of an observable: its units, its result, its conditions, its transformations.
 
 The declarations are in `observables`.
 """
@@ -22,8 +22,10 @@ _EXPONENT = re.compile(r"\^(?:\((\d*d?)-(\d*d?)\)|d)")
 
 
 def units_in(units: str, dimension: int) -> str:
-    """Units as declared, with exponents that depend on the dimension d as numbers: `mass length^(2-d) / time`
-    is `mass length^-1 / time` in three."""
+    """Replace exponents of declared units that depend on the dimension d by numbers.
+
+    For example, `mass length^(2-d) / time` is `mass length^-1 / time` in three dimensions.
+    """
 
     def number(found: re.Match[str]) -> str:
         if found[1] is None:
@@ -35,8 +37,10 @@ def units_in(units: str, dimension: int) -> str:
 
 
 def powers_of(units: str, dimension: int) -> tuple[int, int, int]:
-    """The powers of length, mass and time in units as declared: by which a value grows if these units become
-    smaller."""
+    """Return the powers of length, mass and time in declared units.
+
+    A value grows with these powers if the units become smaller.
+    """
     total = [0, 0, 0]
     above, _, below = units_in(units, dimension).partition(" / ")
     for sign, part in ((1, above), (-1, below)):
@@ -48,15 +52,18 @@ def powers_of(units: str, dimension: int) -> tuple[int, int, int]:
 
 @dataclass(frozen=True)
 class Along:
-    """A dimension of a result, and what a change of the description does to it.
+    """Dimension of a result, and the effect of a change of the description on it.
 
-    units: of its coordinate; names: whether its coordinate has names, one value for each. exchanged: what an
-    exchange of axes does: "" nothing, "names" the names follow the axes, "chosen" the values are those along
-    the other axis. mirrored: what a mirror across an axis does: "" nothing, "ends" the low and the high face
-    change places, "reversed" the values along this axis are in reverse order, "signs" a component changes
-    its sign for each time that it names the axis. shifted: what a shift of all particles along a periodic
-    axis does: "" nothing, "moved" the values move along the axis. relabelled: whether the names follow the
-    numbers of the species.
+    units : units of its coordinate.
+    names : True if its coordinate has names, one value for each.
+    exchanged : effect of an exchange of axes: "" none, "names" the names follow the axes, "chosen" the values
+        are those along the other axis.
+    mirrored : effect of a mirror across an axis: "" none, "ends" the low and the high face change places,
+        "reversed" the values along this axis are in reverse order, "signs" a component changes its sign for
+        each time that it names the axis.
+    shifted : effect of a shift of all particles along a periodic axis: "" none, "moved" the values move along
+        the axis.
+    relabelled : True if the names follow the numbers of the species.
     """
 
     meaning: str
@@ -84,40 +91,60 @@ DIMENSIONS: dict[str, Along] = {
 
 @dataclass(frozen=True)
 class Named:
-    """An observable that has a name.
+    """Observable that has a name.
 
-    What it is. title: its name in words, and of its values on an axis, with its symbol; definition: in a
-    sentence, for a list; symbol; units, in powers of length, mass, time and energy with k_B = 1 (`units_in`);
-    function: of `gaspart.analysis`, with `arguments`; along: dimensions of the result, none of a number (of
-    `DIMENSIONS`); selections: keyword arguments that restrict it, or give it along axes.
+    Its meaning:
 
-    Where it is. needs: what a run must have kept: "" nothing, "paths" of particles, "pairs" the collisions of
-    each pair of species, "fluxes" correlations of the stress and the heat flux, or "shear" the momentum along
-    faces, which some engines tally; conditions: of a scene, see `Condition`; whole: whether the file must
-    have all particles: "always", "never", "mixed", of several kinds of them, or "unless fluxes" are kept,
-    which have the temperature; varying: whether it is defined where particles come and go through open faces;
-    ends: keyword argument of the function with the end of its bins, if that follows from the run; nothing:
-    equations that an engine solves (`Engine.equation`) whose runs say nothing of it, each with the reason.
+    title : its name in words, and of its values on an axis, with its symbol.
+    definition : a sentence, for a list.
+    symbol : the symbol.
+    units : powers of length, mass, time and energy with k_B = 1 (`units_in`).
+    function : function of `gaspart.analysis`, called with `arguments`.
+    along : dimensions of the result, from `DIMENSIONS`; empty for a number.
+    selections : keyword arguments that restrict it, or give it along axes.
 
-    What it is compared with. theory: a function in `analysis.expected`, which knows the equation of the
-    engine; bulk: a function of `analysis.bulk`, of an infinite plain gas by each equation, and source: where
-    its value for particles that touch is from, with {state} for the equation of state; mixture: a function of
-    `gaspart.theory` of a mixture; "" without one.
+    Where it is defined:
 
-    How it transforms. Units and `along` state it for changes of units, exchanges of axes, mirrors and shifts.
-    moving: whether it is the same in a frame that moves uniformly; scatter: what its uncertainty is the
-    scatter of, parts of the "run", or groups of "particles", which other numbers of the particles change;
-    merged: what becomes of it if one species is stated as two that are equal: "" nothing, "split" a value for
-    each of their pairs, or "lost" it is not defined for one of the two.
+    needs : data that a run must have stored: "" none, "paths" of particles, "pairs" the collisions of each
+        pair of species, "fluxes" correlations of the stress and the heat flux, or "shear" the momentum along
+        faces, which some engines tally.
+    conditions : conditions of a scene, see `Condition`.
+    whole : requirement that the file has all particles: "always", "never", "mixed", if there are several
+        kinds of particles, or "unless fluxes" are stored, which include the temperature.
+    varying : True if it is defined where particles come and go through open faces.
+    ends : keyword argument of the function with the end of its bins, if that follows from the run.
+    nothing : equations that an engine solves (`Engine.equation`) whose runs do not determine it, each with
+        the reason.
 
-    How it is planned. power: of the temperature that it grows with; memory: whether it depends on the memory
-    of collisions, which no kinetic equation has; lags: of its correlations in a pilot, 0 without; samples:
-    what frames are spaced for: "" a mean over time, "structure" independent positions, "paths" lags;
-    of_impulses: whether it is of the impulses that all walls are given; by_impulses: whether impulses that a
-    run keeps make it more accurate; ends_runs: whether `--until` may require it; drives: conditions of a
-    scene in whose steady state it is not 0, asked besides `conditions` before an accuracy is; tabulated:
-    whether costs and errors are in the table; relative_to: what its accuracy is relative to, each "value",
-    or their "norm" where some vanish on average.
+    The theory that it is compared with:
+
+    theory : function in `analysis.expected`, which knows the equation of the engine.
+    bulk : function of `analysis.bulk`, of an infinite plain gas by each equation.
+    source : origin of its value for particles that touch, with {state} for the equation of state.
+    mixture : function of `gaspart.theory` of a mixture; "" without one.
+
+    Its transformations; units and `along` state changes of units, exchanges of axes, mirrors and shifts:
+
+    moving : True if it is the same in a frame that moves uniformly.
+    scatter : samples whose scatter is its uncertainty: parts of the "run", or groups of "particles", which
+        other numbers of the particles change.
+    merged : effect of stating one species as two equal ones: "" none, "split" a value for each of their
+        pairs, or "lost" it is not defined for one of the two.
+
+    The planning of runs:
+
+    power : power of the temperature that it grows with.
+    memory : True if it depends on the memory of collisions, which no kinetic equation has.
+    lags : number of lags of its correlations in a pilot, 0 without.
+    samples : purpose of the spacing of frames: "" a mean over time, "structure" independent positions,
+        "paths" lags.
+    of_impulses : True if it is computed from the impulses that all walls are given.
+    by_impulses : True if impulses that a run stores make it more accurate.
+    ends_runs : True if `--until` may require it.
+    drives : conditions of a scene in whose steady state it is not 0, tested in addition to `conditions`
+        before an accuracy is planned.
+    tabulated : True if costs and errors are in the table.
+    relative_to : reference of its relative accuracy, each "value", or their "norm" if some vanish on average.
     """
 
     title: str
@@ -171,5 +198,5 @@ class Named:
         return self.definition + options.get(self.needs, "")
 
     def powers(self, dimension: int) -> tuple[int, int, int]:
-        """Of length, mass and time in its units."""
+        """Return the powers of length, mass and time in its units."""
         return powers_of(self.units, dimension)

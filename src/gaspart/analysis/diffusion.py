@@ -137,8 +137,11 @@ def diffusion_coefficient(
 
 
 def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
-    """Return lags in frames, of 6, 12, 24, 48 ... collisions of a particle, as far as each of the parts of a
-    run has twice as many frames. Raises SceneError as `lags_of_slopes`."""
+    """Return lags in frames, of 6, 12, 24, 48 ... collisions of a particle.
+
+    The longest lag is at most half of the frames of each of the parts of a run. Raises SceneError as
+    `lags_of_slopes`.
+    """
     lags = lags_of_slopes(run, stride, parts)
     while 4 * lags[-1] * stride * parts <= len(run.time):
         lags = (*lags, 2 * lags[-1])
@@ -151,8 +154,11 @@ def _rate(run: Run) -> float:
 
 
 def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, ...]:
-    """The numbers of frames before and after a lag. Raises SceneError for one that is shorter than the time
-    between frames, or longer than half of each of the equal parts of a run."""
+    """Return the numbers of frames one below and one above a lag.
+
+    Raises SceneError for a lag shorter than the time between frames, or longer than half of each of the equal
+    parts of a run.
+    """
     interval = run.interval * stride
     frames = len(run.time[::stride]) // parts
     longest = (frames // 2 - 1) * interval
@@ -241,8 +247,11 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]
 
 
 def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
-    """(d,) along which axes the total momentum of the moving particles is kept for so many frames: where it
-    is conserved, and where more than half of it is left, as with a few obstacles among many particles."""
+    """Return the axes (d,) along which the momentum of the moving particles persists for `lag` frames.
+
+    These are the axes where it is conserved, and where more than half of it remains, for example with a few
+    obstacles among many particles.
+    """
     velocities = run.motion.velocities if run.flow_axes else run.velocities[:, run.moving]
     momentum = np.einsum("tnd,n->td", velocities, run.masses[run.moving])
     left = (momentum[lag:] * momentum[:-lag]).mean(axis=0)
@@ -250,7 +259,10 @@ def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
 
 
 def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
-    """(G, stretches, d) of the squared displacements between consecutive lags, over two."""
+    """Compute half of the slopes of the squared displacements between consecutive lags.
+
+    The shape is (G, stretches, d).
+    """
     squares = np.array(
         [
             [((path[lag:] - path[: len(path) - lag]) ** 2).mean(axis=(0, 1)) for lag in lags]
@@ -261,11 +273,11 @@ def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
 
 
 def settled_slope(slopes: np.ndarray, sizes: Sequence[int] | None = None) -> tuple[int, np.ndarray | float]:
-    """Find the slope that no longer changes, among slopes (G, K, ...) of groups at increasing lags.
+    """Find the slope that no longer changes, among slopes (G, K, ...) at increasing lags.
 
     Returns its number and the size of the tail that it lacks: 0 if the slope equals the one before within its
-    error along every axis. sizes (G,): numbers of particles. Raises SceneError if the last slopes change by
-    more than a slow tail makes them.
+    error along every axis. `sizes` (G,) are the numbers of particles in the groups. Raises SceneError if the
+    last slopes change by more than a slow tail explains.
     """
     for k in range(1, slopes.shape[1]):
         change, error = means_of(slopes[:, k] - slopes[:, k - 1], sizes)
@@ -347,11 +359,11 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
 
 
 def _separation(run: Run) -> np.ndarray:
-    """(T, d) X_1 - X_2."""
+    """Compute X_1 - X_2, the separation of the centres of two species, shape (T, d)."""
     paths = unwrapped(run)
     return np.subtract(*(paths[:, run.species == kind].mean(axis=1) for kind in (0, 1)))
 
 
 def _squares(path: np.ndarray, lag: int) -> np.ndarray:
-    """(T - lag,) the squared change over a lag, from each time on."""
+    """Compute the squared change over a lag, from each time on, shape (T - lag,)."""
     return ((path[lag:] - path[:-lag]) ** 2).sum(axis=1)

@@ -1,8 +1,8 @@
-"""Drift of a run: what changes from the first to the second half of its measured part beyond the noise.
+"""Drift of a run: change between both halves of its measured part beyond the noise.
 
-A line is fitted to a series of n values. Its rise over the run has the variance 12 S / n, S the spectrum at
-frequency 0 of what a cubic leaves of the series, from `statistics.correlated_mean`: the drift itself is not
-in its error, as it is in the error of the mean.
+A line is fitted to a series of n values. Its rise over the run has the variance 12 S / n, with S the spectrum
+at frequency 0 of the series without its cubic part, from `statistics.correlated_mean`: the drift itself is
+not in its error, as it is in the error of the mean.
 """
 
 from __future__ import annotations

@@ -17,16 +17,17 @@ Number = Any
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """A number and its standard uncertainty, 0 where it is exact; or an array of them.
+    """Number and its standard uncertainty, 0 where it is exact; or an array of such numbers.
 
-    freedom: degrees of freedom of the uncertainty, if it comes from the scatter of a few samples (their
-    number less one); infinite if it is known otherwise. A deviation is then distributed as Student's t. Sums,
-    products and quotients propagate the uncertainties of independent numbers to first order, and the degrees
-    of freedom by the formula of Welch and Satterthwaite (Biometrics Bulletin 2, 110 (1946)).
+    `freedom` is the number of degrees of freedom of the uncertainty, if it comes from the scatter of a few
+    samples (their number less one); infinite if it is known otherwise. A deviation is then distributed as
+    Student's t. Sums, products and quotients propagate the uncertainties of independent numbers to first
+    order, and the degrees of freedom by the formula of Welch and Satterthwaite (Biometrics Bulletin 2, 110
+    (1946)).
 
-    Of arrays, which broadcast to one shape, every element is a number of its own, and is propagated as a
-    single one would be: to the last bit. An estimate of an array has a length, can be iterated over along its
-    first axis, and indexed; the array is not to be changed. Raises ValueError for a negative uncertainty, for
+    In arrays, which broadcast to one shape, every element is a number of its own, and is propagated as a
+    single number: to the last bit. An estimate of an array has a length, can be iterated over along its first
+    axis, and indexed; the array must not be changed. Raises ValueError for a negative uncertainty, for
     degrees of freedom that are not positive, and for arrays of shapes that do not broadcast.
     """
 
@@ -49,8 +50,10 @@ class Estimate:
 
     @classmethod
     def of(cls, dataset: xarray.Dataset, name: str) -> Estimate:
-        """The variable `name` of a dataset, with the variable `name`_error as its uncertainty, and
-        `name`_freedom, where there is one and it is positive, as its degrees of freedom."""
+        """Return the variable `name` of a dataset, with the variable `name`_error as its uncertainty.
+
+        The variable `name`_freedom, where it exists and is positive, has its degrees of freedom.
+        """
         column, error = dataset[name], dataset[f"{name}_error"]
         if f"{name}_freedom" not in dataset:
             return cls(column, error)
@@ -60,7 +63,7 @@ class Estimate:
 
     @classmethod
     def stack(cls, estimates: Sequence[Estimate]) -> Estimate:
-        """Estimates of one shape along a new first axis; of none, an empty array."""
+        """Join estimates of one shape along a new first axis; without any, return an empty array."""
         parts = ([one._parts[k] for one in estimates] for k in range(3))
         return cls(*parts)
 
@@ -143,7 +146,10 @@ class Estimate:
 
 
 def concise(value: float, error: float) -> str:
-    """A number with its uncertainty in the last two digits, as 1.242(20); without one, to six digits."""
+    """Format a number with its uncertainty in the last two digits, as 1.242(20).
+
+    Without an uncertainty the number has six digits.
+    """
     if not (0.0 < error < math.inf and math.isfinite(value)):
         return f"{value:.6g}"
     largest = max(abs(value), error)
@@ -157,12 +163,12 @@ def concise(value: float, error: float) -> str:
 
 
 def as_estimate(number: Estimate | Number) -> Estimate:
-    """An estimate as it is, another number or array as an exact one."""
+    """Return an estimate unchanged, another number or array as an exact estimate."""
     return number if isinstance(number, Estimate) else Estimate(number)
 
 
 def _floats(number: Number) -> float | np.ndarray:
-    """A number as a float, an array of at least one dimension as an array of floats."""
+    """Convert a number to a float, an array to an array of floats."""
     if isinstance(number, (float, int)):
         return float(number)
     import numpy as np
@@ -172,7 +178,7 @@ def _floats(number: Number) -> float | np.ndarray:
 
 
 def _arrays(parts: list) -> list[np.ndarray]:
-    """Copies of arrays, of one shape, which nobody can change."""
+    """Return read-only copies of arrays, broadcast to one shape."""
     import numpy as np
 
     copies = [np.array(part) for part in np.broadcast_arrays(*parts)]
@@ -186,12 +192,15 @@ def _any(wrong: bool | np.ndarray) -> bool:
 
 
 def _sum(value: Number, *parts: tuple[Number, Number]) -> Estimate:
-    """The value with the uncertainty of two parts, each (error, degrees of freedom)."""
+    """Return the value with the uncertainty of two parts, each (error, degrees of freedom)."""
     return Estimate(value, *_each(_together, 2)(*parts[0], *parts[1]))
 
 
 def _each(function: Callable[..., Any], results: int) -> Callable[..., Any]:
-    """A function of floats, also of arrays: math and numpy differ in last bits."""
+    """Extend a function of floats to arrays.
+
+    Floats are not passed through numpy: math and numpy differ in the last bits.
+    """
 
     def of_any(*numbers: Number) -> Any:
         if all(isinstance(number, float) for number in numbers):
@@ -205,7 +214,7 @@ def _each(function: Callable[..., Any], results: int) -> Callable[..., Any]:
 
 
 def _together(error: float, freedom: float, other: float, other_freedom: float) -> tuple[float, float]:
-    """The error of a sum of two numbers, from their errors, and its degrees of freedom."""
+    """Compute the error of a sum of two numbers, and its degrees of freedom."""
     both = math.hypot(error, other)
     if both == 0.0 or not math.isfinite(both):
         return both, math.inf
@@ -214,7 +223,7 @@ def _together(error: float, freedom: float, other: float, other_freedom: float) 
 
 
 def _deviation(value: float, error: float, freedom: float) -> float:
-    """See `Estimate.deviation`."""
+    """Compute the deviation of `Estimate.deviation` for one number."""
     if error == 0.0:
         return math.copysign(math.inf, value) if value else 0.0
     t = value / error

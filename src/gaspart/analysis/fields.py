@@ -60,8 +60,8 @@ def field(
     Notes
     -----
     The flow of a temperature is taken in these cells, and across faces that slide; before faces that move
-    along their normal in layers of each frame (see `gaspart.analysis.flow`). Errors are as of `profile`, and
-    so is the density along one axis of a run that has stored its impulses.
+    along their normal in layers of each frame (see `gaspart.analysis.flow`). Errors are defined as in
+    `profile`, and so is the density along one axis of a run that has stored its impulses.
 
     Examples
     --------
@@ -100,7 +100,7 @@ def field(
 
 
 def _axes(run: Run, axes: str | None) -> list[int]:
-    """The numbers of the named axes. Raises SceneError."""
+    """Return the numbers of the named axes; raise SceneError for others."""
     names = "xyz"[: run.dimension]
     wanted = "xy" if axes is None else axes
     if not wanted or len(set(wanted)) < len(wanted) or not set(wanted) <= set(names):
@@ -109,7 +109,7 @@ def _axes(run: Run, axes: str | None) -> list[int]:
 
 
 def _numbers(cells: int | Sequence[int], axes: int) -> list[int]:
-    """The number of cells along each axis. Raises SceneError."""
+    """Return the number of cells along each axis; raise SceneError for others."""
     each = [cells] * axes if isinstance(cells, int) else list(cells)
     if len(each) != axes:
         raise SceneError("cells", each, f"must be one number, or {axes}")
@@ -155,7 +155,7 @@ def velocity_profile(
     Notes
     -----
     It is the mean velocity of the particles, not of their mass. Of sheared gases and between sliding walls it
-    is in the scene's frame of reference. Uncertainties are as of `field`.
+    is in the scene's frame of reference. Uncertainties are defined as in `field`.
 
     Theory: the flow of sheared images; between sliding plates free flight above a Knudsen number of 100, and
     a linear flow with slip below 0.1, and in the same range the parabola of dilute spheres that a force

@@ -1,24 +1,25 @@
-"""The rule of motion: what velocities, displacements and temperatures are relative to.
+"""Reference of motion: the flow relative to which velocities, displacements and temperatures are measured.
 
 Temperature, speeds, msd, vacf, D and all of `by_species` are about the same local flow, by default; with
 about="rest", about the container at rest, whatever flows.
 
-Of a group of particles in local equilibrium, u = sum m v / M their mean velocity, M their mass, a particle's
-component has <m (v - u)^2> = (1 - m / M) k_B T, exactly, whatever u is: the part m / M of a degree of freedom
-is spent on u. What is taken as a group depends on how the gas can move:
+In a group of particles in local equilibrium, let u = sum m v / M be their mean velocity, M their mass. A
+component of a particle has <m (v - u)^2> = (1 - m / M) k_B T, exactly, for any u: the part m / M of a degree
+of freedom is spent on u. The group depends on how the gas can move:
 
 - as a whole: all particles of a frame, along axes on which their momentum is conserved;
 - between faces that slide, under a force along a periodic axis, or in a `wind`: the particles of a cell in
   all frames, a steady flow;
-- before faces that move along their normal, and between open ones: those of a cell in one frame, since the
-  flow changes.
+- before faces that move along their normal, and between open ones: the particles of a cell in one frame,
+  since the flow changes.
 
-A flow that is known, between sheared faces (`LeesEdwards`), is taken off before.
 
-A displacement about a steady flow is that of the particle less the time integral of the flow where it is, by
-the trapezoidal rule over frames: <|dr|^2> is then twice the integral of the velocity autocorrelation about
-the flow, without what a gradient of the flow adds (Taylor's dispersion). About a flow that changes it is not
-known from frames.
+A flow that is known, between sheared faces (`LeesEdwards`), is subtracted before.
+
+A displacement about a steady flow is the displacement of the particle less the time integral of the flow at
+its position, by the trapezoidal rule over frames: <|dr|^2> is then twice the integral of the velocity
+autocorrelation about the flow, without the contribution of a gradient of the flow (Taylor's dispersion).
+About a flow that changes, it is not known from frames.
 """
 
 from __future__ import annotations
@@ -51,8 +52,11 @@ _NUMBERS = 2_000_000  # of all intervals together
 
 
 def sides(run: Run, times: np.ndarray) -> np.ndarray:
-    """(S, d, 2) the lower and the upper end of the container along each axis at times (S,) of the run. A
-    piston moves evenly between frames. Raises SceneError for frames without its place."""
+    """Return the lower and the upper end (S, d, 2) of the container along each axis.
+
+    The times (S,) are times of the run. A piston moves uniformly between frames. Raises SceneError for frames
+    without its position.
+    """
     scene = run.scene
     found = np.zeros((len(times), run.dimension, 2))
     found[:, :, 1] = scene.container.lengths
@@ -68,19 +72,22 @@ def sides(run: Run, times: np.ndarray) -> np.ndarray:
 
 
 def touched(run: Run, times: np.ndarray) -> np.ndarray:
-    """(S, d) sides of the box that centres of the largest moving particles can reach, at times (S,)."""
+    """Return the sides (S, d) of the box that centres of moving particles can reach.
+
+    The times have the shape (S,); the largest moving particles count.
+    """
     lower, upper = run.scene.reach(run.scene.largest_moving_radius)
     margins = np.array(run.scene.container.lengths) - np.subtract(upper, lower)
     return np.diff(sides(run, times), axis=2)[:, :, 0] - margins
 
 
 def face_areas(run: Run) -> np.ndarray:
-    """Compute the area that a pressure or a flux on each face is divided by, its mean over each interval
-    between frames, (T - 1, 2d): the area that centres can reach.
+    """Compute the area by which a pressure or a flux on each face is divided.
 
-    Across the axis of a piston with a load it is the area of the container, by which the load is defined. If
-    particles of several sizes reach other areas, it is NaN: what faces are given is tallied per area then.
-    Faces move where no fixed particle or interior wall is.
+    The shape is (T - 1, 2d). It is the area that centres can reach, its mean over each interval between
+    frames. Across the axis of a piston with a load it is the area of the container, by which the load is
+    defined. If particles of several sizes reach different areas, it is NaN: the momentum given to faces is
+    then tallied per area. Faces move only where no fixed particle or interior wall is.
     """
     scene, intervals = run.scene, len(run.time) - 1
     if scene.has_unequal_areas:
@@ -98,8 +105,10 @@ def face_areas(run: Run) -> np.ndarray:
 
 
 def _mean_areas(run: Run) -> np.ndarray:
-    """(T - 1, 2d) areas without obstacles, their means over each interval between frames: of a face that
-    moves, over instants that are spread evenly, but not at its period."""
+    """Compute areas (T - 1, 2d) without obstacles, averaged over each interval between frames.
+
+    If a face moves, the mean is over instants that are spread evenly, but not at the period of the face.
+    """
     intervals = len(run.time) - 1
     number = int(np.clip(_NUMBERS // intervals, *_INSTANTS))
     parts = (np.arange(number) + np.arange(1, number + 1) * _GOLDEN % 1.0) / number
@@ -109,12 +118,12 @@ def _mean_areas(run: Run) -> np.ndarray:
 
 
 def per_area(run: Run, given: np.ndarray, tallied: str) -> np.ndarray:
-    """Divide what each face is given in each interval between frames, (T - 1, 2d, ...), by the area that
-    centres can reach.
+    """Divide what each face is given per interval by the area that centres reach.
 
-    If particles of several sizes reach other areas, it is the sum over sizes of what particles of each give
-    divided by their area, by the tally of this name, with the component along the normal where `given` has
-    none. NaN of faces whose area then changes with time. Raises SceneError for a file without that tally.
+    If particles of several sizes reach different areas, it is the sum over sizes of what the particles of
+    each size give divided by their area, from the tally of this name, with the component along the normal
+    where `given` has no components. NaN for faces whose area then changes with time. Raises SceneError for a
+    file without that tally.
     """
     areas = face_areas(run)
     found = given / areas.reshape(*areas.shape, *[1] * (given.ndim - 2))
@@ -136,14 +145,17 @@ def per_area(run: Run, given: np.ndarray, tallied: str) -> np.ndarray:
 
 
 def _across(lengths: np.ndarray) -> np.ndarray:
-    """(..., d) the product of the other sides (..., d)."""
+    """Compute the product of the other sides for each side (..., d)."""
     axes = range(lengths.shape[-1])
     return np.stack([np.delete(lengths, axis, axis=-1).prod(axis=-1) for axis in axes], axis=-1)
 
 
 def left_by_obstacles(run: Run, radius: float, axis: int, edges: np.ndarray) -> np.ndarray:
-    """(bins,) the part of each bin along an axis that fixed particles leave to centres of particles of this
-    radius: that of `_POINTS` points, spread evenly over the bin."""
+    """Compute the fraction (bins,) of each bin along an axis that is accessible to particle centres.
+
+    Fixed particles exclude the rest for particles of this radius. It is the fraction of `_POINTS` points,
+    spread evenly over the bin.
+    """
     container, fixed = run.scene.container, ~np.isfinite(run.masses)
     lengths, widths = np.array(container.lengths), np.diff(edges)
     shares = np.empty(len(widths))
@@ -178,7 +190,7 @@ class Grid:
 
     @classmethod
     def line(cls, lower: float, upper: float, number: int) -> Grid:
-        """Cells along one axis."""
+        """Return cells along one axis."""
         return cls((float(lower),), (float(upper),), (int(number),))
 
     @cached_property
@@ -188,24 +200,27 @@ class Grid:
 
     @property
     def edges(self) -> list[np.ndarray]:
-        """Of the cells along each axis, (cells + 1,)."""
+        """Edges of the cells along each axis, shape (cells + 1,)."""
         sides = zip(self.lower, self.upper, self.numbers, strict=True)
         return [np.linspace(low, high, number + 1) for low, high, number in sides]
 
     @property
     def middles(self) -> list[np.ndarray]:
-        """Of the cells along each axis, (cells,)."""
+        """Middles of the cells along each axis, shape (cells,)."""
         return [0.5 * (edge[1:] + edge[:-1]) for edge in self.edges]
 
     @property
     def volume(self) -> float:
-        """Of one cell, along its axes."""
+        """Volume of one cell, along its axes."""
         sides = zip(self.lower, self.upper, self.numbers, strict=True)
         return math.prod((high - low) / number for low, high, number in sides)
 
     def cells(self, places: np.ndarray, inside: bool = False) -> np.ndarray:
-        """(...) the number of the cell at each place (..., A), -1 outside and at none (NaN). The upper end
-        belongs to the last cell. inside: what rounding put outside counts to the nearest cell."""
+        """Return the number of the cell at each position (..., A); -1 outside and at NaN.
+
+        The upper end belongs to the last cell. If `inside`, a position that rounding put outside counts to
+        the nearest cell.
+        """
         shape = np.shape(places)[:-1]
         found, outside = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=bool)
         for k, (low, high, number) in enumerate(zip(self.lower, self.upper, self.numbers, strict=True)):
@@ -223,10 +238,12 @@ class Grid:
         weights: np.ndarray | None = None,
         blocks: np.ndarray | None = None,
     ) -> np.ndarray:
-        """(*numbers) the sum of weights, or the number of particles, in each cell.
+        """Sum weights, or count particles, in each cell, shape (*numbers).
 
-        cells: as of `cells`; weights: of a shape that extends to that of cells. blocks: the number of the
-        block of each row (T,) of cells (T, ...): the sums are those of each block, (blocks, *numbers).
+        cells : numbers of cells, from `cells`.
+        weights : array of a shape that extends to the shape of `cells`.
+        blocks : number of the block of each row (T,) of cells (T, ...); the sums are then of each block,
+            (blocks, *numbers).
         """
         number = 1 if blocks is None else int(blocks.max(initial=-1)) + 1
         slot = cells
@@ -248,31 +265,39 @@ _BLOWS = 3.0  # standard deviations of equilibrium from which on a mean momentum
 
 @dataclass(frozen=True)
 class Peculiar:
-    """Velocities (T, M, d) of the M moving particles about the mean motion, and the degrees of freedom of
-    their components, of a shape that extends to this: 1, less what is spent on the mean motion."""
+    """Velocities (T, M, d) of the M moving particles about the mean motion.
+
+    `freedom` are the degrees of freedom of their components, of a shape that extends to this: 1, less the
+    part that is spent on the mean motion.
+    """
 
     velocities: np.ndarray
     freedom: np.ndarray
 
     def energies(self, masses: np.ndarray) -> np.ndarray:
-        """(T, M) twice the kinetic energy of each particle of masses (M,)."""
+        """Compute twice the kinetic energy (T, M) of each particle of masses (M,)."""
         return np.asarray(masses * (self.velocities**2).sum(axis=2))
 
     def freedoms(self) -> np.ndarray:
-        """(T, M) degrees of freedom of each particle."""
+        """Return the degrees of freedom of each particle, shape (T, M)."""
         whole = np.broadcast_to(self.freedom, self.velocities.shape)
         return np.asarray(whole.sum(axis=2))
 
 
 def about_the_whole(run: Run) -> Peculiar:
-    """Velocities about that of the centre of mass in each frame, along the axes on which the total momentum
-    is conserved, and about the flow of a sheared gas."""
+    """Compute velocities about the velocity of the centre of mass in each frame.
+
+    The velocity of the centre of mass is subtracted along the axes on which the total momentum is conserved;
+    of a sheared gas the flow too.
+    """
     return about_the_mean(_about_known(run), run.masses[run.moving], run.conserved)
 
 
 def about_the_mean(velocities: np.ndarray, masses: np.ndarray, axes: np.ndarray) -> Peculiar:
-    """Velocities (T, M, d) of particles of masses (M,) about that of their centre of mass in each frame,
-    along axes (d,)."""
+    """Compute velocities about the velocity of the centre of mass in each frame.
+
+    Velocities are (T, M, d), masses (M,); the mean is subtracted along axes (d,).
+    """
     total = masses.sum() or 1.0  # of none: nothing
     drift = np.einsum("tnd,n->td", velocities, masses) / total
     apart = velocities - np.where(axes, drift, 0.0)[:, None]
@@ -280,7 +305,7 @@ def about_the_mean(velocities: np.ndarray, masses: np.ndarray, axes: np.ndarray)
 
 
 def _about_known(run: Run) -> np.ndarray:
-    """(T, M, d) velocities of the moving particles, of a sheared gas about its flow."""
+    """Return velocities (T, M, d) of the moving particles, of a sheared gas about its flow."""
     velocities = run.velocities[:, run.moving]
     if run.scene.shear_rate is None:
         return velocities
@@ -288,16 +313,23 @@ def _about_known(run: Run) -> np.ndarray:
 
 
 def flow_axes(run: Run) -> list[int]:
-    """The axes along which the velocity of the gas may vary: those of the scene (`Facts.flow_axes`), or those
-    of a wind; none if it moves as a whole only."""
+    """Return the axes along which the velocity of the gas may vary.
+
+    These are the axes of the scene (`Facts.flow_axes`), or the axes of a wind; none if it moves as a whole
+    only.
+    """
     scene = run.scene
     return list(scene.flow_axes or (scene.resolved_axes() if wind(run).any() else ()))
 
 
 def wind(run: Run) -> np.ndarray:
-    """(d,) whether the gas moves along an axis without an end, although its momentum is not conserved there:
-    the mean over the run is more than three times what it scatters by in equilibrium, sqrt(M k_B T). A wind
-    that is weaker adds at most 9 / (d N) to the temperature. One particle has no scatter to compare with."""
+    """Find the axes (d,) without an end along which a wind blows.
+
+    Momentum is not conserved along these axes.
+
+    The mean of the momentum over the run is more than three times its scatter in equilibrium, sqrt(M k_B T).
+    A weaker wind adds at most 9 / (d N) to the temperature. A single particle has no scatter to compare with.
+    """
     found = np.zeros(run.dimension, dtype=bool)
     masses = run.masses[run.moving]
     for axis in np.flatnonzero(run.periodic & ~run.conserved & (len(masses) > 1)):
@@ -309,10 +341,12 @@ def wind(run: Run) -> np.ndarray:
 
 
 def about_the_flow(run: Run, along: Mapping[int, int] | None = None) -> Peculiar:
-    """Velocities about rest, if the run is about it; about the local flow of mass, if the gas can have one,
-    in cells along `flow_axes`; otherwise those `about_the_whole`. along: axis -> number of cells, where
-    these are not the default ones; further axes are resolved too, unless the flow changes or there is
-    none."""
+    """Compute velocities about rest, about the local flow of mass, or `about_the_whole`.
+
+    They are about rest if the run is, and about the local flow of mass, in cells along `flow_axes`, if the
+    gas can have one. `along` maps an axis to its number of cells, where these are not the default ones;
+    further axes are resolved too, if there is a steady flow.
+    """
     if run.about == REST:
         velocities = run.velocities[:, run.moving]
         return Peculiar(velocities, np.ones((1, velocities.shape[1], 1)))
@@ -326,15 +360,17 @@ def about_the_flow(run: Run, along: Mapping[int, int] | None = None) -> Peculiar
 
 
 def _number(run: Run, axes: list[int], changes: bool) -> int:
-    """Of cells along each of these axes."""
+    """Return the number of cells along each of these axes."""
     particles = int(run.moving.sum())
     samples = particles / _CROWD if changes else particles * len(run.time) / _SAMPLES
     return int(np.clip(samples ** (1.0 / len(axes)), 1, _CELLS))
 
 
 def about_cells(run: Run, numbers: Mapping[int, int], changes: bool) -> Peculiar:
-    """Velocities about the mean of mass in cells, as many as `numbers` states along each axis: in each frame
-    if the flow `changes`, otherwise in all frames."""
+    """Compute velocities about the mean of mass in cells, `numbers` of them along each axis.
+
+    The mean is taken in each frame if the flow `changes`, otherwise over all frames.
+    """
     axes = list(numbers)
     lengths = np.array(run.scene.container.lengths)[axes]
     grid = Grid((0.0,) * len(axes), tuple(lengths.tolist()), tuple(numbers.values()))

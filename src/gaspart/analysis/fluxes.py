@@ -36,7 +36,7 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     -------
     Observable
         Heat that the face takes per time and per area that centres can reach, (face,), in
-        [energy/(length^(d-1) time)]: positive where the gas warms the wall. Areas are those of
+        [energy/(length^(d-1) time)]: positive where the gas warms the wall. Areas are defined by
         `wall_pressure`.
 
     Raises
@@ -47,8 +47,8 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     Notes
     -----
     It is the energy that particles lose there in the frame of the wall: of a wall that slides, the energy
-    that it is given without the work that it does. The mean is that of the steady state: the contributions of
-    the changes of the energy of the gas and of its first moment across the walls, which are bounded, are
+    that it is given without the work that it does. The mean is taken in the steady state: the contributions
+    of the changes of the energy of the gas and of its first moment across the walls, which are bounded, are
     subtracted (`_corrected`).
 
     Theory: 0 in equilibrium; between two plates free flight above a Knudsen number of 100, Fourier's law with
@@ -104,7 +104,7 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
     Notes
     -----
     It is measured by the engines that tally it, where a face slides or a force drives the gas along it. The
-    mean is that of the steady state, as of `heat_flux`, by the change of the momentum of the gas.
+    mean is taken in the steady state, as in `heat_flux`, by the change of the momentum of the gas.
 
     Theory: half of the weight of a gas that a force drives along two equal faces, exactly; between plates
     that slide free flight above a Knudsen number of 100, Enskog's viscosity with slip below 0.1, and between
@@ -140,18 +140,22 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
 
 
 def _given(run: Run, name: str, tallied: str) -> np.ndarray:
-    """(T - 1, 2d, ...) what each face is given in each interval per accessible area, see `per_area`. Raises
-    SceneError for frames without the sum of this name."""
+    """Return what each face is given in each interval per accessible area.
+
+    The shape is (T - 1, 2d, ...). See `per_area`. Raises SceneError for frames without the sum of this name.
+    """
     if name not in run.data:
         raise SceneError(name, "missing", "the engine does not tally it, or an older version wrote the file")
     return per_area(run, run.increments(name)[:, : 2 * run.dimension], tallied)
 
 
 def _steady(run: Run, faces: np.ndarray, given: np.ndarray, stored: list[np.ndarray]) -> Means:
-    """(F,) the mean over time of what each face is given, and its error.
+    """Compute the mean over time of what each face is given, and its error, shape (F,).
 
-    given (T - 1, F): in each interval; stored (T,) each: bounded sums over the gas, by the change of which
-    blocks are corrected. Raises SceneError for too few frames and faces that nothing has hit.
+    given : (T - 1, F), amounts in each interval.
+    stored : arrays (T,), bounded sums over the gas; blocks are corrected by their change.
+
+    Raises SceneError for too few frames and for faces that nothing has hit.
     """
     intervals = len(run.time) - 1
     if intervals < LEAST_INTERVALS:
@@ -170,11 +174,11 @@ def _steady(run: Run, faces: np.ndarray, given: np.ndarray, stored: list[np.ndar
 
 
 def _corrected(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
-    """The mean of rates (K,) in consecutive blocks, by least squares without what changes (K,) of bounded
-    sums add to them: a gas gives back what it has stored.
+    """Compute the mean of rates (K,) in consecutive blocks, corrected for changes of bounded sums.
 
-    Blocks may be shorter than what a particle remembers, which in free flight is the time that it takes from
-    wall to wall: the error is that of a correlated series.
+    The contribution of the changes (K,) is removed by least squares: a gas gives back what it has stored.
+    Blocks may be shorter than the memory of a particle, which in free flight is the time from wall to wall:
+    the error is computed as for a correlated series.
     """
     used = [change / np.abs(change).max() for change in changes if change.any()]
     design = np.stack([np.ones(len(rates)), *used], axis=1)
@@ -183,8 +187,11 @@ def _corrected(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
 
 
 def _energies(run: Run) -> list[np.ndarray]:
-    """(T,) each: the energy of flight about the mean velocity of the faces, and its first moments across
-    them. None of a file that lacks some particles."""
+    """Return the energy about the mean velocity of the faces, and its first moments.
+
+    Each is an array (T,); it is the energy of flight, moments are across the faces. Nothing is returned for a
+    file that lacks some particles.
+    """
     if run.is_subset:
         return []
     energy = 0.5 * (_about_faces(run) ** 2).sum(axis=2) * run.masses[run.moving]
@@ -192,15 +199,20 @@ def _energies(run: Run) -> list[np.ndarray]:
 
 
 def _momenta(run: Run, axis: int) -> list[np.ndarray]:
-    """(T,) each: the momentum along an axis about the mean velocity of the faces, and its first moments
-    across them."""
+    """Return the momentum about the mean velocity of the faces, and its first moments.
+
+    Each is an array (T,); the momentum is along an axis, the moments are across the faces.
+    """
     if run.is_subset:
         return []
     return _with_moments(run, _about_faces(run)[..., axis] * run.masses[run.moving])
 
 
 def _about_faces(run: Run) -> np.ndarray:
-    """(T, M, d) velocities about the mean one of the thermal faces: the same in any frame of reference."""
+    """Compute velocities (T, M, d) about the mean velocity of the thermal faces.
+
+    They are the same in any frame of reference.
+    """
     frame = np.zeros(run.dimension)
     for _, face in run.scene.sliding_faces:
         frame += np.array(face.velocity) / len(run.scene.thermal_numbers)
@@ -208,8 +220,10 @@ def _about_faces(run: Run) -> np.ndarray:
 
 
 def _with_moments(run: Run, carried: np.ndarray) -> list[np.ndarray]:
-    """(T,) each: the sum of what particles carry (T, M), and its first moments across the thermal faces,
-    about the middle."""
+    """Sum what particles carry, and its first moments across the thermal faces.
+
+    The amounts are (T, M), each sum is (T,); moments are about the middle.
+    """
     places = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
     across = sorted({number // 2 for number in run.scene.thermal_numbers})
     return [carried.sum(axis=1), *((carried * places[..., axis]).sum(axis=1) for axis in across)]
@@ -249,14 +263,14 @@ def particle_flux(
     Raises
     ------
     SceneError
-        If the axis is periodic, which images pass, or another one than that of open faces, the plane is
+        If the axis is periodic, which images pass, or is not the axis of open faces, the plane is
         outside the container, the file lacks particles, or there are too few frames.
 
     Notes
     -----
     The flux is the change of the number of particles beyond the plane, exactly, however often each particle
     has passed between frames: particles that come back do not count, nor do those that come and go through an
-    open face beyond. The plane is that of the whole container; where interior walls lie in it, all pass their
+    open face beyond. The plane crosses the whole container; where interior walls lie in it, all pass their
     openings.
 
     Theory: 0 in a steady state without interior walls; of free flight through openings of walls in the plane
@@ -287,8 +301,10 @@ def particle_flux(
 
 
 def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:
-    """(T,) how many particles more have entered through the upper face of an axis than left; 0 of one that is
-    not open."""
+    """Return the net number (T,) of particles that have entered through the upper face.
+
+    It is 0 if this face is not open.
+    """
     upper = 2 * axis + 1
     if not isinstance(run.scene.faces.get(FACES[upper]), Open):
         return 0

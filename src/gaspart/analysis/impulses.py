@@ -24,7 +24,6 @@ from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import (
     ImpulseTally,
     OptionalTally,
-    option_of,
     stored_tally,
     useful_impulses,
 )
@@ -33,27 +32,36 @@ from gaspart.state.optional_tallies import (
 
 
 def engine_class(run: Run) -> type[Engine]:
-    """The engine of a run; the base of all, which can do nothing, of a file that does not state it."""
+    """Return the class of the engine of a run.
+
+    A file that does not state it has the base class, which can do nothing.
+    """
     return ENGINES.get(json.loads(run.data.attrs.get("engine", "{}")).get("name"), Engine)
 
 
 def engine_tallies(run: Run) -> frozenset[str]:
-    """The names of the optional tallies that the engine of a run can make."""
+    """Return the names of the optional tallies that the engine of a run can make."""
     return engine_class(run).tallies
 
 
 def knows_energies(engine: Engine | type[Engine], scene: Scene) -> bool:
-    """Whether the mean energy of motion along each axis is known exactly: by an engine without a systematic
-    error, of a scene that shares it evenly. Steps take some from that across a wall, near it."""
+    """Return True if the mean energy of motion along each axis is known exactly.
+
+    This needs an engine without a systematic error, and a scene that shares the energy evenly. Time steps
+    take some of the energy across a wall, near the wall.
+    """
     return engine.reference and shares_energy_evenly(scene)
 
 
 def estimator(
     run: Run, usual: str, better: str, used: bool, asked: OptionalTally | None, lacks: str = ""
 ) -> dict[str, str]:
-    """Attributes of an observable: of what it was estimated, which is `usual`, or `better` if that was used;
-    and of the former, where the scene and the engine allow to keep what is asked for, how a run does so, or
-    else what that of this run lacks."""
+    """Return the attributes that state from which data an observable was estimated.
+
+    It is `usual`, or `better` if that was `used`. With the former, where the scene and the engine allow a run
+    to store `asked`, a note states the option that does so, or else `lacks`, what the tally of this run
+    lacks.
+    """
     if used:
         return {"estimator": better}
     found = {"estimator": usual}
@@ -63,28 +71,33 @@ def estimator(
         asked.check(run.scene)
     except SceneError:
         return found
-    advice = f"a run with {' '.join(option_of(asked))} makes it more accurate"
+    advice = f"a run with {asked.option} makes it more accurate"
     return {**found, "note": f"by {usual}; {lacks or advice}"}
 
 
 USUAL_BINS = 40
-"""Of a profile, unless others are asked for or the run has kept impulses."""
+"""Number of bins of a profile, unless others are requested or the run has stored impulses."""
 _ROUNDING = 1e-10
 """Part of the highest density that is attributed to rounding."""
 _GROUPS = 16
 """Parts of half a run from which a weight is estimated: each longer than the correlation, in a long run."""
 _NEIGHBOURS = 0.02
-"""How far the bins reach, on both sides, that share a weight: a part of the length."""
+"""Reach of the bins, on both sides, that share a weight, as a fraction of the length."""
 
 
 @dataclass(frozen=True)
 class Carried:
-    """The momentum of one species that has flown through the planes of bins, in M intervals.
+    """Momentum of one species that has flown through the planes of bins, in M intervals.
 
-    flux (M, bins), see `Tally.momentum_flux_sum`; time (M,), of the intervals; count, of the particles;
-    spread (bins,): <m v^2> of a particle in each bin; above (bins,): the part of a bin that is above a
-    particle in it, on average; reached (bins,), whether any particle can be there; width, of a bin; pull: the
-    force on a particle along the axis; walled: whether faces close it.
+    flux : (M, bins), see `Tally.momentum_flux_sum`.
+    time : (M,), durations of the intervals.
+    count : number of particles.
+    spread : (bins,), <m v^2> of a particle in each bin.
+    above : (bins,), mean fraction of a bin that is above a particle in it.
+    reached : (bins,), True if any particle can be there.
+    width : width of a bin.
+    pull : force on a particle along the axis.
+    walled : True if faces close the axis.
     """
 
     flux: np.ndarray
@@ -98,8 +111,10 @@ class Carried:
     walled: bool
 
     def numbers(self) -> np.ndarray:
-        """(M, bins) particles in each bin, times the time. In each interval their sum over the bins is exact:
-        the number of particles times the time."""
+        """Compute the number of particles in each bin times the time, shape (M, bins).
+
+        In each interval their sum over the bins is exact: the number of particles times the time.
+        """
         if self.pull > 0.0:  # from the face to which they fall, so that no error grows with the density
             below = self.pull * self.count * self.time[:, None]
             flipped = Carried(
@@ -125,8 +140,10 @@ class Carried:
         return found + (whole - found.sum(axis=1))[:, None] * shares
 
     def _fallen(self) -> np.ndarray:
-        """The same under gravity, which gives momentum to all particles below a plane: those in lower bins,
-        and of its own bin a part, on average over its planes."""
+        """Compute the numbers under gravity, which gives momentum to all particles below a plane.
+
+        These are the particles in lower bins, and a part of its own bin, on average over its planes.
+        """
         found, below = np.empty(self.flux.shape), np.zeros(len(self.flux))
         shares = self.spread / self.width - self.pull * self.above
         for k, flux in enumerate(self.flux.T):
@@ -136,13 +153,15 @@ class Carried:
 
 
 def kept(data: xr.Dataset) -> ImpulseTally | None:
-    """What the file of a run has of impulses."""
-    return stored_tally(data.attrs.get("tallies", "[]"), ImpulseTally)
+    """Read the impulse tallies of a trajectory."""
+    return stored_tally(data.attrs, ImpulseTally)
 
 
 def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> np.ndarray | None:
-    """(T - 1, bins) moving particles in each bin times the time, in each interval between frames. None if
-    the run has not kept what it needs."""
+    """Compute the moving particles in each bin times the time, in each interval between frames.
+
+    The shape is (T - 1, bins). None if the run has not stored the required data.
+    """
     has = kept(run.data)
     if has is None or has.axis != "xyz"[axis] or has.bins % bins:
         return None
@@ -155,8 +174,11 @@ def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> 
 
 
 def _carried(run: Run, axis: int, bins: int, row: int) -> Carried | None:
-    """That of one row of the tally. None for particles of several masses where it would depend on these, and
-    for a file that lacks the particles from which a temperature follows."""
+    """Return the momentum carried in one row of the tally.
+
+    None for particles of several masses if the result would depend on these, and for a file that lacks the
+    particles that determine a temperature.
+    """
     members = run.species == row
     masses = run.masses[members]
     pull = (run.scene.gravity or (0.0,) * run.dimension)[axis]
@@ -178,21 +200,22 @@ def _carried(run: Run, axis: int, bins: int, row: int) -> Carried | None:
 
 
 def _uniform(run: Run, walled: bool) -> bool:
-    """Whether the density is simply in proportion to the momentum, whatever the temperature."""
+    """Return True if the density is proportional to the momentum at any temperature."""
     return walled and not _has_potential(run)
 
 
 def _has_potential(run: Run) -> bool:
-    """Whether gravity or wells act."""
+    """Return True if gravity or wells act."""
     return run.has_gravity or any(face.kind == "well" for face in run.scene.faces.values())
 
 
 def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
-    """(bins,) <m v^2> along an axis of a particle among `members` (N,), of one mass, in each bin.
+    """Compute <m v^2> along an axis of a particle in each bin, shape (bins,).
 
-    Faces at a temperature set it. With the energy of the gas constant, that of motion is what the potential
-    has left of it, and the temperature at a place is the mean over the states with a particle there. Of a
-    momentum that is conserved each particle has its part.
+    The particles, `members` (N,), have one mass. Faces at a temperature set it. If the energy of the gas is
+    constant, the energy of motion is what the potential has left of it, and the temperature at a position is
+    the mean over the states with a particle there. If a momentum is conserved, each particle has its part of
+    it.
     """
     hot = run.scene.face_temperatures
     spread = np.full(bins, min(hot) if hot else run.temperature)
@@ -207,27 +230,33 @@ def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
 
 
 def _above(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
-    """(bins,) the part of each bin that is above a particle in it, on average; half where there was none."""
+    """Compute the mean fraction of each bin that is above a particle in it, shape (bins,).
+
+    It is one half if no particle was in the bin.
+    """
     places, cells = _places(run, axis, bins, members)
     return _mean_in(cells, cells + 1.0 - places, np.full(bins, 0.5))
 
 
 def _places(run: Run, axis: int, bins: int, members: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(T, n) where particles are, counted in bins, and in which."""
+    """Return the positions (T, n) of particles in units of bins, and their bins."""
     places = run.positions[:, members, axis] * (bins / run.scene.container.lengths[axis])
     return places, np.clip(places.astype(np.int64), 0, bins - 1)
 
 
 def _mean_in(cells: np.ndarray, values: np.ndarray, default: np.ndarray) -> np.ndarray:
-    """(bins,) the mean of values (T, n) in each bin; the default of those without any."""
+    """Average values (T, n) in each bin, shape (bins,); a bin without any has the default."""
     number = np.bincount(cells.ravel(), minlength=len(default))
     total = np.bincount(cells.ravel(), values.ravel(), minlength=len(default))
     return np.divide(total, number, out=default, where=number > 0)
 
 
 def mixture(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.ndarray:
-    """(K, bins) weights of impulses in the mixture with counts, of the blocks (K, bins) of both: those of
-    each half from the other one, from 0 to 1. periodic: whether the first bin is next to the last one."""
+    """Compute the weights (K, bins) of impulses in their mixture with counts.
+
+    `counted` and `impulses` are of blocks (K, bins). The weights of each half of the blocks come from the
+    other half; they are from 0 to 1. If `periodic`, the first bin is next to the last one.
+    """
     half = len(counted) // 2
     first = _weights(counted[:half], impulses[:half], periodic)
     second = _weights(counted[half:], impulses[half:], periodic)
@@ -235,8 +264,10 @@ def mixture(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.nda
 
 
 def _weights(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.ndarray:
-    """(bins,) those with which the means of these blocks have the least variance, shared with the bins near
-    by."""
+    """Compute the weights (bins,) with which the means of these blocks have the least variance.
+
+    Neighbouring bins share a weight.
+    """
     groups = np.arange(len(counted)) * min(_GROUPS, len(counted)) // len(counted)
     starts = np.flatnonzero(np.diff(groups, prepend=-1))
     sizes = np.diff(np.append(starts, len(counted)))[:, None]
@@ -248,7 +279,7 @@ def _weights(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.nd
 
 
 def _near(values: np.ndarray, reach: int, periodic: bool) -> np.ndarray:
-    """The sum of each value and those up to `reach` places away."""
+    """Sum each value and the values up to `reach` bins away."""
     extended = np.pad(values, reach, "wrap" if periodic else "constant")
     whole = np.concatenate([[0.0], np.cumsum(extended)])
     width = 2 * reach + 1
@@ -256,8 +287,10 @@ def _near(values: np.ndarray, reach: int, periodic: bool) -> np.ndarray:
 
 
 def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means | None:
-    """The density along an axis from counts and impulses, of all particles or one species. None if the run
-    has not kept what the latter need."""
+    """Compute the density along an axis from counts and impulses, of all particles or one species.
+
+    None if the run has not stored what the impulses need.
+    """
     frames = len(run.time)
     if run.is_subset and len(run.scene.kinds) > 1:
         return None
@@ -283,13 +316,19 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
 
 
 def default_bins(run: Run, axis: int, of: str) -> int:
-    """The number of bins along an axis: of a density those of the impulses that the run has kept."""
+    """Return the default number of bins along an axis.
+
+    A density has the bins of the impulses that the run has stored.
+    """
     has = kept(run.data)
     return has.bins if of == "density" and has is not None and has.axis == "xyz"[axis] else USUAL_BINS
 
 
 def described_density(run: Run, axis: int, bins: int, by_impulses: bool) -> dict[str, str]:
-    """Attributes of a density: see `estimators.estimator`; of a run whose bins do not serve it says so."""
+    """Return the attributes of a density: see `estimator`.
+
+    If the bins of a run do not serve, they say so.
+    """
     has, asked = kept(run.data), useful_impulses(run.scene, engine_tallies(run), axis, 200)
     lacks = ""
     if has is not None and has.axis == "xyz"[axis] and has.bins % bins:
@@ -320,9 +359,12 @@ slowly for coefficients of a regression. Of two discs in 2.6 x 2.9, 52 of 60 val
 
 
 def wall_controls(run: Run, axis: int) -> np.ndarray | None:
-    """(T - 1, 3) in each interval, per time: sum m v^2 of the velocities along an axis less its known mean,
-    and the changes of the momentum and of sum m x v along it. None unless the run has kept impulses along
-    this axis and the states of all particles, and is in equilibrium at a constant kinetic energy."""
+    """Compute control variates (T - 1, 3) of the impulses across an axis, per time.
+
+    They are sum m v^2 of the velocities along the axis less its known mean, and the changes of the momentum
+    and of sum m x v along it. None unless the run has stored impulses along this axis and the states of all
+    particles, and is in equilibrium at a constant kinetic energy.
+    """
     has = kept(run.data)
     if has is None or has.axis != "xyz"[axis] or not run.has_states:
         return None
@@ -336,8 +378,11 @@ def wall_controls(run: Run, axis: int) -> np.ndarray | None:
 
 
 def stores(run: Run) -> np.ndarray:
-    """(d, T, 2) of each axis the total momentum and sum m x v of the moving particles at each frame, x from
-    the middle; (d, T, 0) of a file that lacks some."""
+    """Compute the total momentum and sum m x v of the moving particles by axis.
+
+    The shape is (d, T, 2), for each frame; x counts from the middle. It is (d, T, 0) for a file that lacks
+    some particles.
+    """
     if not run.has_states:
         return np.zeros((run.dimension, len(run.time), 0))
     velocities, masses = run.velocities[:, run.moving], run.masses[run.moving]
@@ -347,8 +392,10 @@ def stores(run: Run) -> np.ndarray:
 
 
 def group_count(run: Run) -> int:
-    """Return in how many groups the intervals of a run are for a regression; 0 if they or the particles are
-    too few."""
+    """Return the number of groups of the intervals of a run for a regression.
+
+    It is 0 if the intervals or the particles are too few.
+    """
     if run.moving.sum() < FEWEST:
         return 0
     collided = 2.0 * run.increments("collisions").sum() / max(1, int(run.moving.sum()))
@@ -357,10 +404,11 @@ def group_count(run: Run) -> int:
 
 
 def controlled(series: np.ndarray, controls: np.ndarray, groups: int) -> np.ndarray:
-    """(K,) a series less what it has in common with controls (K, R) of mean 0.
+    """Subtract from a series (K,) its part in common with controls (K, R).
 
-    The coefficients for each half are those of a regression of the other half, in half of so many groups of
-    consecutive values: they depend on no noise that they multiply, so that the mean is unbiased.
+    The controls have the mean 0. The coefficients for each half come from a regression of the other half, in
+    `groups` / 2 groups of consecutive values: they depend on no noise that they multiply, so that the mean is
+    unbiased.
     """
     half, found = len(series) // 2, series.copy()
     first, second = slice(None, half), slice(half, None)

@@ -35,12 +35,12 @@ PLACES = 512
 MOST_FRAMES = 2048
 """Frames, evenly spaced, in which they are tried."""
 _CELLS = 65536
-"""Of the grid at first, at most."""
+"""Maximum number of cells of the first grid."""
 _PER_DISTANCE = 8
 """Cells of that grid in the distance within which a particle covers, at most."""
 _MOST_CELLS = 2048  # after a division
 _WORTH = 0.6
-"""Of the cells that a division makes: it is the last one if more are left."""
+"""Fraction of cells left by a division above which no further division follows."""
 
 
 @dataclass(frozen=True)
@@ -68,8 +68,11 @@ class Insertions:
 
     @property
     def resolution(self) -> float:
-        """The probability that one success would have been: one over the number of random places, drawn in
-        the whole container, which these stand for."""
+        """Probability of a single success.
+
+        It is one over the number of random positions, drawn in the whole container, which these trials stand
+        for.
+        """
         return float(self.share.mean() / (self.places * len(self.share)))
 
 
@@ -116,8 +119,11 @@ def insertions(
 def _try(
     groups: list[tuple[np.ndarray, float]], lengths: np.ndarray, places: int, generator: np.random.Generator
 ) -> tuple[float, int]:
-    """The part of the container that cells do not show to be covered, and how many places there are free.
-    groups: positions, and how near a place may not be."""
+    """Count free trials in the region that cells do not show to be covered.
+
+    Returned are the fraction of the container in this region, and the count. `groups` are positions with the
+    distance below which a trial overlaps.
+    """
     from scipy.spatial import cKDTree
 
     trees = [(cKDTree(positions, boxsize=lengths), distance) for positions, distance in groups]
@@ -131,7 +137,7 @@ def _try(
 
 
 def _apart(trees: list[tuple[Any, float]], places: np.ndarray, less: float) -> np.ndarray:
-    """(M,) which places (M, d) are nearer to no particle than its distance less a length."""
+    """Find positions (M, d) that are farther from every particle than its distance less a length."""
     found = np.ones(len(places), dtype=bool)
     for tree, distance in trees:
         if distance > less:
@@ -144,7 +150,7 @@ def _apart(trees: list[tuple[Any, float]], places: np.ndarray, less: float) -> n
 def _remaining(
     groups: list[tuple[np.ndarray, float]], trees: list[tuple[Any, float]], lengths: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Centres (M, d) and sides (d,) of the cells that no one particle covers."""
+    """Return centres (M, d) and sides (d,) of the cells that no single particle covers."""
     dimension = len(lengths)
     narrowest = max(distance for _, distance in groups) / _PER_DISTANCE
     width = max(narrowest, (np.prod(lengths) / _CELLS) ** (1.0 / dimension))
@@ -163,10 +169,11 @@ def _remaining(
 
 
 def _covered(groups: list[tuple[np.ndarray, float]], sides: np.ndarray, number: np.ndarray) -> np.ndarray:
-    """(cells,) which cells of a grid, (*number), lie within the distance of one particle as a whole.
+    """Find the cells (cells,) of a grid that lie within the distance of one particle.
 
-    The cells that differ in the last axis only are a strip. A particle covers those between two ends of each
-    strip that is near: at the ends 1 is added and subtracted, and the sum along the strip is how many cover a
+    The grid has the shape (*number); a cell must lie within the distance completely. The cells that differ in
+    the last axis only are a strip. A particle covers those between two ends of each strip that is near: at
+    the ends 1 is added and subtracted, and the sum along the strip is the number of particles that cover a
     cell. What passes the last cell goes on at the first.
     """
     last, strips = int(number[-1]), int(np.prod(number[:-1]))
@@ -207,7 +214,7 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
     Returns
     -------
     Observable
-        Chemical potential beyond that of an ideal gas, dimensionless: a scalar, of a mixture (species,).
+        Chemical potential relative to an ideal gas, dimensionless: a scalar, of a mixture (species,).
         Variables: `probability`, that a random position is free, with its error; `successes`, the number of
         free positions; `frames_with_success`, the number of frames that have any; `resolution`, the
         probability that corresponds to a single success.
@@ -220,7 +227,7 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
 
     Notes
     -----
-    The error is that of the mean over frames, to first order: it is not to be trusted if few frames have a
+    The error applies to the mean over frames, to first order: it is not to be trusted if few frames have a
     success. Theory: by the equation of state, for these numbers of particles.
 
     Examples
@@ -253,7 +260,10 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
 
 
 def _hosts(run: Run) -> list[Hosts]:
-    """For a particle like all, or of each species, how near it may be to none of the others."""
+    """Return the distances below which an inserted particle overlaps, for each species.
+
+    Equal particles have one such list.
+    """
     radii = [kind.radius for kind in run.scene.kinds if kind.count]
     if run.scene.alike:
         return [[(slice(None), 2.0 * radii[0])]]
@@ -262,7 +272,7 @@ def _hosts(run: Run) -> list[Hosts]:
 
 
 def _inserted(run: Run, frames: slice, hosts: Hosts, places: int) -> tuple[np.ndarray, dict[str, float]]:
-    """The series (T,) of the chemical potential, and how well insertion worked."""
+    """Compute the series (T,) of the chemical potential, and the counts of insertions."""
     found = insertions(run.positions[frames], run.scene.container.lengths, hosts, places)
     chance = float(found.probability.mean())
     if chance == 0.0:
@@ -281,7 +291,7 @@ def _inserted(run: Run, frames: slice, hosts: Hosts, places: int) -> tuple[np.nd
 
 
 def _of_species(run: Run, tried: list[tuple[np.ndarray, dict[str, float]]], about: dict) -> Observable:
-    """The result of a mixture."""
+    """Return the result of a mixture."""
     means = [correlated_mean(series, LEAST_INTERVALS).estimate for series, _ in tried]
     values, errors, freedoms = np.array([[one.value, one.error, one.freedom] for one in means]).T
     along = {"species": (np.unique(run.species), {"long_name": "number of the species"})}
@@ -301,5 +311,5 @@ _MEANINGS = {
 
 
 def _variables(dims: tuple[str, ...], counts: dict[str, Any]) -> dict[str, tuple]:
-    """The variables that state how well insertion worked."""
+    """Return the variables that state how well insertion worked."""
     return {name: (dims, counts[name], {"units": "1", "long_name": _MEANINGS[name]}) for name in counts}

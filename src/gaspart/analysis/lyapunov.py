@@ -1,4 +1,4 @@
-"""The largest Lyapunov exponent: the rate at which neighbouring runs move apart, from the events of one run.
+"""Largest Lyapunov exponent: the rate at which neighbouring runs separate, from the events of one run.
 
 A small deviation of the initial state is carried along by the linearised dynamics (tangent space), so that it
 never saturates and no second run is needed. Free flight adds the deviation of the velocity times the time to
@@ -34,24 +34,24 @@ class Deviation:
         self.times = [time] * len(self.positions)
 
     def advance(self, n: int, time: float) -> None:
-        """Free flight of particle n until `time`."""
+        """Move the deviation of particle n through free flight until `time`."""
         passed, position = time - self.times[n], self.positions[n]
         for axis, change in enumerate(self.velocities[n]):
             position[axis] += change * passed
         self.times[n] = time
 
     def reflect(self, n: int, axis: int) -> None:
-        """A hit of particle n at a face of the container across `axis`."""
+        """Reflect the deviation of particle n at a face of the container across `axis`."""
         self.positions[n][axis] = -self.positions[n][axis]
         self.velocities[n][axis] = -self.velocities[n][axis]
 
     def collide(self, i: int, j: int, away: list[float], parting: list[float], share: float) -> None:
-        """A contact of particles i and j, smooth and elastic; both are up to date.
+        """Map the deviations of particles i and j at a contact, smooth and elastic.
 
-        away: x_i - x_j; parting: v_i - v_j just after; share: m_j / (m_i + m_j). With n = away / sigma, and g
-        the relative velocity before, a relative deviation (r, u) becomes r - 2 (r.n) n and u - 2 (u.n) n - 2
-        (g.m) n - 2 (g.n) m. Here m = (r + g t) / sigma is the deviation of n, and t = -(r.n) / (g.n) that of
-        the time of contact.
+        Both deviations are up to date. The arguments are `away` = x_i - x_j, `parting` = v_i - v_j just
+        after, and `share` = m_j / (m_i + m_j). With n = away / sigma, and g the relative velocity before, a
+        relative deviation (r, u) becomes r - 2 (r.n) n and u - 2 (u.n) n - 2 (g.m) n - 2 (g.n) m. Here m = (r
+        + g t) / sigma is the deviation of n, and t = -(r.n) / (g.n) the deviation of the time of contact.
         """
         axes = range(len(away))
         sigma = math.sqrt(sum([x * x for x in away]))
@@ -141,8 +141,8 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
 
     Notes
     -----
-    The uncertainty is that of the mean of a correlated series, the growth in equal intervals. It takes some
-    10 microseconds for each event.
+    The uncertainty is the error of the mean of a correlated series, the growth in equal intervals. It takes
+    some 10 microseconds for each event.
 
     Examples
     --------

@@ -38,7 +38,7 @@ class ByFace(xr.Dataset):
     __slots__ = ()
 
     def sel(self, *given: Any, **named: Any) -> Self:
-        """Select as of a Dataset, a face by either of its names, `x_low` or `x low`.
+        """Select as from a Dataset, a face by either of its names, `x_low` or `x low`.
 
         Parameters
         ----------
@@ -64,17 +64,17 @@ class Observable(ByFace):
     Parameters
     ----------
     data_vars : mapping, optional
-        Variables, as of `xarray.Dataset`.
+        Variables, as for `xarray.Dataset`.
     coords : mapping, optional
-        Coordinates, as of `xarray.Dataset`.
+        Coordinates, as for `xarray.Dataset`.
     attrs : mapping, optional
-        Attributes, as of `xarray.Dataset`.
+        Attributes, as for `xarray.Dataset`.
 
     Notes
     -----
     Variables: the quantity, by the name in the attribute `quantity`; the same with the suffix _error, one
     standard deviation; where theory exists, with the suffixes _theory and _theory_error (NaN if the
-    uncertainty is not known, as of an approximation). A scalar also has `stretches` (time), its means over
+    uncertainty is not known, as for an approximation). A scalar also has `stretches` (time), its means over
     consecutive blocks of the run, and the degrees of freedom of its error as the attribute `freedom`. Every
     variable has `units`.
 
@@ -144,7 +144,7 @@ class Observable(ByFace):
     def deviation(self) -> xr.DataArray | None:
         """Measured minus theory, in standard deviations of the difference; None without theory.
 
-        NaN where the standard deviation is 0, as of a quantity that does not change: nothing states how
+        NaN where the standard deviation is 0, as for a quantity that does not change: nothing states how
         likely a difference is.
 
         Examples
@@ -207,7 +207,7 @@ class Observable(ByFace):
         Parameters
         ----------
         theory : bool, default False
-            Also draw the curve of theory; if there is none for this scene, the legend says so.
+            Also draw the curve of theory; if it does not exist for this scene, the legend says so.
         axis : matplotlib Axes, optional
             Axes to draw in. Default: a new one.
 
@@ -313,7 +313,7 @@ def _cells(found: Observable) -> list[str]:
 
 
 def _plot_field(found: Observable, axis: Axes, cells: list[str]) -> None:
-    """Draw a scalar field as a map of colours; of a flow the components along both axes, as arrows."""
+    """Draw a scalar field as a map of colours, a flow as arrows along both axes."""
     if len(cells) > _PLANE:
         raise SceneError("axes", "".join(cells), "a plot has two; choose a layer: .isel(z=0)")
     x, y = (found[name] for name in cells)
@@ -328,7 +328,7 @@ def _plot_field(found: Observable, axis: Axes, cells: list[str]) -> None:
 
 
 def label_of(values: xr.DataArray) -> str:
-    """Return the label of an axis: the meaning of a variable, with its unit, if it has one.
+    """Return the label of an axis: the meaning of a variable, with its unit if any.
 
     Parameters
     ----------
@@ -349,11 +349,14 @@ def label_of(values: xr.DataArray) -> str:
 def scalar(
     name: str, series: np.ndarray, edges: np.ndarray, *, slow: bool = False, **about: Any
 ) -> Observable:
-    """Return the mean of a series over the intervals between frames, with the error of a correlated series.
+    """Return the mean of a correlated series over the intervals between frames, with its error.
 
-    series (M,); edges (M + 1,), the times of the frames. about: `units`, `long_name`, and perhaps `theory`, a
-    value and its uncertainty, and its `source`. With `slow`, correlations may fall as 1 / t. Raises
-    SceneError for fewer than `LEAST_INTERVALS`.
+    series : (M,).
+    edges : (M + 1,), the times of the frames.
+    slow : True if correlations may fall as slowly as 1 / t.
+    about : `units`, `long_name`, and perhaps `theory`, a value and its uncertainty, and its `source`.
+
+    Raises SceneError for fewer values than `LEAST_INTERVALS`.
     """
     if len(series) < LEAST_INTERVALS:
         raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_INTERVALS + 1} or more")
@@ -380,7 +383,10 @@ def observable(
     theory: tuple[Any, Any] | None = None,
     source: str | None = None,
 ) -> Observable:
-    """A result from its parts. along: dimension -> its coordinate and the attributes of that."""
+    """Build a result from its parts.
+
+    `along` maps a dimension to its coordinate and the attributes of the coordinate.
+    """
     dims = tuple(along)
     parts = {name: (values, long_name), f"{name}_error": (errors, "standard uncertainty")}
     if theory is not None:

@@ -29,7 +29,7 @@ KEPT: dict[str, tuple[str, Any, str]] = {
     ),
     "pairs": ("pairs", False, "the run must count collisions by pairs: run with --pairs"),
 }
-"""What a run keeps only if it is asked: key, value and rule of the error without it."""
+"""Data that a run stores only on request: key, value and rule of the error without them."""
 _SAMPLED = "is of the positions of pairs, which DSMC does not have"
 _OF_PAIRS: dict[str, Any] = {
     "samples": "structure",
@@ -442,7 +442,7 @@ OBSERVABLES: dict[str, Named] = {
         **_OF_PAIRS,
     ),
 }
-"""By name, as on the command line, in a sweep and in a config."""
+"""Observables by name, as on the command line, in a sweep and in a config."""
 
 
 TOO_SHORT = ("frames", "duration", "collisions", "wall_hits", "start", "D")
@@ -461,11 +461,14 @@ ALIASES: dict[str, str] = {
         if declared.function != name and not declared.arguments
     },
 }
-"""Other names of observables, among them those of their functions in `gaspart.analysis`."""
+"""Other names of observables, including the names of their functions in `gaspart.analysis`."""
 
 
 def known(name: object) -> str:
-    """Return the name of an observable, given by its name or an alias. Raises SceneError for other values."""
+    """Return the name of an observable that is given by its name or an alias.
+
+    Raises SceneError for other values.
+    """
     if isinstance(name, str):
         if name in OBSERVABLES:
             return name
@@ -476,7 +479,7 @@ def known(name: object) -> str:
 
 
 def having(**traits: Any) -> tuple[str, ...]:
-    """The names of the observables whose traits have these values."""
+    """Return the names of the observables whose traits have these values."""
     return tuple(
         name
         for name, one in OBSERVABLES.items()
@@ -485,23 +488,26 @@ def having(**traits: Any) -> tuple[str, ...]:
 
 
 def selecting(key: str) -> tuple[str, ...]:
-    """The names of the observables that have a selection."""
+    """Return the names of the observables that have a selection."""
     return tuple(name for name, one in OBSERVABLES.items() if key in one.selections)
 
 
 def selections() -> tuple[str, ...]:
-    """All keys of selections."""
+    """Return all keys of selections."""
     return tuple(dict.fromkeys(key for one in OBSERVABLES.values() for key in one.selections))
 
 
 def about(name: str, dimension: int) -> dict[str, str]:
-    """The units of an observable and its label, as of the variable that holds it."""
+    """Return units and label of an observable, the attributes of the variable that holds it."""
     one = OBSERVABLES[name]
     return {"units": units_in(one.units, dimension), "long_name": one.label}
 
 
 def name_of(function: str) -> str:
-    """The name of the observable that a function of `gaspart.analysis` measures; its own name without one."""
+    """Return the name of the observable that a function of `gaspart.analysis` measures.
+
+    A function without one has its own name.
+    """
     return next((name for name, one in OBSERVABLES.items() if one.function == function), function)
 
 
@@ -515,8 +521,11 @@ def require_selection(name: str, selection: Mapping[str, Any]) -> None:
 
 
 def require_defined(name: str, scene: Scene, **selection: Any) -> None:
-    """Raise SceneError, with the reason, for an observable that a scene does not have, however long its run,
-    and for a selection that the observable or the scene does not have."""
+    """Raise SceneError, with the reason, for an observable that a scene does not have.
+
+    No run of the scene has it, however long. Raises SceneError too for a selection that the observable or the
+    scene does not have.
+    """
     one = OBSERVABLES[known(name)]
     require_selection(name, selection)
     if not one.varying:
@@ -526,8 +535,11 @@ def require_defined(name: str, scene: Scene, **selection: Any) -> None:
 
 
 def require_run(name: str, scene: Scene, kept: Collection[str] = (), follow: int | None = None) -> None:
-    """Raise SceneError for an observable that no run of a scene has, however long it is; kept: see
-    `require_kept`; follow: the particles in the file, as of `gaspart.run`, None for all."""
+    """Raise SceneError for an observable that no run of a scene has, however long it is.
+
+    kept : see `require_kept`.
+    follow : number of particles in the file, the argument of `gaspart.run`; None for all.
+    """
     require_defined(name, scene)
     whole = {"mixed": len(scene.kinds) > 1, "unless fluxes": "fluxes" not in kept, "never": False}
     if follow is not None and follow < scene.count and whole.get(OBSERVABLES[name].whole, True):
@@ -536,8 +548,11 @@ def require_run(name: str, scene: Scene, kept: Collection[str] = (), follow: int
 
 
 def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
-    """The walls that an observable may have a value of, as `x low`: none unless it is of faces, all of a
-    pressure, of others those at a temperature."""
+    """Return the walls, named like `x low`, for which an observable may have a value.
+
+    An observable of faces has all walls for a pressure, the faces at a temperature otherwise; another
+    observable has no walls.
+    """
     if "face" not in OBSERVABLES[name].along:
         return ()
     if OBSERVABLES[name].of_impulses:
@@ -546,8 +561,11 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
 
 
 def require_steady_value(name: str, scene: Scene) -> None:
-    """Raise SceneError, with the reason, for an observable that is 0 on average in the steady state of a
-    scene: no run makes it accurate relatively. In a container that is open to a vacuum alone all are."""
+    """Raise SceneError for an observable that is 0 on average in a steady state.
+
+    The error has the reason. No run makes such an observable relatively accurate. In a container that is open
+    to a vacuum alone all observables are 0.
+    """
     if scene.is_open and not any(face.temperatures for _, face in scene.faces_of(Open)):
         refuse_open(scene, "has no reservoir: all particles leave, and nothing is steady; give a duration")
     for condition in OBSERVABLES[known(name)].drives:
@@ -555,8 +573,11 @@ def require_steady_value(name: str, scene: Scene) -> None:
 
 
 def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
-    """Raise SceneError, with the reason, if a run by an engine says nothing of an observable: its equation
-    does not have it, or has one value of it whatever happens, or the engine does not keep what it needs."""
+    """Raise SceneError, with the reason, if a run by an engine does not determine an observable.
+
+    Its equation does not have the observable, or has one value of it in any case, or the engine does not
+    store the required data.
+    """
     from gaspart.state.optional_tallies import StressTally, WallShearTally  # which load numpy
 
     one = OBSERVABLES[known(name)]
@@ -571,8 +592,10 @@ def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
 
 
 def require_kept(name: str, kept: Collection[str]) -> None:
-    """Raise SceneError, with the option that keeps it, if a run does not keep what an observable needs: the
-    "fluxes" or "pairs" among `kept`. Paths are those of frames that are close enough, too."""
+    """Raise SceneError, with the option to set, if a run lacks what an observable needs.
+
+    `kept` has the stored data, "fluxes" or "pairs". Paths also follow from frames that are close enough.
+    """
     needs = OBSERVABLES[known(name)].needs
     if needs in KEPT and needs not in kept:
         raise SceneError(*KEPT[needs])

@@ -108,7 +108,7 @@ _ALIKE = 1e-9
 def kept(run: Run) -> PairImpulseTally | None:
     """What a run has kept of impulses of pairs; None if that is nothing, or not all particles are in the
     file, from which the temperature follows."""
-    return None if run.is_subset else stored_tally(run.data.attrs.get("tallies", "[]"), PairImpulseTally)
+    return None if run.is_subset else stored_tally(run.data.attrs, PairImpulseTally)
 
 
 def shell_volumes(bins: int, dimension: int) -> np.ndarray:

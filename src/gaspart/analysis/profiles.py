@@ -1,8 +1,9 @@
 """Sums in cells, frame by frame: density, flow and temperature, and the errors of their means.
 
-What is in a cell is correlated over many frames, near the top of a bed of grains for tens of its collision
-times. So the frames are joined to blocks, at most 256, and the error of a ratio of two sums over the run, R =
-sum A / sum B, is that of the mean of the correlated series (A - R B) / mean B, of each cell for itself.
+The content of a cell is correlated over many frames, near the top of a bed of grains for tens of its
+collision times. So the frames are joined to blocks, at most 256, and the error of a ratio of two sums over
+the run, R = sum A / sum B, is the error of the mean of the correlated series (A - R B) / mean B, for each
+cell separately.
 """
 
 from __future__ import annotations
@@ -31,28 +32,34 @@ _ROUNDING = 1e-12  # relative scatter of what does not change
 
 @dataclass(frozen=True)
 class Means:
-    """Values in cells, their standard errors, and the degrees of freedom of these, all of one shape. NaN: a
-    value of an empty cell; an error of fewer than two degrees of freedom, or of what does not change in a
-    cell, as the velocity where one particle passes: it is 0 if nothing moves, or all cells have one value."""
+    """Values in cells, their standard errors, and the degrees of freedom of these errors.
+
+    All have one shape. A value is NaN in an empty cell. An error is NaN if it has fewer than two degrees of
+    freedom, or if the values do not change in a cell, for example the velocity where one particle passes: it
+    is 0 if nothing moves, or all cells have one value.
+    """
 
     values: np.ndarray
     errors: np.ndarray
     freedoms: np.ndarray
 
     def times(self, factor: float) -> Means:
-        """The same, multiplied by an exact number."""
+        """Multiply the values and errors by an exact number."""
         return Means(factor * self.values, factor * self.errors, self.freedoms)
 
 
 def with_freedom(result: Observable, found: Means) -> Observable:
-    """A result with a variable of the suffix _freedom, the degrees of freedom of its errors."""
+    """Add the degrees of freedom of its errors to a result, by the suffix _freedom."""
     about = {"units": "1", "long_name": "degrees of freedom of the uncertainty"}
     result[f"{result.attrs['quantity']}_freedom"] = result.estimate.dims, found.freedoms, about
     return result
 
 
 def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
-    """sum A / sum B of series (K, ...) of K consecutive blocks, at least 16. still: whether nothing moves."""
+    """Compute sum A / sum B of series (K, ...) of K consecutive blocks.
+
+    There are at least 16 blocks. `still` states that nothing moves.
+    """
     total = below.sum(axis=0)
     values = np.divide(above.sum(axis=0), total, out=np.full(total.shape, np.nan), where=total > 0.0)
     errors, filled = np.full(total.shape, np.nan), (below > 0.0).sum(axis=0)
@@ -75,9 +82,10 @@ def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
 
 @dataclass(frozen=True)
 class Cells:
-    """The cells of a run along some axes, each as long as the container along the others.
+    """Cells of a run along some axes, as long as the container along the others.
 
-    members: which particles (n,) count, all of them moving; axes: of the grid.
+    members : numbers (n,) of the particles that count, all of them moving.
+    axes : axes of the grid.
     """
 
     run: Run
@@ -106,16 +114,18 @@ class Cells:
 
     @property
     def _still(self) -> bool:
-        """Whether none of the particles moves."""
+        """True if none of the particles moves."""
         return not self.run.velocities[:, self.members].any()
 
     def sums(self, weights: np.ndarray | None = None) -> np.ndarray:
-        """(K, *cells) sums over the particles, and over the frames of each block, of weights (T, n), or their
-        number."""
+        """Sum weights (T, n), or count particles, in each cell over the frames of each block.
+
+        The shape is (K, *cells).
+        """
         return self.grid.sums(self.cells, weights, self.blocks)
 
     def room(self) -> np.ndarray:
-        """(K, *cells) the volume of the cells that is within the container, summed over the frames."""
+        """Compute the volume of the cells within the container, summed over the frames, shape (K, *cells)."""
         moving, ends = self.run.scene.moving_axes, sides(self.run, self.run.time[:1])
         lengths = np.diff(ends[0], axis=1)[:, 0]
         across = [axis for axis in range(self.run.dimension) if axis not in self.axes]
@@ -126,7 +136,7 @@ class Cells:
         return self._changing_room(across)
 
     def _changing_room(self, across: Sequence[int]) -> np.ndarray:
-        """The same where faces move."""
+        """Compute `room` where faces move."""
         ends = sides(self.run, self.run.time)
         wide = np.diff(ends[:, across], axis=2)[..., 0].prod(axis=1)
         parts = []
@@ -142,18 +152,21 @@ class Cells:
         return np.array(total)
 
     def density(self, weights: np.ndarray | None = None) -> Means:
-        """Particles, or weights (T, n) of them, per volume within the container."""
+        """Compute the number of particles, or of weights (T, n), per volume within the container."""
         return ratio(self.sums(weights), self.room(), self._still)
 
     def velocity(self) -> Means:
-        """(d, *cells) mean velocity of the particles."""
+        """Compute the mean velocity of the particles, shape (d, *cells)."""
         count, velocities = self.sums(), self.run.velocities[:, self.members]
         parts = [ratio(self.sums(velocities[..., k]), count, self._still) for k in range(self.run.dimension)]
         return Means(*(np.stack([getattr(one, name) for one in parts]) for name in vars(parts[0])))
 
     def temperature(self, local: bool) -> Means:
-        """k_B T: twice the kinetic energy about the mean motion per degree of freedom. local: about the flow
-        in these cells, in any case; otherwise only if the gas flows, see `flow.about_the_flow`."""
+        """Compute k_B T: twice the kinetic energy about the mean motion per degree of freedom.
+
+        If `local`, the motion is about the flow in these cells in any case; otherwise only if the gas flows,
+        see `flow.about_the_flow`.
+        """
         along = dict(zip(self.axes, self.numbers, strict=True))
         motion = about_the_flow(self.run, along)
         if local and not self.run.flow_axes:
@@ -161,7 +174,7 @@ class Cells:
         return self.temperature_of(motion)
 
     def temperature_of(self, motion: Peculiar) -> Means:
-        """That of these peculiar velocities, of all moving particles."""
+        """Compute the temperature from these peculiar velocities of all moving particles."""
         masses = self.run.masses[self.run.moving]
         chosen = np.searchsorted(np.flatnonzero(self.run.moving), self.members)
         energies, freedoms = motion.energies(masses), motion.freedoms()

@@ -1,4 +1,4 @@
-"""The measured part of a run: of a trajectory, by its path or open, or of a simulation."""
+"""Measured part of a run: of a trajectory, by its path or open, or a simulation."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_particle
-from gaspart.state.optional_tallies import tally_to_dict
+from gaspart.state.optional_tallies import tallies_to_json
 from gaspart.state.state import by_number
 from gaspart.state.tally import Tally
 from gaspart.trajectory.pairs import PairCounter
@@ -45,12 +45,14 @@ _MOST = 20_000_000  # numbers that such frames hold
 
 @dataclass(frozen=True)
 class Run:
-    """T frames of N particles in d dimensions: the measured part of a run.
+    """Measured part of a run: T frames of N particles in d dimensions.
 
-    time (T,); data: the frames, with cumulative counters (T,) or (T, walls). centred: along the axes on
-    which the total momentum is conserved it is known to be zero, so that a file that lacks particles, or
-    their velocities, has a temperature too. about: what velocities and displacements are relative to
-    (`analysis.flow`): the local "flow" of the gas, or "rest".
+    time : (T,), times of the frames.
+    data : the frames, with cumulative counters (T,) or (T, walls).
+    centred : True if the total momentum is known to be zero along the axes on which it is conserved; a file
+        that lacks particles, or their velocities, then has a temperature too.
+    about : reference of velocities and displacements (`analysis.flow`): the local "flow" of the gas, or
+        "rest".
     """
 
     scene: Scene
@@ -80,17 +82,19 @@ class Run:
         return float(np.diff(self.time).mean())
 
     def increments(self, name: str) -> np.ndarray:
-        """(T - 1, ...) how much a counter grew in each interval."""
+        """Compute the growth of a counter in each interval, shape (T - 1, ...)."""
         return np.diff(self.data[name].values, axis=0)
 
     def growth(self, name: str) -> np.ndarray:
-        """(...) how much a counter grew per time."""
+        """Compute the growth of a counter per time."""
         first, last = self.data[name].values[[0, -1]]
         return (last - first) / (self.time[-1] - self.time[0])
 
     def block_length(self, blocks: int) -> int:
-        """How many frames, after the first one, each of `blocks` of equal length has; a remainder is in none.
-        Raises ValueError for too few frames."""
+        """Return the number of frames, after the first one, in each of `blocks` of equal length.
+
+        A remainder is in no block. Raises ValueError for too few frames.
+        """
         length = (len(self.time) - 1) // blocks
         if length < 1:
             raise ValueError(f"blocks: {blocks} (more than the {len(self.time) - 1} intervals of a run)")
@@ -107,7 +111,7 @@ class Run:
         return self._vectors("velocities").values.astype(float)
 
     def _vectors(self, name: str) -> xr.DataArray:
-        """Those of all frames. Raises SceneError if the file does not keep them."""
+        """Return the vectors of this name in all frames; raise SceneError if the file lacks them."""
         if name not in self.data:
             rule = f"of each particle the file has nothing else, and {name} are needed"
             raise SceneError("keep", self.data.attrs.get("keep"), rule)
@@ -125,7 +129,10 @@ class Run:
         return self._each(per_particle(self.scene, "radius")).astype(float)
 
     def _each(self, values: np.ndarray) -> np.ndarray:
-        """(N,) values of the particles at the start, where others come of those, which are alike."""
+        """Repeat values of the particles at the start to the shape (N,).
+
+        The particles that enter later are equal to the particles at the start.
+        """
         return np.resize(values, self.count)
 
     @cached_property
@@ -136,22 +143,28 @@ class Run:
 
     @cached_property
     def moving(self) -> np.ndarray:
-        """(N,) which particles are not fixed. Raises SceneError if the file lacks some particles, unless the
-        run is centred."""
+        """Particles (N,) that are not fixed, as a mask.
+
+        Raises SceneError if the file lacks some particles, unless the run is centred.
+        """
         if not self.centred:
             self.require_all()
         return np.isfinite(self.masses)
 
     @property
     def conserved(self) -> np.ndarray:
-        """(d,) the axes along which the total momentum is, and about whose mean motions are: none about
-        rest."""
+        """Axes (d,) along which the total momentum is conserved, as a mask; none about rest.
+
+        Motions along these axes are about the mean.
+        """
         return np.array(self.scene.conserved_axes) & (self.about == FLOW)
 
     @cached_property
     def accessible(self) -> Accessible:
-        """The volume and the areas that centres can reach around the fixed particles of the run. Raises
-        SceneError if fixed species are not in the file."""
+        """Volume and areas that centres can reach around the fixed particles of the run.
+
+        Raises SceneError if fixed species are not in the file.
+        """
         if not any(kind.fixed and kind.count for kind in self.scene.species):
             return Accessible(self.scene)
         fixed = ~self.moving
@@ -159,8 +172,10 @@ class Run:
 
     @cached_property
     def motion(self) -> Peculiar:
-        """Of the moving particles about the local flow where the gas flows, otherwise about the velocity of
-        their centre of mass, where that is conserved (see `flow`)."""
+        """Velocities of the moving particles about the local flow, or about their centre of mass.
+
+        The former if the gas flows, the latter along axes on which its momentum is conserved (see `flow`).
+        """
         return about_the_flow(self)
 
     @cached_property
@@ -175,8 +190,11 @@ class Run:
 
     @cached_property
     def freedoms(self) -> np.ndarray:
-        """(T,) degrees of freedom of flight of each frame. Raises SceneError if there is none, as of one
-        particle in a periodic container."""
+        """Number of degrees of freedom of flight in each frame, shape (T,).
+
+        Raises SceneError if there is no degree of freedom, for example for one particle in a periodic
+        container.
+        """
         moving = int(self.moving.sum())
         found = np.full(len(self.time), self.dimension * moving - int(self.conserved.sum()), dtype=float)
         if self.flow_axes:
@@ -187,14 +205,17 @@ class Run:
 
     @property
     def freedom(self) -> float:
-        """Their mean: a whole number unless the gas flows."""
+        """Mean number of degrees of freedom over the frames: an integer unless the gas flows."""
         return float(self.freedoms.mean())
 
     @cached_property
     def temperatures(self) -> np.ndarray:
-        """(T,) k_B T of each frame: twice the kinetic energy of flight about the mean motion (see `motion`)
-        per degree of freedom; 0 if it is only rounding of the velocity of the centre of mass. Of a file that
-        lacks particles, see `_of_all`. Raises SceneError as `freedoms`."""
+        """Temperature k_B T of each frame, shape (T,).
+
+        It is twice the kinetic energy of flight about the mean motion (see `motion`) per degree of freedom; 0
+        if this energy is only rounding of the velocity of the centre of mass. For a file that lacks
+        particles, see `_of_all`. Raises SceneError as `freedoms`.
+        """
         refuse_open(self.scene, "changes the particles: there is no temperature of the whole run")
         lacking = self.is_subset or "velocities" not in self.data
         if lacking and (self.centred or "stress_sum" in self.data):
@@ -213,8 +234,11 @@ class Run:
 
     @property
     def _of_all(self) -> np.ndarray:
-        """(T,) k_B T of each frame of a run that is centred or has the tally of the stress, whatever of its
-        particles is in the file: from the energy of all, of flight and spin, about the centre of mass."""
+        """Temperature k_B T of each frame, from the energy of all particles, shape (T,).
+
+        The run is centred or has the tally of the stress. The energy, of flight and spin, is about the centre
+        of mass, whichever of its particles are in the file.
+        """
         d, count = self.dimension, self.count
         freedom = d * count - int(self.conserved.sum()) + self.scene.rough * count * (d * (d - 1) // 2)
         if freedom < 1:
@@ -231,17 +255,17 @@ class Run:
 
     @property
     def has_gravity(self) -> bool:
-        """Whether gravity acts."""
+        """True if gravity acts."""
         return bool(np.any(self.scene.gravity))
 
     @property
     def is_subset(self) -> bool:
-        """Whether only some of the particles are in the file."""
+        """True if only some of the particles are in the file."""
         return self.data.sizes["atom"] < self.count
 
     @property
     def has_states(self) -> bool:
-        """Whether the positions and velocities of all particles are in the file."""
+        """True if the positions and velocities of all particles are in the file."""
         return not self.is_subset and {"coordinates", "velocities"} <= set(self.data.variables)
 
     def require_all(self) -> None:
@@ -252,13 +276,15 @@ class Run:
 
     @property
     def dissipates(self) -> bool:
-        """Whether contacts lose energy."""
+        """True if contacts lose energy."""
         return self.scene.dissipates
 
     @property
     def fluid(self) -> Gas | None:
-        """The scene's gas if it is one of two particles or more in a periodic container, within
-        the range of the fluid's equation of state."""
+        """Gas of the scene, if it has two particles or more in a periodic container.
+
+        Outside the range of the equation of state of the fluid there is no such gas: None.
+        """
         gas = self.scene.gas
         if gas is None or gas.count < 2 or not self.periodic.all():
             return None
@@ -266,7 +292,7 @@ class Run:
 
     @property
     def mixture(self) -> Mixture | None:
-        """The scene's mixture, in which alike species are one each, likewise."""
+        """Mixture of the scene, in which equal species are one; None under the conditions of `fluid`."""
         mixture = self.scene.mixture
         if mixture is None or not self.periodic.all() or self.count < 2:
             return None
@@ -278,16 +304,21 @@ class Run:
 
     @property
     def moving_fluid(self) -> Gas | None:
-        """The `fluid` at the temperature of the run, None if it is at rest. Raises SceneError as `moving`."""
+        """The `fluid` at the temperature of the run; None if it is at rest.
+
+        Raises SceneError as `moving`.
+        """
         gas = self.fluid
         return replace(gas, temperature=self.temperature) if gas and self.temperature > 0.0 else None
 
 
 def selected(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:
-    """Which of the moving particles (M,) an observable is of: indices into these, by default all.
+    """Return the indices of the selected particles among the moving ones (M,); by default all.
 
-    species: its number, as in `Run.species`; particles: numbers of particles, as in the file. Raises
-    SceneError for both, numbers that do not exist, and no moving particle.
+    species : number of the species, as in `Run.species`.
+    particles : numbers of particles, as in the file.
+
+    Raises SceneError for both arguments, for numbers that do not exist, and if no particle moves.
     """
     moving = np.flatnonzero(run.moving)
     if species is not None and particles is not None:
@@ -310,7 +341,10 @@ def selected(run: Run, species: int | None, particles: Sequence[int] | None) -> 
 
 
 def require_collisions(run: Run) -> None:
-    """Raise SceneError for a run whose measured part has none, so that nothing is known of their scatter."""
+    """Raise SceneError for a run without collisions in its measured part.
+
+    The scatter of the observable is then unknown.
+    """
     if not run.increments("collisions").any():
         raise SceneError("collisions", 0, "none happened in the measured part; make a longer run")
 
@@ -324,12 +358,17 @@ def open_run(
     varying: bool = False,
     about: str = FLOW,
 ) -> Iterator[Run]:
-    """The part of a source from the time `start` on; by default without its first quarter.
+    """Open the part of a source from the time `start` on.
 
-    A simulation is run again, from its start to the present time; with `pairs`, the collisions of each pair
-    of species are counted then. sheared: whether the observable has a meaning in a sheared gas; varying:
-    whether it has one where faces are open; about: see `Run`. Raises SceneError where it has none, for fewer
-    than two frames, and for what `open_trajectory` refuses.
+    The default is the run without its first quarter. A simulation is run again, from its start to the present
+    time; with `pairs`, the collisions of each pair of species are counted then.
+
+    sheared : True if the observable has a meaning in a sheared gas.
+    varying : True if it has a meaning where faces are open.
+    about : see `Run`.
+
+    Raises SceneError where it has no meaning, for fewer than two frames, and for input that `open_trajectory`
+    rejects.
     """
     one_of("about", about, ABOUT)
     if isinstance(source, Simulation):
@@ -359,8 +398,10 @@ def open_run(
 
 
 def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
-    """The frames of a simulation, which is run again from its start, at even times. Raises SceneError for one
-    that has not advanced."""
+    """Run a simulation again from its start and return its frames, at even times.
+
+    Raises SceneError for a simulation that has not advanced.
+    """
     scene, engine = simulation.scene, simulation.engine
     if simulation.time <= 0.0:
         raise SceneError("simulation", "at time 0", "has not advanced")
@@ -397,6 +438,6 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
         attrs={
             "scene": dump_yaml(scene.to_dict()),
             "engine": json.dumps(engine_to_dict(engine)),
-            "tallies": json.dumps([*map(tally_to_dict, simulation.tallies)]),
+            "tallies": tallies_to_json(simulation.tallies),
         },
     )

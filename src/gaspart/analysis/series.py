@@ -1,7 +1,7 @@
-"""What a run gives in each interval between its frames, and in blocks of them.
+"""Values of a run in each interval between its frames, and in blocks of intervals.
 
-One place for Z, the rate of collisions and the pressures on faces: `gaspart.analysis` reduces these to a
-value with an uncertainty, the measurements of figures combine them in their own ways.
+Z, the rate of collisions and the pressures on faces are computed only here: `gaspart.analysis` reduces these
+to a value with an uncertainty, the measurements of figures combine them in their own ways.
 """
 
 from __future__ import annotations
@@ -18,16 +18,19 @@ from gaspart.state.tally import compressibility_factor
 
 
 def compressibility(run: Run) -> np.ndarray:
-    r"""(T - 1,) Z in each interval, by the virial theorem: with impulses dp exchanged at the distance dr,
+    r"""Compute Z in each interval, by the virial theorem, shape (T - 1,).
+
+    With impulses dp exchanged at the distance dr,
 
         Z = P V / (N k_B T) = 1 + sum |dr . dp| / (d N k_B T t).
 
-    The temperature is that of the motion about the centre of mass, k_B T = 2 E' / (d (N - 1)). A pair at
+
+    The temperature is defined by the motion about the centre of mass, k_B T = 2 E' / (d (N - 1)). A pair at
     contact gives |dp| proportional to |v_n| at a rate proportional to it, so the sum grows with <v_n^2>, v_n
     one component of v_1 - v_2. That is linear in the energy (fixing the energy changes nothing), and with
     zero total momentum <v_1 . v_2> = -<v^2> / (N - 1), hence <v_n^2> = 2 k_B T / m with this T. So Z - 1 is
-    that of the canonical ensemble of N particles, whose distance from the infinite system is known to first
-    order in 1/N (`theory.finite_size_correction(..., ensemble="canonical")`).
+    the value of the canonical ensemble of N particles, whose distance from the infinite system is known to
+    first order in 1/N (`theory.finite_size_correction(..., ensemble="canonical")`).
     """
     return compressibility_factor(
         run.increments("virial_sum"), run.count, run.dimension, run.temperature, np.diff(run.time)
@@ -35,8 +38,11 @@ def compressibility(run: Run) -> np.ndarray:
 
 
 def collisions(run: Run) -> np.ndarray:
-    """(T - 1,) collisions of one moving particle in each interval: each counts for both, if both move. Raises
-    SceneError for a file that does not count those with fixed particles, or lacks particles."""
+    """Compute the collisions of one moving particle in each interval, shape (T - 1,).
+
+    Each collision counts for both particles, if both move. Raises SceneError for a file that does not count
+    the collisions with fixed particles, or lacks particles.
+    """
     scene, met, count = run.scene, run.increments("collisions"), int(run.moving.sum())
     if count == 1:
         return np.asarray(met)
@@ -48,27 +54,32 @@ def collisions(run: Run) -> np.ndarray:
 
 
 def collision_rate(run: Run) -> np.ndarray:
-    """(T - 1,) the same per time."""
+    """Compute the collisions of one moving particle per time in each interval, shape (T - 1,)."""
     return collisions(run) / np.diff(run.time)
 
 
 def face_impulses(run: Run) -> np.ndarray:
-    """(T - 1, 2d) momentum given to each face in each interval; 0 where there is no wall."""
+    """Compute the momentum (T - 1, 2d) given to each face in each interval.
+
+    It is 0 without a wall.
+    """
     return np.asarray(np.abs(run.increments("wall_impulse")[:, : 2 * run.dimension]))
 
 
 def face_pressures(run: Run) -> np.ndarray:
-    """(T - 1, 2d) the same per time and area, as `analysis.wall_pressure` defines it; NaN where that is not
-    known."""
+    """Compute the pressure on each face in each interval, as `analysis.wall_pressure` defines it.
+
+    The shape is (T - 1, 2d); NaN where the pressure is not known.
+    """
     return per_area(run, face_impulses(run), "momentum_per_area") / np.diff(run.time)[:, None]
 
 
 @dataclass(frozen=True)
 class Blocks:
-    """K blocks of a run of equal length; a remainder is in none. Neighbours share the frame at which counters
-    are read; of what is averaged over frames the first frame of the run is in none.
+    """K blocks of equal length of a run; a remainder is in no block.
 
-    Raises ValueError for more blocks than intervals.
+    Neighbours share the frame at which counters are read; averages over frames leave out the first frame of
+    the run. Raises ValueError for more blocks than intervals.
     """
 
     run: Run
@@ -95,29 +106,34 @@ class Blocks:
         return np.diff(self.run.time[self.ends])
 
     def growth(self, name: str) -> np.ndarray:
-        """(K, ...) how much a counter grew per time."""
+        """Compute the growth of a counter per time in each block, shape (K, ...)."""
         grown = np.diff(self.run.data[name].values[self.ends], axis=0)
         return np.asarray(grown / self.durations.reshape(-1, *[1] * (grown.ndim - 1)))
 
     def means(self, values: np.ndarray) -> np.ndarray:
-        """(K, ...) of values of intervals (T - 1, ...)."""
+        """Average values of intervals (T - 1, ...) in each block, shape (K, ...)."""
         used = values[: self.number * self.length]
         return np.asarray(used.reshape(self.number, self.length, *used.shape[1:]).mean(axis=1))
 
     def means_of_frames(self, values: np.ndarray) -> np.ndarray:
-        """(K, ...) of values of frames (T, ...)."""
+        """Average values of frames (T, ...) in each block, shape (K, ...)."""
         return self.means(values[1:])
 
     def sums(self, grid: Grid, cells: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
-        """(K, *cells) sums over the particles in cells (T, N) and over the frames of each block, of weights
-        (T, N) or of their number."""
+        """Sum weights (T, N), or count particles, in cells over the frames of each block.
+
+        The shape is (K, *cells).
+        """
         block = np.arange(self.number).repeat(self.length)
         chosen = None if weights is None else np.broadcast_to(weights, cells.shape)[self.frames]
         return grid.sums(cells[self.frames], chosen, block)
 
 
 def over(values: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """(K, ...) sums of values (T - 1, ...) of intervals between the frames `ends` (K + 1,)."""
+    """Sum values (T - 1, ...) of intervals between the frames `ends` (K + 1,).
+
+    The sums have the shape (K, ...).
+    """
     return np.add.reduceat(values[: ends[-1]], ends[:-1], axis=0)
 
 
@@ -132,15 +148,17 @@ _FINE = 2000
 def plateau(
     volume: np.ndarray, pressure: np.ndarray, error: np.ndarray
 ) -> tuple[float, float, tuple[float, float]]:
-    """Pressure of the horizontal line that cuts off equal areas of the loop, its error, and the volumes at
-    its ends.
+    """Compute the pressure of the line that cuts off equal areas of the loop of p(V).
 
-    volume (per particle, any order), pressure and its standard errors: (P,). A finite system in the
-    coexistence region has a loop (Mayer and Wood, J. Chem. Phys. 42, 4268 (1965)) because its interface costs
-    free energy; the area between the ends is the difference in free energy, so the line is where both phases
-    have the same chemical potential. The loop is interpolated monotonically between points (Fritsch and
-    Carlson). The error is half of the width of the middle 68 % of loops redrawn from the points' errors.
-    Without a loop, or if less than half of those redrawn have one: NaN, NaN, (NaN, NaN).
+    Returned are the pressure, its error, and the volumes at the ends of the line.
+
+    The arguments `volume` (per particle, any order), `pressure` and its standard errors have the shape (P,).
+    A finite system in the coexistence region has a loop (Mayer and Wood, J. Chem. Phys. 42, 4268 (1965))
+    because its interface costs free energy; the area between the ends is the difference in free energy, so
+    the line is where both phases have the same chemical potential. The loop is interpolated monotonically
+    between points (Fritsch and Carlson). The error is half of the width of the middle 68 % of loops redrawn
+    from the points' errors. Without a loop, or if less than half of the redrawn ones have a loop: NaN, NaN,
+    (NaN, NaN).
     """
     order = np.argsort(volume)
     volume, pressure, error = (np.asarray(values, dtype=float)[order] for values in (volume, pressure, error))
@@ -154,7 +172,7 @@ def plateau(
 
 
 def _equal_areas(volume: np.ndarray, pressure: np.ndarray) -> tuple[float, tuple[float, float]]:
-    """The line's height and its ends, largest volume first."""
+    """Return the height of the line and its ends, largest volume first."""
     from scipy.interpolate import PchipInterpolator
     from scipy.optimize import brentq
 

@@ -1,4 +1,4 @@
-"""Viscosities, conductivity of heat and pressure tensor, from the tally of the stress and the heat flux.
+"""Viscosities, thermal conductivity and pressure tensor, from the tally of the stress and the heat flux.
 
 A run with `Correlations(stress=True)` has summed products of these fluxes about the velocity of the centre of
 mass, J, each the mean over an interval h between two samples, and squared differences of their time
@@ -7,9 +7,10 @@ times of
 
     <(G(t) - G(0))^2> / (2 V t x)  and of its derivative  h [C(0)/2 + C(h) + C(2h) + ... ] / (V x),
 
+
 with C the correlation of V J, and x = k_B T for the viscosities, k_B T^2 for the conductivity of a gas of one
-species: the forms of Helfand and of Green and Kubo. With the means over intervals in place of instantaneous
-values the second holds exactly, with the impulses at collisions, at the times between two lags.
+species, the forms of Helfand and of Green and Kubo. With the means over intervals in place of instantaneous
+values the second form holds exactly, with the impulses at collisions, at the times between two lags.
 """
 
 from __future__ import annotations
@@ -55,8 +56,11 @@ from gaspart.trajectory.correlator import Correlations
 
 
 def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
-    """That of a mixture, from correlations until a lag, a time. Raises SceneError for frames at uneven times,
-    too far apart, or too few, and for a run that lacks some particles."""
+    """Measure the thermal conductivity of a mixture, from correlations until a lag, a time.
+
+    Raises SceneError for frames at uneven times, too far apart, or too few, and for a run that lacks some
+    particles.
+    """
     steps = np.diff(run.time)
     if np.ptp(steps) > 1e-6 * steps.mean():
         raise SceneError("time", "frames at uneven times", "a correlation needs even ones")
@@ -82,8 +86,10 @@ def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
 
 
 def _passed(run: Run) -> np.ndarray:
-    """(S - 1, T, d) displacements relative to the centre of mass, summed over the particles of each species
-    but the last, whose sum follows from the others'."""
+    """Sum displacements about the centre of mass over the particles of each species.
+
+    The shape is (S - 1, T, d): the sum of the last species follows from the others.
+    """
     moving, masses = run.moving, run.masses  # raises SceneError if some are not in the file
     paths = unwrapped(run)[:, moving]
     paths = paths - np.einsum("tnd,n->td", paths, masses / masses.sum())[:, None]
@@ -92,9 +98,12 @@ def _passed(run: Run) -> np.ndarray:
 
 
 def _products(one: np.ndarray, other: np.ndarray, lags: int) -> np.ndarray:
-    """(A, B, T - 1 - lags) of time integrals (A, T, d) and (B, T, d) of fluxes: the change of each over an
-    interval times half of that of the other over the same and its change over so many later ones, the mean
-    over both orders and over axes."""
+    """Compute products of changes of two sets of time integrals of fluxes.
+
+    The integrals have the shapes (A, T, d) and (B, T, d), the products (A, B, T - 1 - lags). The change of
+    one over an interval is multiplied by half of the change of the other over the same interval plus its
+    change over the next `lags` ones; the mean is over both orders and over axes.
+    """
 
     def half(first: np.ndarray, second: np.ndarray) -> np.ndarray:
         origins = first.shape[1] - 1 - lags
@@ -178,8 +187,8 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
 
     Notes
     -----
-    The mean is that of the run, of duration T, which makes the value too low by about 2 lag / T of it. Theory
-    as of `shear_viscosity`.
+    The mean is taken over the run, of duration T, which makes the value too low by about 2 lag / T of it.
+    Theory as for `shear_viscosity`.
 
     Examples
     --------
@@ -210,7 +219,7 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     Returns
     -------
     Observable
-        The conductivity, in [1/(length^(d-2) time)] with k_B = 1, and the curves as of `shear_viscosity`.
+        The conductivity, in [1/(length^(d-2) time)] with k_B = 1, and the curves as for `shear_viscosity`.
 
     Raises
     ------
@@ -220,7 +229,7 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     Notes
     -----
     Of a mixture it is the conductivity without diffusion (see `conduction`), from the fluxes between frames,
-    whose interval may not be longer than the lag, without the curves. Theory as of `shear_viscosity`.
+    whose interval may not be longer than the lag, without the curves. Theory as for `shear_viscosity`.
 
     Examples
     --------
@@ -264,7 +273,8 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
 
     Notes
     -----
-    Of a sheared gas it is that of velocities about the flow. Theory: the equation of state, of a gas at rest.
+    Of a sheared gas it is computed from velocities about the flow. Theory: the equation of state, of a gas at
+    rest.
 
     Examples
     --------
@@ -296,8 +306,11 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
 
 
 def _stored(run: Run) -> Correlations:
-    """The settings of a run's correlations of the stress. Raises SceneError for a run without them, and for
-    one of an older version, which kept fluxes of absolute velocities, if the gas moves as a whole."""
+    """Return the settings of a run's correlations of the stress.
+
+    Raises SceneError for a run without them. An older version stored fluxes of absolute velocities: such a
+    run is rejected if the gas moves as a whole.
+    """
     text = run.data.attrs.get("correlations")
     settings = Correlations.from_json(text) if text else None
     if settings is None or not settings.stress:
@@ -310,14 +323,14 @@ def _stored(run: Run) -> Correlations:
 
 
 def _moves(scene: Scene, state: State) -> bool:
-    """Whether a gas moves as a whole, with more energy than changes no coefficient."""
+    """Return True if a gas moves as a whole with enough energy to change a coefficient."""
     squares = (state.velocities - flow(scene, state.positions)) ** 2
     thermal = float((state.masses[:, None] * squares).mean())
     return float(state.masses.sum() * (drift_of(scene, state) ** 2).sum()) > _SLIGHT * thermal
 
 
 def _initial(run: Run) -> State:
-    """The state at the start of a trajectory."""
+    """Return the state at the start of a trajectory."""
     seed = json.loads(run.data.attrs["seed"])
     state = initial_state(run.scene, tuple(seed) if isinstance(seed, list) else seed)
     if INITIAL[0] in run.data:
@@ -326,7 +339,7 @@ def _initial(run: Run) -> State:
 
 
 def _response(run: Run, lag: float | None) -> Observable:
-    """The shear viscosity of a sheared gas, from the momentum that it carries across the flow."""
+    """Measure the shear viscosity of a sheared gas, from the momentum carried across the flow."""
     _stored(run)
     scene, rate = run.scene, run.scene.shear_rate
     if lag is not None:
@@ -340,7 +353,10 @@ def _response(run: Run, lag: float | None) -> Observable:
 
 
 def _coefficient(run: Run, public: str, name: str, lag: float | None) -> Observable:
-    """A transport coefficient from the correlations of a flux, `name` in `trajectory.correlator.STRESS`."""
+    """Measure a transport coefficient from the correlations of a flux.
+
+    The flux is `name` in `trajectory.correlator.STRESS`.
+    """
     require_defined(public, run.scene)
     settings = _stored(run)
     lags = _lags_until(settings, lag)
@@ -365,7 +381,7 @@ _PARTS = {"shear": ("shear", "rotational")}
 
 
 def _lags_until(settings: Correlations, lag: float | None) -> int:
-    """The number of the lag until which correlations count."""
+    """Return the number of the lag until which correlations count."""
     if lag is None:
         return settings.lags
     number = round(lag / settings.interval)
@@ -424,15 +440,17 @@ def helfand(run: Run, name: str) -> np.ndarray:
 
 
 def _scale(run: Run, name: str) -> float:
-    """1 / (V x). Raises SceneError where nothing moves about the mean velocity."""
+    """Return 1 / (V x); raise SceneError if nothing moves about the mean velocity."""
     if not run.temperature > 0.0:
         raise SceneError("temperature", run.temperature, "without motion no flux fluctuates")
     return 1.0 / (math.prod(run.scene.container.lengths) * run.temperature ** (2 if name == "heat" else 1))
 
 
 def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """(B, lags) the correlation of V J, and the squared change of G, by blocks. The mean of the flux is taken
-    off where it is not zero."""
+    """Return the correlation of V J and the squared change of G, each (B, lags).
+
+    They are by blocks. The mean of the flux is subtracted where it is not zero.
+    """
     data: xr.Dataset = run.data
     samples = data["correlated_samples"].values
     lags = np.arange(data.sizes["lag"])

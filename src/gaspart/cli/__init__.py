@@ -52,13 +52,16 @@ _EXAMPLES = """examples:
 
 
 def lines() -> dict[str, str]:
-    """The line of each command in `gaspart --help`."""
+    """Return the line of each command in `gaspart --help`."""
     return {name: line for name, (_, line) in _COMMANDS.items()}
 
 
 def main(arguments: Sequence[str] | None = None, without_output: bool = False) -> int:
-    """Carry out a command line; returns the exit code. without_output: the standard output is closed; a
-    command whose result would be printed there has failed."""
+    """Execute a command line, and return the exit code.
+
+    If `without_output`, the standard output is closed; a command whose result would be printed there has
+    failed.
+    """
     given: argparse.Namespace | None = None
     try:
         set_note("")
@@ -91,8 +94,10 @@ def main(arguments: Sequence[str] | None = None, without_output: bool = False) -
 
 
 def _for_command(error: Exception, given: argparse.Namespace | None) -> str:
-    """The text of an error for the command given: with the file of its scene, and the option for Python's
-    `overwrite`."""
+    """Return the text of an error for the given command.
+
+    It has the file of its scene, and the option for Python's `overwrite`.
+    """
     if (
         isinstance(error, SceneError)
         and error.file is None
@@ -106,7 +111,7 @@ def _for_command(error: Exception, given: argparse.Namespace | None) -> str:
 
 
 def _scene_keys() -> set[str]:
-    """The keys of a scene file, and what follows from them."""
+    """Return the keys of a scene file, and of quantities that follow from them."""
     from dataclasses import fields
 
     from gaspart.scene.container import Container
@@ -131,7 +136,7 @@ def _complain(text: str, code: int) -> int:
 
 
 def show_warnings_in_a_line() -> None:
-    """Print the warnings of gaspart without the line of Python that gives them, until the process ends."""
+    """Print the warnings of gaspart without the line of Python, until the process ends."""
     print_with_place = warnings.showwarning
 
     def show(message: Warning | str, *place: object, **more: object) -> None:
@@ -152,7 +157,7 @@ def _discard(stream: TextIO) -> None:
 
 
 def _unrecognised(words: list[str], parser: Parser) -> str:
-    """The message for words of a command line that its command does not take."""
+    """Return the message for words of a command line that its command does not accept."""
     options = [word.partition("=")[0] for word in words if word.startswith("-")]
     if options:
         return f"{options[0]}: {unknown_word(options[0], parser.options(), 'option')}"
@@ -160,8 +165,11 @@ def _unrecognised(words: list[str], parser: Parser) -> str:
 
 
 def _parser(words: Sequence[str]) -> Parser:
-    """The parser of a command line: for the command alone with which it begins, else with a list of all. Only
-    the command that it names is imported; `completion` needs all."""
+    """Return the parser of a command line.
+
+    It has only the command with which the line begins, or else a list of all. Only the named command is
+    imported; `completion` needs all.
+    """
     parser = Parser(
         prog="gaspart",
         description="Simulate hard-sphere and hard-disc gases, measure and draw them.",
@@ -188,5 +196,5 @@ def _add_commands(parser: Parser, names: Iterable[str], complete: Iterable[str])
 
 
 def commands() -> dict[str, Parser]:
-    """The parser of each command, by name."""
+    """Return the parser of each command, by name."""
     return _add_commands(Parser(prog="gaspart"), _COMMANDS, _COMMANDS)

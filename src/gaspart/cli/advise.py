@@ -87,7 +87,7 @@ def _advise(given: argparse.Namespace) -> None:
 
 
 def _lines(plan: Plan, file: str) -> list[str]:
-    """The advice as text. file: of the scene, for the command."""
+    """Return the advice as text; `file` is the scene's, for the command."""
     best, target = plan.best, plan.target
     notes = best.engine.notes(target.scene, target.observable, target.declared.memory)
     lines = [_line("engine", best.engine.describe()), *(_line(*note) for note in notes.items())]
@@ -118,7 +118,7 @@ def _line(title: str, text: str) -> str:
 
 
 def _run(plan: Plan, file: str) -> list[str]:
-    """The run to make, what it costs and how accurate it is."""
+    """Return lines on the run to make, its cost and its accuracy."""
     best, recipe, lines = plan.best, plan.recipe, []
     if gas := plan.gas:
         length = f"{plan.collisions_per_particle:.3g} measured collisions per particle"
@@ -152,14 +152,14 @@ def _run(plan: Plan, file: str) -> list[str]:
 
 
 def _bulk(plan: Plan, count: int) -> str:
-    """The effect of the finite size."""
+    """Describe the effect of the finite size."""
     differing, bulk_count = plan.finite_size
     text = f"; {plan.target.name} differs by {100.0 * differing:+.2g} % from an infinite gas"
     return text + (f": correct for it, or take {bulk_count:.2g}" if bulk_count > count else "")
 
 
 def _rarely_visited(plan: Plan) -> list[str]:
-    """What part of a curve the accuracy is of."""
+    """Describe the part of a curve to which the accuracy refers."""
     known, places = plan.places
     if known == places:
         return []
@@ -187,7 +187,7 @@ def _drawn(plan: Plan, scatter: Scatter) -> list[str]:
 
 
 def _differences(plan: Plan) -> list[str]:
-    """Pilots that do not agree within their bounds, of which the exact one is believed."""
+    """Describe pilots that disagree beyond their bounds; the exact one is believed."""
     lines = []
     for one in plan.differing:
         exact = plan.pilots[0]
@@ -198,7 +198,7 @@ def _differences(plan: Plan) -> list[str]:
 
 
 def _extra_cost(plan: Plan) -> str:
-    """What a run costs beside the collisions of a plain gas."""
+    """Describe the cost of a run in addition to the collisions of a plain gas."""
     from gaspart.accuracy.price import price_of
 
     price = price_of(plan.target.scene, plan.best.engine, plan.target.observable)
@@ -210,7 +210,7 @@ def _extra_cost(plan: Plan) -> str:
 
 
 def _components(option: Option) -> str:
-    """What makes the error of an option."""
+    """Describe the parts of the error of an option."""
     noise = option.error - option.bias
     of = option.candidate
     parts = {"noise": noise, "model": of.model, "steps and cells": of.discretisation}

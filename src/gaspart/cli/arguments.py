@@ -15,7 +15,7 @@ from gaspart.keys.values import number
 
 T = TypeVar("T")
 WIDTH = 78
-"""Of the help, in characters: that of a terminal of 80 columns."""
+"""Width of the help in characters, for a terminal of 80 columns."""
 
 
 class UsageError(Exception):
@@ -44,7 +44,7 @@ class Parser(argparse.ArgumentParser):
         raise UsageError(message + (f"; see `{self.prog} --help`" if "are required" in message else ""))
 
     def options(self) -> list[str]:
-        """All options, such as --seed."""
+        """Return all options, such as --seed."""
         return [option for action in self._actions for option in action.option_strings]
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
@@ -56,13 +56,15 @@ class Parser(argparse.ArgumentParser):
 
 
 def real(**limits: float) -> Callable[[str], float]:
-    """A reader of a finite number within the limits of `gaspart.keys.values.number`: above, least,
-    most."""
+    """Return a reader of a finite number within the limits of `gaspart.keys.values.number`.
+
+    The limits are above, least, most.
+    """
     return _reader(float, "a finite number", limits)
 
 
 def integer(**limits: float) -> Callable[[str], int]:
-    """A reader of an integer within such limits."""
+    """Return a reader of an integer within such limits."""
     return _reader(int, "a whole number", limits)
 
 
@@ -82,7 +84,7 @@ def _reader(kind: Callable[[str], T], name: str, limits: dict[str, float]) -> Ca
 
 
 def pixels(text: str) -> tuple[int, int]:
-    """A reader of a width and a height, such as 1000x750."""
+    """Read a width and a height, such as 1000x750."""
     try:
         width, height = (int(part) for part in text.split("x"))
     except ValueError:
@@ -102,7 +104,10 @@ def set_command(
 
 
 def listed(meanings: dict[str, str]) -> str:
-    """Names with a line for each, as options have it; a line that is too long is continued."""
+    """List names with a line for each, in the layout of options.
+
+    A line that is too long is continued.
+    """
     column = 24
     lines = []
     for name, meaning in meanings.items():
@@ -113,7 +118,7 @@ def listed(meanings: dict[str, str]) -> str:
 
 
 def add_output(parser: argparse.ArgumentParser, what: str, overwrite: str) -> None:
-    """Add the options of a command that writes a result: `-o`, and `--force` to replace an older one."""
+    """Add the options of a command that writes a result: `-o`, and `--force` to replace one."""
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help=what)
     parser.add_argument("--force", action="store_true", help=f"replace {overwrite}")
 
@@ -124,7 +129,7 @@ def add_trajectory(parser: argparse.ArgumentParser) -> None:
 
 
 def run_files(name: str) -> list[str]:
-    """Return the files of the run that a command names: the file itself, or those of all replicas."""
+    """Return the files of the run that a command names: the file itself, or all replicas."""
     from gaspart.trajectory.opening import partial_path, replica_path
     from gaspart.trajectory.replicas import files_of
 
@@ -136,15 +141,20 @@ def run_files(name: str) -> list[str]:
 
 
 def config_command(command: str) -> Callable:
-    """What a command does with a config of the workflow, or its results: an entry point, since the library
-    does not import the reproduction. That of another package is not taken."""
+    """Return the function of a command for a config of the workflow, or its results.
+
+    It is an entry point, since the library does not import the reproduction. An entry point of another
+    package is not used.
+    """
     ours = [one for one in entry_points_of("gaspart.configs") if one.value.startswith("gaspart.")]
     return next(one for one in ours if one.name == command).load()
 
 
 def print_line(text: object) -> None:
-    """Print one line, whatever is in the text (`visible`). If the standard output cannot encode it, as some
-    file names, characters are escaped."""
+    """Print one line of any text (`visible`).
+
+    If the standard output cannot encode it, for example some file names, characters are escaped.
+    """
     line = visible(text, names=True)
     try:
         print(line)
@@ -166,7 +176,7 @@ def print_note(text: str) -> None:
 
 
 def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:
-    """A reader of `1` or `1,2,3` as a tuple, each part read by `kind`, a type or a reader."""
+    """Return a reader of `1` or `1,2,3` as a tuple; each part is read by `kind`."""
 
     def read(text: str) -> tuple[T, ...]:
         try:
@@ -181,5 +191,5 @@ def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:
 
 
 def alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
-    """One number by itself, or several as they are."""
+    """Return a single number by itself, several numbers as a tuple."""
     return numbers[0] if len(numbers) == 1 else numbers

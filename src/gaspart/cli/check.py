@@ -56,13 +56,13 @@ def add_check(parser: Parser) -> None:
 
 
 def _words(text: str) -> str | tuple[str, ...]:
-    """One word, or several with commas between; `Container` refuses other ones."""
+    """Return a word, or several words with commas between; `Container` rejects other ones."""
     words = tuple(text.split(","))
     return words[0] if len(words) == 1 else words
 
 
 def _corner(text: str) -> str | tuple[float, ...]:
-    """A word, or numbers with commas between."""
+    """Return a word, or numbers with commas between."""
     return text if text.isalpha() else tuple(several(real())(text))
 
 
@@ -108,7 +108,7 @@ def _judged(file: str, given: argparse.Namespace) -> tuple[str, list]:
 
 
 def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:
-    """The checks of a YAML file: a scene, with the lines of its scales, or a config of the workflow."""
+    """Check a YAML file: a scene, with the lines of its scales, or a config."""
     from gaspart.accuracy.scales import scales
     from gaspart.inspection.written import judge_scene
 

@@ -1,6 +1,6 @@
-"""Conventions of other programs for the file of a scene: the line that `info` and `export` print.
+"""Conventions of other programs for files of scenes, in a line of `info` and `export`.
 
-Each statement is one of docs/tools.md or docs/conventions.md, which the referees repeat.
+Each statement stands in docs/tools.md or docs/conventions.md, which the referees repeat.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ _SLAB = "g(r) of discs is theirs times 2 r / L_z, that of a slab"
 
 
 def conventions(scene: Scene, suffix: str) -> str:
-    """Return a line on a file of a scene in other programs; "" if they take it for what it is.
+    """Return a line on a scene's file in other programs; "" if they read it correctly.
 
-    suffix: .nc, of a trajectory, or that of an exported file.
+    The suffix is .nc for a trajectory, or the suffix of an exported file.
     """
     state = {".nc": _of_trajectory, ".gsd": _of_gsd, ".xyz": _of_xyz, ".data": _of_data}[suffix]
     found = "; ".join(state(scene))
@@ -21,7 +21,7 @@ def conventions(scene: Scene, suffix: str) -> str:
 
 
 def _as_periodic(scene: Scene) -> list[str]:
-    """The axes whose walls are not in a format."""
+    """Describe the axes whose walls a format lacks."""
     axes = zip("xyz", scene.container.periodic, strict=False)
     walled = ", ".join(axis for axis, periodic in axes if not periodic)
     return [f"walls across {walled} are read as periodic"] if walled else []

@@ -1,9 +1,9 @@
-"""Options for the settings of the engines, made from their declarations."""
+"""Options of the command line for declared settings: of engines, and of what the file of a run holds."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any
 
@@ -15,7 +15,7 @@ from gaspart.keys import Kind, described, schema_of
 
 @cache
 def engine_settings() -> dict[str, Kind]:
-    """The settings of all engines, by name; the meaning of each says of which engine it is."""
+    """Return the settings of all engines, by name; each meaning states its engines."""
     settings: dict[str, Kind] = {}
     for name, engine in ENGINES.items():
         for key, kind in schema_of(engine)["properties"].items():
@@ -26,7 +26,7 @@ def engine_settings() -> dict[str, Kind]:
 
 
 def add_setting(group: argparse._ArgumentGroup, name: str, kind: Kind) -> None:
-    """Add the option of a setting: a number, a word, or a flag that changes its default."""
+    """Add the option of a setting: a number, a word, a text, or a flag that changes its default."""
     option, meaning, default = name.replace("_", "-"), kind["description"], kind.get("default")
     usual = "" if default is None else f"; default: {default}"
     types = kind.get("type", ())
@@ -37,6 +37,8 @@ def add_setting(group: argparse._ArgumentGroup, name: str, kind: Kind) -> None:
     elif "enum" in kind:
         words = one_of(word for word in kind["enum"] if word is not None)
         group.add_argument(f"--{option}", metavar="NAME", help=f"{meaning}: {words}{usual}")
+    elif types == "string":
+        group.add_argument(f"--{option}", dest=name, metavar=kind["title"], help=f"{meaning}{usual}")
     else:
         sides = "array" in types
         read: Any = _sides if sides else int if "integer" in types else float
@@ -49,23 +51,23 @@ def _sides(text: str) -> int | tuple[int, ...]:
 
 
 def one_of(words: Iterable[str]) -> str:
-    """ "a, b or c"."""
+    """Join words to "a, b or c"."""
     *first, last = words
     return f"{', '.join(first)} or {last}" if first else last
 
 
 def as_option(error: SceneError, engine: str) -> str:
-    """An error of the engine's settings in terms of the options that state them."""
+    """Describe an error of the engine's settings by the options that set them."""
     name = error.key.removeprefix("engine.")
     option = {"name": "--engine", "rewind": "--no-rewind"}.get(name, f"--{name.replace('_', '-')}")
     rule = f"has no meaning with --engine {engine}" if "unknown key" in error.rule else error.rule
     return f"{option}: {'is required' if error.value is None else f'{shown(error.value)}: {rule}'}"
 
 
-def stated(settings: dict) -> list[str]:
-    """The options for the settings of an engine that differ from their defaults, or have none."""
+def stated(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> list[str]:
+    """The options for settings of these kinds that differ from their defaults, or have none."""
     options: list[str] = []
-    for name, kind in engine_settings().items():
+    for name, kind in kinds.items():
         value, option = settings.get(name), name.replace("_", "-")
         if isinstance(value, bool):
             if value != kind["default"]:
@@ -76,5 +78,5 @@ def stated(settings: dict) -> list[str]:
 
 
 def joined(numbers: float | tuple[int, ...] | list[int]) -> str:
-    """Numbers as an option takes them."""
+    """Format numbers as an option accepts them."""
     return ",".join(map(repr, numbers)) if isinstance(numbers, tuple | list) else repr(numbers)

@@ -34,7 +34,7 @@ def add_export(parser: Parser) -> None:
 
 
 def _frame(text: str) -> int | str:
-    """A number, or the word all."""
+    """Read a number, or the word all."""
     return text if text == "all" else integer()(text)
 
 

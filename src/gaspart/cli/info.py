@@ -87,13 +87,15 @@ def _unfinished(path: Path, recipe: Recipe) -> str:
 
 
 def _lines_of(scene: str) -> list[str]:
-    """The lines of a scene as a file has it."""
+    """Return the lines of a scene as in its file."""
     return scene.rstrip("\n").split("\n")
 
 
 def _measurable(recipe: Recipe) -> list[str]:
-    """The observables that the scene has, and that the run keeps what they need for; and those that need
-    another run."""
+    """Describe the observables that can be measured in a run, and those that need another run.
+
+    The former are defined for the scene, and the run has stored their data.
+    """
     from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept
 
     asked = recipe.correlations
@@ -114,7 +116,7 @@ def _measurable(recipe: Recipe) -> list[str]:
 
 
 def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:
-    """The accuracies that end a run of no fixed duration, and those that it has reached."""
+    """Describe the accuracies that end a run of no fixed duration, and those reached so far."""
     from gaspart.cli.stated_run import accuracy_lines
 
     if recipe.until is None:

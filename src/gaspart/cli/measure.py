@@ -97,19 +97,25 @@ def add_measure(parser: Parser) -> None:
 
 
 class _Words(tuple):
-    """The names of observables, of which a shell completes one. Files may stand among the words too."""
+    """Names of observables, which a shell completes; files may be among the words too."""
 
     def __contains__(self, word: object) -> bool:
         return super().__contains__(word) or word in ALIASES or _is_file(str(word))
 
 
 def _is_file(word: str) -> bool:
-    """Whether a word is meant as a file: no name of an observable has a suffix or a folder."""
+    """Return True if a word with a suffix or a folder names a file.
+
+    Names of observables have neither.
+    """
     return "." in word or os.sep in word
 
 
 def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:
-    """The files and the names of observables of a command line, the files first. Raises UsageError."""
+    """Return the files and the names of observables of a command line; raise UsageError.
+
+    The files must stand first.
+    """
     names = list(given.words)
     files = [given.trajectory]
     while names and _is_file(names[0]):
@@ -142,7 +148,7 @@ def _measure(given: argparse.Namespace) -> None:
 
 
 def _field_of(given: argparse.Namespace) -> dict[str, Any]:
-    """The arguments of a field. Raises UsageError for those without a field."""
+    """Return the arguments of a field; raise UsageError for arguments without a field."""
     stated = {key: getattr(given, key) for key in ("of", "axes", "cells") if getattr(given, key) is not None}
     if stated and _FIELD not in given.words:
         raise UsageError(f"--{next(iter(stated))} is of {_FIELD} only")
@@ -158,8 +164,11 @@ def _measured(
     selection: dict[str, Any],
     field: dict[str, Any],
 ) -> Iterator[tuple[str, Observable]]:
-    """Each observable with its name: of one file, or the mean of several. times: the start and the end of
-    the frames that count; field: the arguments of a field."""
+    """Measure each observable in one file, or as the mean over several files.
+
+    times : start and end of the frames that count.
+    field : arguments of a field.
+    """
     from gaspart.analysis.combination import replicas
     from gaspart.trajectory.reading import open_trajectory
 
@@ -183,7 +192,7 @@ def _measured(
 
 
 def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | None]) -> dict[str, str]:
-    """Return the remark that the measured part of a run is not steady, if so it is."""
+    """Return the remark that the measured part of a run drifts, if it does."""
     from gaspart.analysis.drift import drift_of
 
     with until_time(trajectory, times[1]) as part:
@@ -205,7 +214,10 @@ def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:
 def _measure_field(
     trajectory: Any, times: tuple[float | None, float | None], chosen: dict[str, Any]
 ) -> Observable:
-    """Raises SceneError for a selection that fields do not have, and as `gaspart.analysis.field` does."""
+    """Measure a field.
+
+    Raises SceneError for a selection that fields do not have, and as `gaspart.analysis.field` does.
+    """
     from gaspart.analysis.fields import field
 
     for key in set(chosen) - {"of", "axes", "cells", "species"}:
@@ -215,7 +227,10 @@ def _measure_field(
 
 
 def _print_field(observable: Observable) -> None:
-    """A curve as such; of more cells how many there are, and the least and the greatest value."""
+    """Print a field along one axis as a curve, other fields by their range.
+
+    The range is the number of cells, the minimum and the maximum.
+    """
     along = [str(dim) for dim in observable.estimate.dims if dim != "component"]
     name = str(observable.attrs["quantity"])
     if len(along) == 1:
@@ -268,7 +283,7 @@ def _print_curve(name: str, observable: Observable) -> None:
 
 
 def _parts(observable: Observable) -> list[tuple[str, Observable]]:
-    """The curves of an observable, such as that along each axis, with their names; a single one has none."""
+    """Return the curves of an observable with their names; a single curve has no name."""
     if observable.estimate.ndim == 1:
         return [("", observable)]
     over = observable.estimate.dims[0]
@@ -276,7 +291,7 @@ def _parts(observable: Observable) -> list[tuple[str, Observable]]:
 
 
 def _writer(given: argparse.Namespace, names: list[str]) -> Callable[[Observable], None]:
-    """The function that writes the result, after a check of the arguments."""
+    """Return the function that writes the result, after a check of the arguments."""
     if given.output is None:
         return lambda observable: None
     path = output_path(given.output)
@@ -299,7 +314,7 @@ def _write_table(path: Any, overwrite: bool, observable: Observable) -> None:
 
 
 def _with_columns(observable: Observable) -> Observable:
-    """An observable whose values of each replica, if there are several, are variables of their own."""
+    """Convert the values of each replica, if there are several, to variables."""
     each = f"{observable.attrs['quantity']}_replicas"
     if each not in observable:
         return observable

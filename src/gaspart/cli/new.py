@@ -46,8 +46,11 @@ _SCENE = FileKind("a scene file", _is_scene)
 
 @dataclass(frozen=True)
 class Template:
-    """A template: its name, the chapter of the gallery, its title and description, the command that runs it,
-    the figure of the workflow (None for a scene of which there is none), the text of the file."""
+    """Template of a scene.
+
+    It has its name, the chapter of the gallery, its title and description, the command that runs it, the
+    figure of the workflow (None without a figure), and the text of the file.
+    """
 
     name: str
     chapter: str
@@ -60,7 +63,7 @@ class Template:
 
 @cache
 def templates() -> dict[str, Template]:
-    """All templates, by name, in the order of the gallery."""
+    """Return all templates, by name, in the order of the gallery."""
     return {name: _read(name, chapter) for chapter, names in _CHAPTERS.items() for name in names}
 
 
@@ -102,13 +105,16 @@ def _new(given: argparse.Namespace) -> None:
 
 
 def named_command(template: Template, path: Path) -> str:
-    """The command that runs the scene, with the names of the file and of its trajectory."""
+    """Return the command that runs the scene, with the names of its two files.
+
+    These are the file of the scene and its trajectory.
+    """
     scene, trajectory = shlex.quote(str(path)), shlex.quote(str(path.with_suffix(".nc")))
     command = template.command.replace(f"{template.name}.yaml", scene)
     return command.replace(f"{template.name}.nc", trajectory)
 
 
 def _renamed(template: Template, path: Path) -> str:
-    """The text of the file, without the note on the figure."""
+    """Return the text of the file, without the note on the figure."""
     kept = [line for line in template.text.splitlines(keepends=True) if not line.startswith("#   figure")]
     return "".join(kept).replace(template.command, named_command(template, path))

@@ -21,9 +21,9 @@ _PATIENCE = 2.0
 
 @contextmanager
 def waiting(text: str, quiet: bool = False) -> Iterator[Callable[[], None]]:
-    """Within the `with` block, show `text` and the time that has passed, if it takes longer than 2 s.
+    """Show `text` and the elapsed time within the `with` block, if it lasts over 2 s.
 
-    Gives a function that ends the display, for a block that then reports its progress itself.
+    Yields a function that ends the display, for a block that then reports its progress itself.
     """
     ended = threading.Event()
     if quiet or not sys.stderr.isatty():
@@ -51,7 +51,10 @@ def waiting(text: str, quiet: bool = False) -> Iterator[Callable[[], None]]:
 
 
 def counted() -> Callable[[int, int], None] | None:
-    """A function that shows how many of all pictures are done and the time left; None without a terminal."""
+    """Return a function that shows the number of pictures done and the time left.
+
+    None without a terminal.
+    """
     if not sys.stderr.isatty():
         return None
     begun = time.monotonic()
@@ -67,8 +70,13 @@ def counted() -> Callable[[int, int], None] | None:
 def progress(
     quiet: bool, started: Callable[[], None] | None = None, remark: Callable[[], str] = str
 ) -> Progress | None:
-    """A function that shows the progress of a run; None if quiet or without a terminal. started: is called
-    first; remark: gives the end of the line."""
+    """Return a function that shows the progress of a run.
+
+    None if quiet or without a terminal.
+
+    started : function that is called first.
+    remark : function that returns the end of the line.
+    """
     if quiet or not sys.stderr.isatty():
         return None
     begun: tuple[float, float, int] | None = None
@@ -96,12 +104,12 @@ def show_line(text: str) -> None:
 
 
 def clear_line() -> str:
-    """Control characters that clear the line of progress; empty without a terminal."""
+    """Return control characters that clear the line of progress; empty without a terminal."""
     return "\r\033[K" if sys.stderr.isatty() else ""
 
 
 def clock(seconds: float) -> str:
-    """Hours, minutes and seconds."""
+    """Format hours, minutes and seconds."""
     minutes, seconds = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02d}:{seconds:02d}"

@@ -6,8 +6,9 @@ import argparse
 import math
 import shlex
 import sys
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from gaspart.analysis.observables import having
 from gaspart.cli.arguments import (
@@ -29,6 +30,7 @@ from gaspart.interruption import set_note
 from gaspart.kernels.compile.cache import load_numba
 from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene
+from gaspart.trajectory.run_options import OPTIONS
 
 if TYPE_CHECKING:
     from gaspart.accuracy.reached import AccuracyStatus
@@ -44,10 +46,6 @@ _EXAMPLES = """examples:
   gaspart run scene.yaml -o run.nc --until Z=1e-3 --replicas 2    on two cores
   gaspart info run.nc"""
 
-_KEEP = (
-    "write of each particle only its `positions`, or `velocities`; without positions no other program reads "
-    "the file (chemfiles: all are 0)"
-)
 _USAGE = """gaspart run SCENE -o FILE --duration T --sample-interval T [options]
        gaspart run SCENE -o FILE --until NAME=X [--at-most T] [options]"""
 
@@ -85,7 +83,7 @@ def add_run(parser: Parser) -> None:
 
 
 def _add_ends(group: argparse._ArgumentGroup) -> None:
-    """What ends a run."""
+    """Add the options that end a run."""
     add = group.add_argument
     add("--duration", type=float, metavar="T", help="duration of the run, in the scene's unit")
     text = (
@@ -109,15 +107,10 @@ def _add_ends(group: argparse._ArgumentGroup) -> None:
 
 
 def _add_contents(group: argparse._ArgumentGroup) -> None:
-    """What is in the file."""
+    """Add the options for the contents of the file."""
     add = group.add_argument
-    add(
-        "--displacements",
-        action="store_true",
-        help="also write unwrapped displacements since time 0, in float64",
-    )
-    add("--follow", type=int, metavar="N", help="write only the first N particles")
-    add("--keep", metavar="WHAT", help=_KEEP)
+    for name, kind in OPTIONS.items():
+        add_setting(group, name, kind)
     add(
         "--correlations",
         type=several(float),
@@ -126,14 +119,6 @@ def _add_contents(group: argparse._ArgumentGroup) -> None:
     )
     text = "correlate the stress tensor and the heat flux instead of velocities"
     add("--stress", action="store_true", help=text)
-    text = "count the collisions of each pair of species, for `gaspart measure FILE contact_values`"
-    add("--pairs", action="store_true", help=text)
-    text = "keep impulses along x, y or z in so many bins: `gaspart measure FILE density` along this axis, "
-    text += "and `pressure` across it, are then several times as accurate, in equilibrium"
-    add("--impulses", metavar="AXIS:BINS", help=text)
-    text = "keep impulses of pairs up to a distance in so many shells, at a share of contacts (default: "
-    text += "all): `gaspart measure FILE rdf` is then more accurate, in equilibrium"
-    add("--pair-impulses", metavar="DISTANCE:SHELLS[:SHARE]", help=text)
 
 
 def add_resume(parser: Parser) -> None:
@@ -166,7 +151,7 @@ def _run(given: argparse.Namespace) -> None:
 
     scene = Scene.from_file(given.scene)
     until, correlations = _until(given, scene), _correlations(given.correlations, given.stress)
-    settings = {key: getattr(given, key) for key in engine_settings() if getattr(given, key) is not None}
+    settings, contents = _values(given, engine_settings()), _values(given, OPTIONS)
     try:
         engine = engine_from_dict({"name": given.engine, **settings})
     except SceneError as error:
@@ -183,13 +168,7 @@ def _run(given: argparse.Namespace) -> None:
             path=given.output,
             until=until,
             at_most=given.at_most,
-            displacements=given.displacements,
-            follow=given.follow,
-            keep=given.keep,
             correlations=correlations,
-            pairs=given.pairs,
-            impulses=given.impulses,
-            pair_impulses=given.pair_impulses,
             initial=given.initial,
             checkpoint_seconds=given.checkpoint_seconds,
             progress=progress(given.quiet, started, status.remark),
@@ -197,14 +176,20 @@ def _run(given: argparse.Namespace) -> None:
             overwrite=given.force,
             keep_checkpoint=given.keep_checkpoint,
             replicas=given.replicas,
+            **contents,
         )
     _report(path)
     if not given.quiet:
         print_lines(line for line in scales(scene).lines if not line.startswith("suggested"))
 
 
+def _values(arguments: argparse.Namespace, names: Iterable[str]) -> dict[str, Any]:
+    """Return the values of the declared options that the command line states."""
+    return {name: value for name in names if (value := getattr(arguments, name)) is not None}
+
+
 def _requests(text: str) -> list[tuple[str, float]]:
-    """Observable, perhaps with a face, and accuracy, of each NAME=X between commas."""
+    """Read observable, perhaps with a face, and accuracy, of each NAME=X between commas."""
     requests = []
     for part in text.split(","):
         name, _, accuracy = part.partition("=")
@@ -217,8 +202,11 @@ def _requests(text: str) -> list[tuple[str, float]]:
 
 
 def _until(given: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
-    """What --until asks for. Raises UsageError for options that exclude or need each other, with a duration
-    for the scene where there is none."""
+    """Return the accuracies of --until.
+
+    Raises UsageError for options that exclude or need each other; without a duration it suggests one for the
+    scene.
+    """
     if given.until is not None:
         if given.duration is not None:
             raise UsageError("--duration: excludes --until; the longest duration is --at-most")
@@ -252,7 +240,7 @@ class _Status:
         self._reached = reached
 
     def remark(self) -> str:
-        """The present error that is largest beside the required one."""
+        """Return the error that is largest relative to the required one."""
         known = [one for one in self._reached if one.accuracy < math.inf]
         if not known:
             return ""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.cli.engine_options import joined, stated
+from gaspart.cli.engine_options import engine_settings, joined, stated
 from gaspart.engines import engine_to_dict
-from gaspart.state.optional_tallies import option_of
+from gaspart.trajectory.run_options import OPTIONS, stated_options
 
 if TYPE_CHECKING:
     from gaspart.accuracy.reached import AccuracyStatus
@@ -79,19 +79,10 @@ def run_options(path: Path, recipe: Recipe) -> list[str]:
         options += [] if recipe.until.at_most is None else ["--at-most", repr(recipe.until.at_most)]
     options += ["--sample-interval", repr(recipe.sample_interval)]
     options += ["--replicas", str(replicas)] if replicas > 1 else []
-    options += stated(settings)
+    options += stated(engine_settings(), settings)
     if recipe.initial is not None:
         options += ["--from", "OTHER.nc"]  # whose last state the file holds
-    if recipe.displacements:
-        options.append("--displacements")
-    if recipe.pairs:
-        options.append("--pairs")
-    for tally in recipe.tallies:
-        options += option_of(tally)
-    if recipe.follow is not None:
-        options += ["--follow", str(recipe.follow)]
-    if recipe.keep is not None:
-        options += ["--keep", recipe.keep]
+    options += stated(OPTIONS, stated_options(recipe))
     if recipe.correlations is not None:
         asked = recipe.correlations
         options += ["--correlations", f"{asked.interval!r},{asked.lags},{asked.start!r}"]

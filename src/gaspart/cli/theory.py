@@ -26,8 +26,11 @@ _FLUID = {2: "the fluid of discs", 3: "the fluid of spheres (metastable from 0.4
 
 @dataclass(frozen=True)
 class _Quantity:
-    """A value of theory: of a `Gas` by an equation; takes: the particle's properties that it depends on;
-    mixture: the function of gaspart.theory of a mixture."""
+    """Value of theory of a `Gas` by an equation.
+
+    takes : properties of the particle that it depends on.
+    mixture : function of gaspart.theory of a mixture.
+    """
 
     value: Callable[[Gas, str], float]
     takes: tuple[str, ...]
@@ -37,7 +40,7 @@ class _Quantity:
 
 
 def _formula(name: str, takes: tuple[str, ...]) -> Callable[[Gas, str], float]:
-    """A function of gaspart.theory, of particles that touch."""
+    """Return a function of gaspart.theory, of particles that touch."""
 
     def value(gas: Gas, equation: str) -> float:
         from gaspart import theory
@@ -51,7 +54,7 @@ def _formula(name: str, takes: tuple[str, ...]) -> Callable[[Gas, str], float]:
 
 
 def _observable(name: str) -> Callable[[Gas, str], float]:
-    """A function of `gaspart.analysis.bulk`."""
+    """Return a function of `gaspart.analysis.bulk`."""
 
     def value(gas: Gas, equation: str) -> float:
         from gaspart.analysis import bulk
@@ -163,7 +166,7 @@ def _theory(given: argparse.Namespace) -> None:
 
 
 def _of_mixture(given: argparse.Namespace) -> None:
-    """A line for each theory, density and, of properties of pairs, pair of species."""
+    """Print a line for each theory, density and, for properties of pairs, pair of species."""
     from gaspart import theory
 
     name = _QUANTITIES[given.quantity].mixture
@@ -199,7 +202,7 @@ def _of_mixture(given: argparse.Namespace) -> None:
 
 
 def _pairs(value: Any) -> str:
-    """A number, or one for each pair of species, numbered from 1."""
+    """Format a number, or a number for each pair of species, numbered from 1."""
     if np.ndim(value) == 0:
         return f"{float(value):.8g}"
     return ", ".join(f"{i + 1}-{j + 1} {number:.8g}" for (i, j), number in np.ndenumerate(value))

@@ -189,12 +189,15 @@ def add_films(parser: Parser) -> None:
 
 
 def colour_of(template: Template) -> str:
-    """By what the particles of a template are coloured."""
+    """Return the property by which the particles of a template are coloured."""
     return "species" if template.name in _BY_SPECIES else "speed"
 
 
 def run_template(template: Template, folder: Path) -> Path:
-    """The trajectory of a template in a folder, made by its own command. Raises as `gaspart run` does."""
+    """Make the trajectory of a template in a folder by its own command.
+
+    Raises as `gaspart run` does.
+    """
     from gaspart.cli import commands
 
     scene = folder / f"{template.name}.yaml"

@@ -1,4 +1,4 @@
-"""Engines that advance a state, with one interface: see `engine`."""
+"""Engines that advance a state, with a common interface: see `engine`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The identity of a checkpoint: which simulation it belongs to, and whether it may be restored."""
+"""Identity of a checkpoint: the simulation to which it belongs.
+
+It decides whether the checkpoint may be restored.
+"""
 
 from __future__ import annotations
 
@@ -19,8 +22,10 @@ from gaspart.state.state import State
 def checkpoint_identity(
     scene: Scene, engine: Engine, seed: int | tuple[int, ...], initial: State | None = None
 ) -> dict[str, np.ndarray]:
-    """All that the results of a simulation depend on, as texts, by the keys of a checkpoint. initial: the
-    state at time 0, if it does not follow from the scene and the seed."""
+    """Return texts of all that the results of a simulation depend on, by checkpoint keys.
+
+    initial : state at time 0, if it does not follow from the scene and the seed
+    """
     settings = {key: x for key, x in engine_to_dict(engine).items() if key not in engine.neutral_settings}
     texts = {
         "version": __version__,
@@ -46,7 +51,7 @@ def _text(value: object) -> str:
 
 
 def check_identity(checkpoint: Any, wanted: Mapping[str, np.ndarray]) -> None:
-    """Raise SceneError, which names the difference, unless a checkpoint belongs to what is `wanted`."""
+    """Raise SceneError, which names the difference, unless a checkpoint has the `wanted` identity."""
     if not isinstance(checkpoint, Mapping) or not all(key in checkpoint for key in wanted):
         raise SceneError("checkpoint", checkpoint, "must be what Simulation.checkpoint has returned")
     for key, text in wanted.items():
@@ -58,7 +63,10 @@ def check_identity(checkpoint: Any, wanted: Mapping[str, np.ndarray]) -> None:
 
 
 def check_parts(parts: Mapping[str, np.ndarray], wanted: Mapping[str, np.ndarray]) -> None:
-    """Raise SceneError unless a checkpoint has all `wanted` arrays, each of its shape and kind of number."""
+    """Raise SceneError unless a checkpoint has all `wanted` arrays.
+
+    Each array must have the shape and the kind of number of the wanted one.
+    """
     for key, array in wanted.items():
         found = parts.get(key)
         alike = isinstance(found, np.ndarray) and found.shape == np.shape(array)

@@ -1,4 +1,4 @@
-"""A scene in progress: what every engine gives, and what all share, checkpoints and optional tallies."""
+"""Interface of a scene in progress, and what all engines share: checkpoints and optional tallies."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from gaspart.state.tally import Tally
 
 
 class Dynamics(ABC):
-    """A scene in progress under an engine.
+    """Scene in progress under an engine.
 
-    numbers: the attributes that are plain numbers, by their names in a checkpoint, which have no underscore.
+    numbers : names of the plain numbers in a checkpoint; the attributes have an underscore before the name
     """
 
     numbers: ClassVar[tuple[str, ...]]
@@ -27,27 +27,27 @@ class Dynamics(ABC):
     @property
     @abstractmethod
     def time(self) -> float:
-        """The time reached."""
+        """Time reached."""
 
     @property
     @abstractmethod
     def state(self) -> State:
-        """All particles now; a copy."""
+        """Copy of the present state of all particles."""
 
     @property
     @abstractmethod
     def tally(self) -> Tally:
-        """Counters and sums since the last `reset_tally`; a copy."""
+        """Copy of the counters and sums since the last `reset_tally`."""
 
     @property
     @abstractmethod
     def dissipated(self) -> float:
-        """The energy that contacts and thermal walls have taken since time 0, less what kicks have given."""
+        """Energy taken by contacts and thermal walls since time 0, minus the energy of kicks."""
 
     @property
     @abstractmethod
     def exchanged(self) -> float:
-        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
+        """Sum of the absolute energies exchanged by contacts and by each face since time 0."""
 
     @abstractmethod
     def advance(
@@ -57,10 +57,10 @@ class Dynamics(ABC):
         log: EventLog | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Advance to the time `until`, or by so many events or so much work, and record events in `log`.
+        """Advance to the time `until`, or by a number of events or of work.
 
-        Raises SceneError for a limit that the engine does not have, and SimulationError, with the state kept,
-        for a run that cannot go on.
+        Events are recorded in `log`. Raises SceneError for a limit that the engine does not have, and
+        SimulationError, with the state kept, for a run that cannot continue.
         """
 
     @abstractmethod
@@ -68,24 +68,30 @@ class Dynamics(ABC):
         """Begin to count from zero."""
 
     def _tally_part(self, name: str) -> TallyPart | None:
-        """The part of the optional tally of this name; None if it was not asked for."""
+        """Return the part of an optional tally, or None if it was not requested."""
         parts = (part for part in self._parts if isinstance(part, TallyPart))
         return next((part for part in parts if part.name == name), None)
 
     def sums_of(self, tally: str) -> np.ndarray:
-        """The sums of an optional tally, in one array. Raises KeyError if it was not asked for."""
+        """Return the sums of an optional tally in one array.
+
+        Raises KeyError if the tally was not requested.
+        """
         part = self._tally_part(tally)
         if part is None:
             raise KeyError(tally)
         return part.read(self._clock)
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        """All that a continuation to the same bits needs; copies."""
+        """Return copies of all data needed to continue to the same bits."""
         return {key: np.array(value) for key, value in self._kept().items()}
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Go on from a checkpoint of the same scene and engine, to the same bits whatever the settings that
-        change none. Raises SceneError, with nothing changed, for one that lacks an array."""
+        """Continue from a checkpoint of the same scene and engine, to the same bits.
+
+        Settings that change no bit may differ. Raises SceneError, with nothing changed, for a checkpoint that
+        lacks an array.
+        """
         needed = self._needed(checkpoint)
         check_parts(checkpoint, needed)
         for key, array in self._arrays().items():
@@ -96,17 +102,23 @@ class Dynamics(ABC):
         self._go_on(checkpoint)
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        """The arrays that a run changes and that a checkpoint has as they are, by name."""
+        """Return the arrays, by name, that a run changes and that a checkpoint stores unchanged."""
         return arrays_of(self._parts)
 
     def _kept(self) -> dict[str, Any]:
-        """All of a checkpoint."""
+        """Return all data of a checkpoint."""
         return {**{key: getattr(self, f"_{key}") for key in self.numbers}, **self._arrays()}
 
     def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """The arrays that `restore` needs of this checkpoint, of their shapes. Raises SceneError."""
+        """Return arrays of the shapes that `restore` needs from this checkpoint.
+
+        Raises SceneError for a damaged checkpoint.
+        """
         return self.checkpoint()
 
     @abstractmethod
     def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Make what follows from a checkpoint besides its arrays and numbers, which are in place."""
+        """Restore everything that follows from the arrays and numbers of a checkpoint.
+
+        The arrays and numbers are already in place.
+        """

@@ -1,4 +1,4 @@
-"""The events of a run as they happened."""
+"""Record of the events of a run."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ _ROOM = 4096  # capacity of the record, in events
 
 
 class EventLog:
-    """Events as they happened: particles, and their positions, velocities and, if wanted, spins just
-    after."""
+    """Record of events: particles, and positions, velocities and optionally spins just after them."""
 
     def __init__(self, dimension: int, spins: bool = False) -> None:
         from gaspart.kernels.event.pair_contact import Record
@@ -27,7 +26,7 @@ class EventLog:
         )
 
     def _copy(self, count: int) -> tuple[np.ndarray, ...]:
-        """The first events in the kernel's record; of spins in 2D the component normal to the plane."""
+        """Copy the first events of the kernel's record; in 2D, spins normal to the plane."""
         found = {key: getattr(self.room, key)[:count] for key in self._keys}
         if "spins" in found and self._dimension == 2:
             found["spins"] = found["spins"][..., 2]
@@ -43,9 +42,12 @@ class EventLog:
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """time (M,), particles (M, 2), positions and velocities (M, 2, d), and spins (M, 2) or (M, 2, 3).
+        """Recorded events, as arrays by name.
 
-        The second of `particles` is -1 - face for a hit at a wall, and the values of the second are NaN.
+        time : (M,)
+        particles : (M, 2); the second entry is -1 - face for a hit at a wall
+        positions, velocities : (M, 2, d); the second entry is NaN for a hit at a wall
+        spins : (M, 2) or (M, 2, 3)
         """
         parts = zip(*(self._parts or [self._copy(0)]), strict=True)
         return dict(zip(self._keys, map(np.concatenate, parts), strict=True))

@@ -1,4 +1,4 @@
-"""The skeleton of engines that make steps: particles by slots, tallies by threads, whole numbers of steps."""
+"""Base of engines that make steps: particles by slots, tallies by threads, whole steps."""
 
 from __future__ import annotations
 
@@ -24,11 +24,14 @@ _PLACED = ("slots", "positions", "velocities", "images")
 
 
 class SteppedDynamics(Dynamics):
-    """A scene under way by steps. A *slot* is a particle's present place in memory.
+    """Scene in progress by steps.
 
-    time_step: the length of a step; reference: a state of the same particles, whose time is that of the
-    start; unit_mass: that of the sums of energies. An engine has `_parts` too, and puts the particles into
-    their slots before the first step.
+    A *slot* is a particle's present position in memory. An engine also sets `_parts`, and places the
+    particles into their slots before the first step.
+
+    time_step : length of a step
+    reference : state of the same particles at the start time
+    unit_mass : unit of mass of the sums of energies
     """
 
     numbers: ClassVar[tuple[str, ...]] = ("steps", "since")
@@ -46,27 +49,31 @@ class SteppedDynamics(Dynamics):
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
     ) -> None:
-        """Put the particles into their slots: (N,) which particle is in each; the others (N, d)."""
+        """Place the particles into their slots.
+
+        slots : (N,), number of the particle in each slot
+        positions, velocities, images : (N, d)
+        """
 
     @property
     @abstractmethod
     def _slots(self) -> np.ndarray:
-        """(N,) which particle is in each slot."""
+        """Number of the particle in each slot, shape (N,)."""
 
     @property
     @abstractmethod
     def _positions(self) -> np.ndarray:
-        """(d, N) by slot."""
+        """Positions by slot, shape (d, N)."""
 
     @property
     @abstractmethod
     def _velocities(self) -> np.ndarray:
-        """(d, N) by slot."""
+        """Velocities by slot, shape (d, N)."""
 
     @property
     @abstractmethod
     def _images(self) -> np.ndarray:
-        """(d, N) by particle."""
+        """Periodic images by particle, shape (d, N)."""
 
     @abstractmethod
     def _advance_to(self, step: int) -> None:
@@ -74,42 +81,50 @@ class SteppedDynamics(Dynamics):
 
     @abstractmethod
     def _sums(self) -> dict[str, np.ndarray]:
-        """The arrays (threads, ...) that count, by their names in a checkpoint."""
+        """Return the arrays (threads, ...) with counts by their names in a checkpoint."""
 
     @abstractmethod
     def _counts(self) -> dict[str, Any]:
-        """The values of these sums, by the fields of `Tally`; without time, steps and the energy of faces."""
+        """Return the values of these sums by the fields of `Tally`.
+
+        Time, steps and the energy of faces are left out.
+        """
 
     @property
     @abstractmethod
     def _loss(self) -> np.ndarray:
-        """(K, 2) parts of the energy that contacts have taken since the tally began, in units of the unit
-        mass."""
+        """Energy taken by contacts since the tally began, in parts (K, 2).
+
+        The unit contains the unit mass.
+        """
 
     @property
     @abstractmethod
     def _heat(self) -> np.ndarray:
-        """(2d, 2) what each face was given by particles that left it at its temperature, likewise."""
+        """Energy given to each face by particles that left it at its temperature, shape (2d, 2).
+
+        The unit is the one of `_loss`.
+        """
 
     @property
     def _given(self) -> np.ndarray:
-        """(1, 2) the energy that kicks have given, likewise."""
+        """Energy given by kicks, shape (1, 2), in the unit of `_loss`."""
         return np.zeros((1, 2))
 
     @property
     def _progress(self) -> float:
-        """The number of steps made, with parts of one."""
+        """Number of steps made, including parts of a step."""
         return self._steps
 
     def _by_particle(self, values: np.ndarray, dtype: DTypeLike | None = None) -> np.ndarray:
-        """(N, d) of the particles in their own order, from (d, N) by slot."""
+        """Convert values (d, N) by slot to values (N, d) in the order of the particles."""
         found = np.empty(values.shape[::-1], dtype or values.dtype)
         found[self._slots] = values.T
         return found
 
     @property
     def time(self) -> float:
-        """The time reached, at the end of a step."""
+        """Time reached, at the end of a step."""
         return self._start + self._progress * self.time_step
 
     def advance(
@@ -121,7 +136,7 @@ class SteppedDynamics(Dynamics):
     ) -> None:
         """Step to the last whole step not after `until` (to within 1e-9 of a step).
 
-        Raises SceneError for what only the event-driven engine can do, count or record events, and for a time
+        Raises SceneError for limits or records of events, which need the event-driven engine, and for a time
         that is not within 2^53 steps; SimulationError if the particles are too fast for a step.
         """
         wanted = {
@@ -155,18 +170,18 @@ class SteppedDynamics(Dynamics):
 
     @property
     def dissipated(self) -> float:
-        """The energy that contacts and thermal walls have taken since time 0, less what kicks have given."""
+        """Energy taken by contacts and thermal walls since time 0, minus the energy of kicks."""
         return float(self._lost[0]) + net(self._loss, self._heat, -self._given) * self._unit_mass
 
     @property
     def exchanged(self) -> float:
-        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
+        """Sum of the absolute energies exchanged by contacts and by each face since time 0."""
         gross = net(self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
         return float(self._lost[1]) + gross * self._unit_mass + abs(net(self._given)) * self._unit_mass
 
     @property
     def state(self) -> State:
-        """All particles at the present time, in float64 whatever the precision."""
+        """State of all particles at the present time, in float64 for any precision."""
         state = replace(
             self._reference,
             time=self.time,
@@ -195,11 +210,11 @@ class SteppedDynamics(Dynamics):
         return {**super()._arrays(), "lost": self._lost}
 
     def _all_sums(self) -> dict[str, np.ndarray]:
-        """The arrays (threads, ...) that count, those of parts too."""
+        """Return the arrays (threads, ...) with counts, including the arrays of parts."""
         return {**self._sums(), **sums_of(self._parts)}
 
     def _joined(self, sums: np.ndarray) -> np.ndarray:
-        """The sum over threads, whatever their number, of an array (threads, ...) that counts."""
+        """Return the sum over threads of an array (threads, ...) with counts."""
         return np.asarray(sums.sum(axis=0))
 
     def _kept(self) -> dict[str, Any]:
@@ -219,5 +234,5 @@ class SteppedDynamics(Dynamics):
             sums[0] = checkpoint[key]
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Put the particles where they were; what this counts is overwritten."""
+        """Place the particles in their slots of a checkpoint; counts of this are overwritten."""
         self._place(*(checkpoint[key] for key in _PLACED))

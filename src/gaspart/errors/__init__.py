@@ -1,4 +1,7 @@
-"""The two kinds of errors that gaspart raises for its user, and the form of values in messages."""
+"""Errors that gaspart raises for its user, and the form of values in messages.
+
+There are two kinds, `SceneError` and `SimulationError`.
+"""
 
 from __future__ import annotations
 
@@ -17,17 +20,37 @@ _ITEMS, _DEPTH, _BITS = 12, 4, 256  # shown of a collection; of nested ones; of 
 
 
 class OneLine(Exception):
-    """An error whose message says all that its user needs."""
+    """Exception whose message says all that its user needs."""
 
     def _render_traceback_(self) -> list[str]:
-        """The lines that IPython and notebooks print instead of a traceback."""
+        """Return the lines that IPython and notebooks print instead of a traceback."""
         return [f"{type(self).__name__}: {self}"]
 
 
 class SceneError(OneLine, ValueError):
-    """An input that cannot be used: one line that names the key, the value and the rule it breaks.
+    """Input that cannot be used: one line with the key, the value and the violated rule.
 
-    The line is printable and of bounded length, whatever the value is.
+    The line is printable and of bounded length for any value.
+
+    Parameters
+    ----------
+    key : str
+        Key of the value, with the keys of the enclosing mappings, such as "species[1].radius".
+    value : object
+        The value.
+    rule : str
+        The rule that the value violates.
+    file : str, optional
+        File in which the value stands.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> try:
+    ...     gp.Species(10, radius=-1.0)
+    ... except gp.SceneError as error:
+    ...     error.key, error.value
+    ('radius', -1.0)
     """
 
     def __init__(self, key: str, value: object, rule: str, file: str | None = None) -> None:
@@ -40,14 +63,35 @@ class SceneError(OneLine, ValueError):
         return (type(self), (self.key, self.value, self.rule, self.file))
 
     def inside(self, prefix: str, file: str | None = None) -> SceneError:
-        """This error with the key of the enclosing mapping (`species[1].radius`), or with its file."""
+        """Return this error with the key of the enclosing mapping, or with its file.
+
+        Parameters
+        ----------
+        prefix : str
+            Key of the enclosing mapping, such as "species[1]"; "" without one.
+        file : str, optional
+            File in which the value stands. Default: the file of this error.
+
+        Returns
+        -------
+        SceneError
+            The error with the longer key.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.SceneError("radius", -1.0, "must be positive").inside("species[1]").key
+        'species[1].radius'
+        """
         key = f"{prefix}.{self.key}" if prefix else self.key
         return SceneError(key, self.value, self.rule, file or self.file)
 
 
 def unknown_word(word: object, known: Iterable[str], what: str = "key") -> str:
-    """The rule for a word that is none of `known`: its new name, what other programs mean by it, the most
-    similar one, or all of them."""
+    """Return the rule for a word that is not among the known ones.
+
+    It states its new name, its meaning in other programs, the most similar known word, or all known words.
+    """
     from difflib import get_close_matches
 
     from gaspart.errors.synonyms import meant
@@ -63,7 +107,7 @@ def unknown_word(word: object, known: Iterable[str], what: str = "key") -> str:
 
 
 def optional(module: str, extra: str, purpose: str) -> ModuleType:
-    """Import a package that is needed for one purpose only, and belongs to an `extra` of pyproject.toml.
+    """Import a package that serves one purpose only, and belongs to an `extra` of pyproject.toml.
 
     Raises SceneError, with the command that installs it, if it is missing.
     """
@@ -77,8 +121,11 @@ def optional(module: str, extra: str, purpose: str) -> ModuleType:
 
 
 def entry_points_of(group: str) -> list[EntryPoint]:
-    """The entry points of a group, in the order of the search path. Those of a package whose list of them
-    cannot be read are left out; `importlib.metadata.entry_points` fails then, for all packages."""
+    """Return the entry points of a group, in the order of the search path.
+
+    A package whose list of entry points cannot be read is left out; `importlib.metadata.entry_points` fails
+    then, for all packages.
+    """
     from importlib.metadata import distributions  # 0.02 s
 
     found: list[EntryPoint] = []
@@ -91,16 +138,28 @@ def entry_points_of(group: str) -> list[EntryPoint]:
 
 
 class SimulationError(OneLine, RuntimeError):
-    """A run broke one of its invariants, or cannot continue; the last good state is kept by the caller."""
+    """Violation of an invariant during a run, or a run that cannot continue.
+
+    The last good state is kept by the caller.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> issubclass(gp.SimulationError, RuntimeError)
+    True
+    """
 
 
 def shown(value: object) -> str:
-    """`value` as one printable line of at most 120 characters. The time does not grow with its size."""
+    """Format a value as one printable line of at most 120 characters.
+
+    The time does not grow with the size of the value.
+    """
     return visible(_repr(value, _DEPTH), _LONGEST["value"])
 
 
 def _repr(value: object, depth: int) -> str:
-    """Like repr(), but of the first items only, and without an error for any value."""
+    """Format a value like repr(), but only its first items, and without any error."""
     kind = type(value)
     if kind is str or kind is bytes:
         assert isinstance(value, str | bytes)
@@ -132,12 +191,15 @@ def _joined(items: Iterable[str], count: int, depth: int) -> str:
 
 
 def visible(text: object, longest: int | None = None, names: bool = False) -> str:
-    """`text` as one line, in which what a terminal would not show as it is, or obey, is escaped: line breaks,
-    control and formatting characters, such as those that reverse the direction of writing.
+    """Return a text as one line without characters that a terminal would obey or hide.
 
-    Everything that a command prints passes through it, since text of files is that of strangers. longest: of
-    more characters the middle is left out; names: bytes of file names that are not UTF-8 are kept, unless one
-    of them is a control character by itself.
+    Line breaks, control and formatting characters are escaped, including those that reverse the direction of
+    writing. Everything that a command prints passes through this function, since files may contain text by
+    strangers.
+
+    longest : maximum number of characters; the middle of a longer text is left out.
+    names : True to leave bytes of file names that are not UTF-8, unless a byte is a control character by
+        itself.
     """
     line = str(text)
     if longest is not None and len(line) > longest:

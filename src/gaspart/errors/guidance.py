@@ -1,8 +1,8 @@
-"""Mistakes in Python, answered in one line that names the remedy: calls that do not fit, names that do not
-exist, and parts of what cannot change.
+"""Answers to mistakes in Python, in one line that names the remedy.
 
-`gaspart.public.attach` gives this to public functions and classes when they are loaded: none does it by
-itself. Files and command lines have the same answers by `unknown_word`.
+Mistakes are calls with wrong arguments, names that do not exist, and changes of constant values.
+`gaspart.public.attach` gives these answers to public functions and classes when they are loaded: none does it
+by itself. Files and command lines have the same answers by `unknown_word`.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class FixedValue(OneLine, FrozenInstanceError):
 
 
 def _remedy(owner: ModuleType | type, name: str) -> str:
-    """What was probably meant by a name; "" if nothing is known that is like it."""
+    """Return the name that was probably meant; "" if no known name is like it."""
     remedies = ELSEWHERE.get(owner.__name__.rpartition(".")[2], {})
     if name in remedies:
         return remedies[name]
@@ -65,7 +65,10 @@ def _remedy(owner: ModuleType | type, name: str) -> str:
 
 
 def _parts(owner: ModuleType | type) -> Iterable[tuple[str, ModuleType | type]]:
-    """What has names of its own: packages within a package, and attributes whose type is a public class."""
+    """Return the parts of an owner that have names of their own.
+
+    These are packages within a package, and attributes whose type is a public class.
+    """
     if isinstance(owner, ModuleType):
         within = ((f"{owner.__name__}.{name}", getattr(owner, name)) for name in ("analysis", "theory"))
         return within if owner.__name__ == "gaspart" else ()
@@ -81,7 +84,7 @@ def _parts(owner: ModuleType | type) -> Iterable[tuple[str, ModuleType | type]]:
 
 
 def guided(thing: Any) -> Any:
-    """A public function, or class, that answers mistakes; other things as they are."""
+    """Return a public function or class that answers mistakes; other objects unchanged."""
     if isinstance(thing, FunctionType):
         return _answering(thing, thing.__name__)
     if isinstance(thing, type) and not issubclass(thing, BaseException) and thing not in _guided:
@@ -91,7 +94,7 @@ def guided(thing: Any) -> Any:
 
 
 def _guide(cls: Any) -> None:
-    """Let the calls and the missing names of a class be answered."""
+    """Make the calls and the missing names of a class answer mistakes."""
     for name, member in list(vars(cls).items()):
         if isinstance(member, FunctionType) and not name.startswith("_"):
             setattr(cls, name, _answering(member, f"{cls.__name__}.{name}"))
@@ -120,7 +123,7 @@ def _guide(cls: Any) -> None:
 
 
 def _answering(function: Callable, title: str) -> Callable:
-    """A function whose calls that do not fit raise SceneError instead of TypeError."""
+    """Return a function that raises SceneError instead of TypeError for wrong arguments."""
 
     @wraps(function)
     def call(*given: Any, **named: Any) -> Any:
@@ -135,7 +138,10 @@ def _answering(function: Callable, title: str) -> Callable:
 
 
 def _mistake(function: Callable, title: str, given: tuple, named: dict[str, Any]) -> SceneError | None:
-    """What does not fit in a call; None if it fits, so that its error is one of the function itself."""
+    """Return the mistake in the arguments of a call.
+
+    None if the arguments are right, so that its error is one of the function itself.
+    """
     form = signature(function)
     try:
         form.bind(*given, **named)

@@ -85,11 +85,11 @@ SYNONYMS: dict[str, str] = {
     "parameters": "over",
     "grid": "over",
 }
-"""By the other word the name, with a remark behind a comma; several names have a comma or "or" between."""
+"""Name by the other word, with a remark behind a comma; several names have a comma or "or" between."""
 
 
 def meant(word: str, known: list[str]) -> str | None:
-    """What another word means where these names are known; None if it has no such meaning."""
+    """Return the meaning of another word if its names are known, or None."""
     meaning = SYNONYMS.get(word)
     if meaning is None:
         return None
@@ -162,4 +162,4 @@ ELSEWHERE: dict[str, dict[str, str]] = {
     },
     "Tally": {"events": "collisions and wall_hits count them"},
 }
-"""By package or class, and by the name that it does not have, where that is found."""
+"""Location of a missing name, by package or class and by the name."""

@@ -48,7 +48,10 @@ _PRESSURE, _DIFFUSION = "pressure Z", "diffusion coefficient D"
 
 
 def judge(frames: Frames, tolerance: float | None = None) -> list[Check]:
-    """All checks of a trajectory. tolerance: allowed overlap, as a fraction of a diameter."""
+    """Return all checks of a trajectory.
+
+    `tolerance` is the allowed overlap, as a fraction of a diameter.
+    """
     checks = [*judge_places(frames, tolerance), *judge_conserved(frames)]
     if reason := frames.no_identity or _acting(checks):
         return [*checks, *(Check(name, None, reason) for name in (*SPEEDS, _PRESSURE, _DIFFUSION))]
@@ -56,25 +59,25 @@ def judge(frames: Frames, tolerance: float | None = None) -> list[Check]:
 
 
 def _acting(checks: list[Check]) -> str | None:
-    """The reason why nothing is known of equilibrium: a check found more than elastic contacts."""
+    """Return the reason why nothing is known of equilibrium: a check found more than elastic contacts."""
     names = [check.name for check in checks if check.acts]
     return f"something acts on the particles (see {' and '.join(names)})" if names else None
 
 
 def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:
-    """Checks of positions: overlaps, and particles outside the container."""
+    """Check positions for overlaps and for particles outside the container."""
     seen = np.unique(np.linspace(0, len(frames.positions) - 1, MOST_FRAMES).astype(int))
     return [_overlaps(frames, seen, tolerance), _inside(frames, tolerance)]
 
 
 def _tolerated(frames: Frames, tolerance: float | None) -> float:
-    """As a part of the smallest diameter."""
+    """Return the tolerance as a fraction of the smallest diameter."""
     coarse = 4.0 * frames.resolution / (2.0 * float(frames.radii.min()))
     return min(max(TOUCH, coarse), COARSEST) if tolerance is None else tolerance
 
 
 def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Check:
-    """The deepest overlap of two particles, as a part of their contact distance."""
+    """Check the deepest overlap of two particles, as a fraction of their contact distance."""
     if frames.sampled:
         return Check("overlaps", None, "contacts are sampled, so that particles may overlap")
     if frames.no_identity and frames.diameter is None and frames.radii_by_frame is None:
@@ -93,7 +96,7 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
 
 
 def _inside(frames: Frames, tolerance: float | None) -> Check:
-    """The largest distance of a centre outside the walls; none on periodic axes."""
+    """Check the largest distance of a centre outside the walls; periodic axes have none."""
     walls = ~np.array(frames.periodic)
     if not walls.any():
         return Check("container", None, "periodic, so that nothing can leave it")
@@ -109,12 +112,12 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
 
 
 def _pressure(frames: Frames) -> Check:
-    """Z by the collisions of a file that counts them, otherwise by the pair distribution at contact, against
-    the equation of state, corrected for the finite number.
+    """Check Z against the equation of state, corrected for the finite number.
 
+    Z follows from the collisions of a file that counts them, otherwise from the pair distribution at contact.
     Frames count from the one on until which particles have moved by the distance of neighbours, so that
-    nothing is left of a lattice (its order decays by exp(-k^2 <r^2> / 2d)); and those between which they
-    have moved across the shells that are counted.
+    nothing is left of a lattice (its order decays by exp(-k^2 <r^2> / 2d)); and only frames between which
+    they have moved across the shells that are counted.
     """
     name = _PRESSURE
     if reason := _no_pressure(frames):
@@ -161,7 +164,7 @@ def _by_collisions(path: Path, start: float) -> Check:
 
 
 def _no_pressure(frames: Frames) -> str | None:
-    """The reason why the pressure cannot be checked; None if it can."""
+    """Return the reason why the pressure cannot be checked; None if it can."""
     gas = frames.gas
     if not all(frames.periodic) or gas is None:
         return "needs equal particles in a periodic container, moved by elastic contacts alone"
@@ -179,7 +182,7 @@ def _no_pressure(frames: Frames) -> str | None:
 
 
 def _unmoved(way: np.ndarray, distance: float) -> str:
-    """The reason why a run is not relaxed."""
+    """Return the reason why a run is not relaxed."""
     there = math.sqrt(float((way[-1] ** 2).sum(axis=1).mean()))
     return (
         f"particles must move by {distance:.3g} after the first frame, to relax; they have moved {there:.2g}"
@@ -187,7 +190,7 @@ def _unmoved(way: np.ndarray, distance: float) -> str:
 
 
 def _diffusion(frames: Frames) -> Check:
-    """D of spheres by their mean-squared displacement against theory."""
+    """Check D of spheres, from their mean-squared displacement, against theory."""
     name = _DIFFUSION
     if reason := why_not_speeds(frames) or why_not(frames):
         return Check(name, None, reason)

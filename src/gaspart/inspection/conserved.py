@@ -14,7 +14,7 @@ DRIFT = 1e-6
 
 
 def judge_conserved(frames: Frames) -> list[Check]:
-    """Checks of the kinetic energy, of the momentum along periodic axes, and of flights between frames."""
+    """Check the kinetic energy, the momentum along periodic axes, and flights between frames."""
     names = "energy", "momentum", "flights"
     if reason := why_not_speeds(frames):
         return [Check(name, None, reason) for name in names]
@@ -35,10 +35,10 @@ def judge_conserved(frames: Frames) -> list[Check]:
 
 
 def _steady(name: str, changes: np.ndarray, allowed: float, isolated: bool) -> Check:
-    """Whether a quantity stays constant from frame to frame. changes (T - 1,): relative to that of all
-    particles together.
+    """Check that a quantity stays constant from frame to frame.
 
-    If it changes most of the time, it is conserved only if the file says that nothing acts on the particles.
+    The `changes` (T - 1,) are relative to the quantity of all particles together. If it changes most of the
+    time, it is conserved only if the file says that nothing acts on the particles.
     """
     worst = int(np.argmax(changes))
     text = f"changes by {changes[worst]:.2g} of it at most, before frame {worst + 1} (up to {allowed:.1g})"

@@ -22,18 +22,28 @@ _SAME = 1e-6
 
 @dataclass
 class Contents:
-    """The fields of T frames of N particles, as a reader found them; None: the file does not state it.
+    """Fields of T frames of N particles, as a reader found them.
 
-    positions (T, N, 2 or 3), as stored; velocities likewise; time (T,); steps (T,), which --time-step
-    multiplies; radii and masses (N,) or (T, N); ids (T, N), one for each particle, and species (T, N),
-    which identify them; lengths and origin (T, 3), a length of 0 for walls at an unknown distance;
-    boundary (3,), a word for each axis; centred: the origin is the middle of the container; flat: two
-    dimensions; plain: nothing but elastic contacts moves the particles, as far as the file states;
-    isolated: the file states that so it is; part: there are more particles; sampled: particles may
-    overlap; engine and scene: of a file of gaspart; counted: the file, if it counts exact collisions;
-    resolution and time_resolution: by how much a coordinate and a time may be off because of their type;
-    velocities_from_first: the reason to doubt velocities, which are those of frame 0 in all frames;
-    no_velocities: the reason why there are none.
+    A field that the file does not state has the value None.
+
+    positions, velocities : (T, N, 2 or 3), as stored.
+    time : (T,).
+    steps : (T,), which --time-step multiplies.
+    radii, masses : (N,) or (T, N).
+    ids, species : (T, N), ids for each particle, and species, which identify particles.
+    lengths, origin : (T, 3), a length of 0 for walls at an unknown distance.
+    boundary : (3,), a word for each axis.
+    centred : True if the origin is the middle of the container.
+    flat : True for two dimensions.
+    plain : True if nothing but elastic contacts moves the particles, as far as the file states.
+    isolated : True if the file states that it is plain.
+    part : True if there are more particles.
+    sampled : True if particles may overlap.
+    engine, scene : of a file of gaspart.
+    counted : the file, if it counts exact collisions.
+    resolution, time_resolution : errors of a coordinate and of a time because of their type.
+    velocities_from_first : reason to doubt velocities that are equal to those in frame 0 in all frames.
+    no_velocities : reason why there are no velocities.
     """
 
     positions: np.ndarray
@@ -64,8 +74,10 @@ class Contents:
 
 @dataclass(frozen=True)
 class Given:
-    """The user's statements about a file, which take precedence over it; see `readers.read_frames`. last: of
-    a file of GSD or XYZ only the last frame is read, and must have all that it states by itself."""
+    """Statements of the user about a file, which take precedence over it; see `readers.read_frames`.
+
+    If `last`, only the last frame of a file of GSD or XYZ is read; it must be complete.
+    """
 
     radius: float | None = None
     lengths: tuple[float, ...] | None = None
@@ -76,7 +88,7 @@ class Given:
 
 
 def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
-    """Frames from the contents of a file and the user's statements.
+    """Complete the contents of a file by the user's statements.
 
     Raises SceneError for missing, invalid or contradictory values.
     """
@@ -126,7 +138,7 @@ def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
 
 
 def _origin(contents: Contents, given: Given, sides: np.ndarray, path: str) -> np.ndarray:
-    """(1, d) or (T, d), the lower corner of the container."""
+    """Return the lower corner of the container, (1, d) or (T, d)."""
     d = sides.shape[1]
     if given.origin == CENTRE or (given.origin is None and contents.centred):
         return -0.5 * sides
@@ -146,7 +158,7 @@ def _require_finite(name: str, values: np.ndarray, path: str) -> None:
 
 
 def sort_by_id(contents: Contents, path: str) -> None:
-    """Bring the particles of every frame into the order of their ids. Refused: frames of other particles."""
+    """Sort the particles of every frame by their ids; reject frames of other particles."""
     if contents.ids is None:
         species = contents.species
         if species is not None and np.any(species != species[0]):
@@ -173,10 +185,11 @@ def sort_by_id(contents: Contents, path: str) -> None:
 
 
 def _dimension(contents: Contents, given: Given, diameter: float) -> int:
-    """2 or 3: as the file states it, or by whether anything happens along z.
+    """Return the number of dimensions, 2 or 3.
 
-    Particles that stay at one z are discs, unless three sides are given; those of a single frame without
-    velocities only if the container is less than two diameters high, or no height is stated.
+    It is stated by the file, or depends on motion along z. Particles that stay at one z are discs, unless
+    three sides are given; particles of a single frame without velocities are discs only if the container is
+    less than two diameters high, or no height is stated.
     """
     positions, velocities = contents.positions, contents.velocities
     if positions.shape[2] == 2:
@@ -193,7 +206,10 @@ def _dimension(contents: Contents, given: Given, diameter: float) -> int:
 
 
 def _container(contents: Contents, given: Given, d: int, path: str) -> tuple[np.ndarray, Container]:
-    """The sides, (1, d) or (T, d) if they change, and a container of those of the first frame."""
+    """Return the sides, (1, d) or (T, d), and the container of the first frame.
+
+    The sides are (T, d) if they change.
+    """
     stated = None if contents.lengths is None else np.asarray(contents.lengths, dtype=float)[:, :d]
     if given.lengths is not None:
         if len(given.lengths) < d:
@@ -222,7 +238,7 @@ def _container(contents: Contents, given: Given, d: int, path: str) -> tuple[np.
 
 
 def _radii(contents: Contents, given: Given, path: str) -> np.ndarray:
-    """(N,) or (T, N)."""
+    """Return the radii, (N,) or (T, N)."""
     if given.radius is not None:
         return np.full(contents.positions.shape[1], given.radius)
     if contents.radii is None:
@@ -234,10 +250,11 @@ def _radii(contents: Contents, given: Given, path: str) -> np.ndarray:
 
 
 def _times(contents: Contents, given: Given, path: str) -> np.ndarray | None:
-    """(T,) times; None if the file states none, or the same in every frame, as of a field never set.
+    """Return the times (T,), or None if the file states no times.
 
-    Times that are even within their resolution are made so: numbers in single precision or with few digits
-    deviate from it by more, the later they are.
+    It states none if the time is the same in every frame, like a field that was never set. Times that are
+    uniform within their resolution are made uniform: numbers in single precision or with few digits deviate
+    from it by more, the later they are.
     """
     frames = len(contents.positions)
     time, resolution = contents.time, contents.time_resolution
@@ -257,7 +274,10 @@ def _times(contents: Contents, given: Given, path: str) -> np.ndarray | None:
 
 
 def _per_frame(values: np.ndarray, tolerance: float = 0.0) -> np.ndarray:
-    """(1, ...) if all frames have the same values, else (T, ...). values: (T, n), or (n,) of all frames."""
+    """Return (1, ...) if all frames have the same values, otherwise (T, ...).
+
+    The values are (T, n), or (n,) for all frames.
+    """
     values = np.atleast_2d(values)
     if np.abs(values - values[:1]).max(initial=0.0) <= tolerance * np.abs(values).max(initial=0.0):
         return values[:1]

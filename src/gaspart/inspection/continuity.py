@@ -1,7 +1,7 @@
-"""Continuity of a trajectory of another program: velocities that belong to their frames, rows in one order.
+"""Continuity of a trajectory of another program: velocities of their frames, rows in one order.
 
-Between collisions a particle moves by its velocity times the time. Velocities that were copied from one
-frame into all, and rows in another order in each frame, break this for nearly all particles at once.
+Between collisions a particle moves by its velocity times the time. Velocities that were copied from one frame
+into all, and rows in another order in each frame, break this for nearly all particles at once.
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ _KEY = np.sqrt([2.0, 3.0, 5.0])
 
 
 def continuous(frames: Frames, doubt: str | None, identified: bool) -> Frames:
-    """Return frames without copied velocities, and with the first frame whose rows are in another order.
+    """Return frames without copied velocities, and with the first frame in another order.
 
-    doubt: the reason to take velocities for copies; identified: True if ids have restored the order.
+    doubt : reason to take velocities for copies.
+    identified : True if ids have restored the order.
     """
     if frames.velocities is None or len(frames.positions) < 2 or frames.lengths_by_frame is not None:
         return frames  # in a container that changes, nothing is compared with velocities
@@ -38,9 +39,9 @@ def continuous(frames: Frames, doubt: str | None, identified: bool) -> Frames:
 
 
 def _are_copied(frames: Frames, doubtful: bool) -> bool:
-    """Return True if velocities are the same in all frames, and particles do not move by them.
+    """Return True if all frames have equal velocities by which particles do not move.
 
-    doubtful: velocities are copies unless the times are known and all particles move by them.
+    If `doubtful`, velocities are copies unless the times are known and all particles move by them.
     """
     velocities = frames.velocities
     assert velocities is not None, "see `continuous`"
@@ -58,7 +59,7 @@ def _are_copied(frames: Frames, doubtful: bool) -> bool:
 
 
 def _reordered_frame(frames: Frames) -> int | None:
-    """The first frame that lists its particles in another order than the frame before it, or None."""
+    """Find the first frame that lists its particles in another order than before, or None."""
     for n in range(len(frames.positions) - 1):
         if _same_velocities_elsewhere(frames, n) or _predicted_elsewhere(frames, n):
             return n + 1
@@ -66,10 +67,11 @@ def _reordered_frame(frames: Frames) -> int | None:
 
 
 def _same_velocities_elsewhere(frames: Frames, n: int) -> bool:
-    """Return True if velocities of frame n occur in frame n + 1, more often in other rows than in their own.
+    """Return True if frame n + 1 has velocities of frame n in other rows.
 
-    Those that several particles have say nothing. Two equal particles may exchange their velocities in a
-    head-on collision: where times are known, positions decide.
+    They must occur more often in other rows than in their own. Velocities that several particles have do not
+    count. Two equal particles may exchange their velocities in a head-on collision: where times are known,
+    positions decide.
     """
     assert frames.velocities is not None, "see `continuous`"
     keys = [(velocity * _KEY[: frames.dimension]).sum(axis=1) for velocity in frames.velocities[n : n + 2]]
@@ -91,7 +93,10 @@ def _same_velocities_elsewhere(frames: Frames, n: int) -> bool:
 
 
 def _predicted_elsewhere(frames: Frames, n: int) -> bool:
-    """Return True if most particles of frame n + 1 are where other rows of frame n must have moved."""
+    """Return True if most particles of a frame are where other rows must have moved.
+
+    The particles are in frame n + 1, the rows are rows of frame n.
+    """
     if frames.time is None or frames.count < 3:
         return False
     assert frames.velocities is not None, "see `continuous`"
@@ -107,17 +112,17 @@ def _predicted_elsewhere(frames: Frames, n: int) -> bool:
 
 
 def _tree(frames: Frames, n: int) -> cKDTree:
-    """The positions of a frame, for searches."""
+    """Return the positions of a frame, for searches."""
     return cKDTree(frames.positions[n], boxsize=np.where(frames.periodic, frames.lengths, 0.0))
 
 
 def _near(frames: Frames, n: int, tree: cKDTree) -> float:
-    """`_NEAR` as a length."""
+    """Return `_NEAR` as a length."""
     return _NEAR * float(np.median(tree.query(frames.positions[n], k=2)[0][:, 1]))
 
 
 def _wrapped(frames: Frames, positions: np.ndarray) -> np.ndarray:
-    """Positions in the container along periodic axes."""
+    """Return positions in the container along periodic axes."""
     inside = np.where(
         frames.periodic, positions - frames.lengths * np.floor(positions / frames.lengths), positions
     )
@@ -125,5 +130,5 @@ def _wrapped(frames: Frames, positions: np.ndarray) -> np.ndarray:
 
 
 def _nearest(frames: Frames, apart: np.ndarray) -> np.ndarray:
-    """Separations by nearest images."""
+    """Return separations by nearest images."""
     return apart - np.where(frames.periodic, frames.lengths * np.round(apart / frames.lengths), 0.0)

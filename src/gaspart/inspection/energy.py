@@ -1,4 +1,4 @@
-"""The energy of a run of any scene: what the particles have, and what they have exchanged."""
+"""Energy of a run of any scene: energy of the particles, and exchanged energy."""
 
 from __future__ import annotations
 
@@ -22,8 +22,11 @@ _FRAMES = 64  # that are in memory at once
 
 
 def energy_line(scene: Scene, data: xr.Dataset) -> str:
-    """By how much the energy of a run has drifted: the total energy less what contacts, faces and kicks have
-    exchanged, which every scene conserves, relative to the largest energy of motion."""
+    """Return a line on the drift of the energy of a run.
+
+    The conserved quantity of every scene is the total energy less what contacts, faces and kicks have
+    exchanged; its drift is relative to the largest energy of motion.
+    """
     kinetic = data["kinetic_energy"].values
     try:
         total = conserved_energy(scene, data)
@@ -39,8 +42,10 @@ def energy_line(scene: Scene, data: xr.Dataset) -> str:
 
 
 def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
-    """(T,) the kinetic, vibrational and potential energy of the frames of an open trajectory, with what was
-    exchanged added, relative to any zero. Raises SceneError where the file does not tell."""
+    """Compute the energy (T,) of the frames with the exchanged energy added, relative to any zero.
+
+    The energy is kinetic, vibrational and potential. Raises SceneError where the file does not state it.
+    """
     energy = data["kinetic_energy"].values + _exchanged(data)
     if "vibrations" in data:
         energy += data["vibrations"].values.sum(axis=1)
@@ -60,19 +65,21 @@ def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
 
 
 def _exchanged(data: xr.Dataset) -> np.ndarray:
-    """(T,) the energy that contacts and faces have taken since time 0, less what kicks have given."""
+    """Return the energy (T,) taken by contacts and faces since time 0, less kicks."""
     taken = data["dissipated_energy"].values + data["wall_energy"].values.sum(axis=1)
     return np.asarray(taken - data["thermostat_energy"].values, dtype=float)
 
 
 def _positioned(scene: Scene, data: xr.Dataset) -> bool:
-    """Whether the potential energy is that of positions in single precision."""
+    """Return True if the potential energy follows from positions in single precision."""
     return scene.gravity is not None and "displacements" not in data
 
 
 def _potential(scene: Scene, data: xr.Dataset) -> np.ndarray:
-    """(T,) the energy of all particles under gravity, relative to that at time 0 if there are displacements,
-    and in wells."""
+    """Compute the energy (T,) of all particles under gravity and in wells.
+
+    The energy under gravity is relative to time 0 if there are displacements.
+    """
     places = data["coordinates"].values.astype(float)
     energy = np.zeros(len(places))
     if scene.gravity is not None:
@@ -92,7 +99,7 @@ def _potential(scene: Scene, data: xr.Dataset) -> np.ndarray:
 
 
 def certificate(path: Path) -> list[str]:
-    """Lines on the drift of the energy, the worst contact, and how many independent samples there are."""
+    """Return lines on the drift of the energy, the worst contact, and the independent samples."""
     scene = read_recipe(path).scene
     with opened(path) as file:
         if not len(file.dimensions["frame"]):
@@ -107,14 +114,14 @@ def certificate(path: Path) -> list[str]:
 
 
 def _inside(scene: Scene, data: xr.Dataset) -> str:
-    """How many particles there were in the frames of a run with open faces, and the room for them."""
+    """Return a line on the numbers of particles in an open run, and its capacity."""
     counts = particle_numbers(scene, data)
     ends = f"{counts[0]} particles at the start, {counts[-1]} at the end"
     return f"{ends}, {counts.min()} to {counts.max()} in between; room for {scene.capacity}"
 
 
 def _contacts(series: dict) -> str:
-    """Errors of the engine, from its counters."""
+    """Return a line on errors of the engine, from its counters."""
     counted = f"{series['collisions'][-1]:.0f} collisions"
     if "overlaps_left" in series:
         deepest, remaining = series["deepest_overlap"][-1], series["overlaps_left"][-1]
@@ -124,8 +131,11 @@ def _contacts(series: dict) -> str:
 
 
 def _samples(scene: Scene, series: dict) -> str:
-    """Independent values of the pressure: intervals between frames over twice their correlation time, but no
-    more than there are collisions."""
+    """Return a line on the number of independent values of the pressure.
+
+    It is the number of intervals between frames divided by twice their correlation time, at most the number
+    of collisions.
+    """
     counted = np.diff(series["virial_sum"])
     per_particle = 2.0 * series["collisions"][-1] / max(scene.count, 1)
     collisions = f"{per_particle:.4g} collisions per particle"

@@ -15,7 +15,7 @@ _DIGITS = 12  # after the point, at which decimals differ from binary numbers
 
 
 class Flights(NamedTuple):
-    """Number of flights without a collision, the largest relative error, and the frame in which it ends."""
+    """Number of flights without a collision, their largest relative error, and the frame at its end."""
 
     number: int
     worst: float

@@ -18,18 +18,25 @@ from gaspart.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Frames:
-    """Data of a trajectory of T frames of N particles that can be judged.
+    """Data of a trajectory of T frames of N particles that can be checked.
 
-    positions (T, N, d), on periodic axes inside the container [0, L], NaN of particles that are absent from a
-    frame; velocities (T, N, d) and time (T,), or None if the file does not state it; lengths (d,), radii and
-    masses (N,), of the first frame where they change; lengths_by_frame (T, d) and radii_by_frame (T, N) where
-    they do; periodic (d,) whether each axis is; plain: whether nothing but elastic contacts moves particles
-    of one mass in a constant container, as far as the file knows; resolution: by how much a position may be
-    off, as a length; isolated: whether the file states that it is plain; part: whether there are more
-    particles than the file has; sampled: whether contacts were sampled, so that particles may overlap; engine
-    and scene: by which a file of gaspart was made; counted: the file of gaspart that counts the exact
-    collisions of these frames; no_velocities: the reason why there are none; reordered: the first frame that
-    lists its particles in another order than the one before, without ids to restore it, or None.
+    positions : (T, N, d), on periodic axes inside the container [0, L], NaN for particles that are absent
+        from a frame.
+    velocities, time : (T, N, d) and (T,), or None if the file does not state it.
+    lengths, radii, masses : (d,), (N,), (N,), of the first frame where they change.
+    lengths_by_frame, radii_by_frame : (T, d) and (T, N), where they change.
+    periodic : (d,), True for each periodic axis.
+    plain : True if nothing but elastic contacts moves particles of one mass in a constant container, as far
+        as the file knows.
+    resolution : error of a position, as a length.
+    isolated : True if the file states that it is plain.
+    part : True if there are more particles than the file has.
+    sampled : True if contacts were sampled, so that particles may overlap.
+    engine, scene : by which a file of gaspart was made.
+    counted : file of gaspart that counts the exact collisions of these frames.
+    no_velocities : reason why there are no velocities.
+    reordered : first frame that lists its particles in another order than the one before, without ids to
+        restore it, or None.
     """
 
     positions: np.ndarray
@@ -81,14 +88,16 @@ class Frames:
 
     @property
     def packing_fraction(self) -> float:
-        """Volume (area) of all particles over that of the container."""
+        """Volume (area) of all particles divided by the volume of the container."""
         return float(ball_volume(self.dimension) * (self.radii**self.dimension).sum() / np.prod(self.lengths))
 
     @cached_property
     def gas(self) -> Gas | None:
-        """The plain gas that the particles are, as far as the file knows, of mass 1 at the mean of its
-        `temperatures` (NaN without velocities); None if they differ or more than elastic contacts moves
-        them."""
+        """Plain gas of these particles, as far as the file knows, or None.
+
+        The mass is 1, the temperature is the mean of `temperatures` (NaN without velocities). None if the
+        particles differ or more than elastic contacts moves them.
+        """
         if not self.plain or self.diameter is None:
             return None
         temperature = math.nan if self.velocities is None else float(self.temperatures.mean())
@@ -96,15 +105,20 @@ class Frames:
 
     @cached_property
     def motion(self) -> Peculiar:
-        """Velocities of particles of mass 1 about the mean one of each frame, along periodic axes. Raises
-        ValueError without velocities."""
+        """Velocities of particles of mass 1 about the mean velocity of each frame, along periodic axes.
+
+        Raises ValueError without velocities.
+        """
         if self.velocities is None:
             raise ValueError("velocities: None (the file has none)")
         return about_the_mean(self.velocities, np.ones(self.count), np.array(self.periodic))
 
     @property
     def temperatures(self) -> np.ndarray:
-        """(T,) k_B T of each frame, of particles of mass 1; 0 of one that cannot move about the mean."""
+        """Temperature k_B T of each frame, of particles of mass 1, shape (T,).
+
+        It is 0 for a particle that cannot move about the mean.
+        """
         energies = self.motion.energies(np.ones(self.count)).sum(axis=1)
         freedom = self.dimension * self.count - sum(self.periodic)
         return np.asarray(energies / max(freedom, 1))

@@ -21,10 +21,11 @@ _SPHERE_RADIUS = "state/hpmc/sphere/radius"
 
 
 def read_gsd(path: Path, given: Given) -> Contents:
-    """All frames, or the last. A field that no frame states is unknown, although the schema has a default.
+    """Read all frames, or the last one.
 
-    The origin is the middle of the box. Raises SceneError for contents that cannot be checked, and what the
-    library raises for a file that cannot be read.
+    A field that no frame states is unknown, although the schema has a default. The origin is the middle of
+    the box. Raises SceneError for contents that cannot be checked, and what the library raises for a file
+    that cannot be read.
     """
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with open_regular(path) as opened_file, hoomd.open(descriptor_path(opened_file), "r") as file:
@@ -83,7 +84,7 @@ def _refuse_bodies(frames: list[Any], path: Path) -> None:
 
 
 def _old_radii(file: Any, chunks: set[str], path: Path) -> np.ndarray | None:
-    """(types,) radii of the first frame's state of HOOMD 2, if there is one."""
+    """Return the radii (types,) of the first frame's state of HOOMD 2, if there is one."""
     shapes = {name.split("/")[2] for name in chunks if name.startswith("state/hpmc/")}
     if shapes := shapes - {"integrate", "sphere"}:
         raise SceneError("file", str(path), f"has particles that are no spheres: {', '.join(sorted(shapes))}")
@@ -93,7 +94,10 @@ def _old_radii(file: Any, chunks: set[str], path: Path) -> np.ndarray | None:
 def _radii(
     frames: list[Any], diameters: bool, old: np.ndarray | None, given: Given, path: Path
 ) -> np.ndarray | None:
-    """(T, N) radii by the diameters or by the shapes of the types. Refused: both, if they differ."""
+    """Return the radii (T, N) by the diameters or by the shapes of the types.
+
+    Both are rejected if they differ.
+    """
     by_diameter = 0.5 * np.array([frame.particles.diameter for frame in frames], dtype=float)
     shapes = []
     for frame in frames:
@@ -110,7 +114,7 @@ def _radii(
 
 
 def _of_shapes(shapes: list[dict], path: Path) -> list[float]:
-    """Radii of the types, NaN where none is stated. Refused: shapes that are no spheres."""
+    """Return the radii of the types, NaN where none is stated; reject other shapes than spheres."""
     radii = []
     for shape in shapes:
         kind = shape.get("type")

@@ -1,5 +1,7 @@
-"""The contents of a netCDF file of AMBER's convention, https://ambermd.org/netcdf/nctraj.xhtml, version 1.0,
-with the variables that LAMMPS (`dump netcdf`) and OVITO add to it, or those of gaspart.
+"""Contents of a netCDF file of AMBER's convention, version 1.0.
+
+The convention is https://ambermd.org/netcdf/nctraj.xhtml. LAMMPS (`dump netcdf`), OVITO and gaspart add
+variables.
 """
 
 from __future__ import annotations
@@ -47,19 +49,19 @@ class _Header:
         return content
 
     def count(self) -> int:
-        """A number of things."""
+        """Read a number of items."""
         return int.from_bytes(self._bytes(self._count), "big")
 
     def offset(self) -> int:
-        """A place in the file."""
+        """Read an offset in the file."""
         return int.from_bytes(self._bytes(self._offset), "big")
 
     def word(self) -> int:
-        """A tag or a type."""
+        """Read a tag or a type."""
         return int.from_bytes(self._bytes(4), "big")
 
     def items(self) -> int:
-        """The number of items of a list, after its tag."""
+        """Read the number of items of a list, after its tag."""
         self.word()
         return self.count()
 
@@ -80,7 +82,10 @@ def _padded(length: int) -> int:
 
 
 def needed_bytes(file: BinaryIO) -> int | None:
-    """The least size of a netCDF-3 file; None for other formats. Raises ValueError for a damaged header."""
+    """Return the minimum size of a netCDF-3 file; None for other formats.
+
+    Raises ValueError for a damaged header.
+    """
     file.seek(0)
     magic = file.read(4)
     if magic[:3] != b"CDF" or magic[3] not in _OFFSETS:
@@ -92,7 +97,7 @@ def needed_bytes(file: BinaryIO) -> int | None:
 
 
 def _size(header: _Header) -> int | None:
-    """The end of the last value of any variable."""
+    """Return the end of the last value of any variable."""
     records = header.count()
     sides = []
     for _ in range(header.items()):
@@ -131,8 +136,11 @@ _SECONDS = ("second", "microsecond", "nanosecond", "picosecond", "femtosecond", 
 
 
 def read_netcdf(path: Path, given: Given) -> Contents:
-    """All frames. Raises SceneError for contents that cannot be checked, and what the library raises for a
-    file that cannot be read."""
+    """Read all frames.
+
+    Raises SceneError for contents that cannot be checked, and what the library raises for a file that cannot
+    be read.
+    """
     by_gaspart = is_own(path)
     if by_gaspart:
         check_frames(path)
@@ -146,8 +154,10 @@ def read_netcdf(path: Path, given: Given) -> Contents:
 
 
 def is_own(path: Path) -> bool:
-    """Return True if gaspart wrote a file. Several attributes are tried, so that damage to one does not
-    hide it."""
+    """Return True if gaspart wrote a file.
+
+    Several attributes are tried, so that damage to one does not hide it.
+    """
     with open_regular(path) as file:
         head = file.read(4096)
     return any(name.encode() in head for name in BOOKKEEPING)
@@ -155,7 +165,7 @@ def is_own(path: Path) -> bool:
 
 @contextmanager
 def _foreign(path: Path) -> Iterator[Any]:
-    """A netCDF file of another program. Refused: one that ends before its last value."""
+    """Open a netCDF file of another program; reject a file that ends before its last value."""
     with open_regular(path) as file:
         needed, size = needed_bytes(file), os.fstat(file.fileno()).st_size
         if needed is not None and size < needed:
@@ -188,7 +198,10 @@ def _check_convention(file: Any, path: Path) -> None:
 
 
 def _read(file: Any, name: str) -> np.ndarray | None:
-    """The values of a variable, NaN where it was never filled; None if it does not exist, or is empty."""
+    """Read the values of a variable, NaN where it was never filled.
+
+    None if it does not exist, or is empty.
+    """
     if name not in file.variables:
         return None
     values = file[name][...]
@@ -201,8 +214,10 @@ def _read(file: Any, name: str) -> np.ndarray | None:
 
 
 def _read_frames(file: Any, name: str, path: Path, width: int | None = None) -> np.ndarray | None:
-    """The values (frame, ...) of a variable of every frame, or of the single one of a restart file; None as
-    `_read` returns it."""
+    """Read the values (frame, ...) of a variable of every frame, or of a restart file.
+
+    A restart file has a single frame. None as `_read` returns it.
+    """
     values = _read(file, name)
     if values is None:
         return None
@@ -213,7 +228,7 @@ def _read_frames(file: Any, name: str, path: Path, width: int | None = None) -> 
 
 
 def _contents(file: Any, given: Given, path: Path) -> Contents:
-    """The fields of a file in which every frame has a complete set of particles."""
+    """Return the fields of a file in which every frame has a complete set of particles."""
     lengths = _read_frames(file, "cell_lengths", path, 3)
     origin = _read_frames(file, "cell_origin", path, 3)
     angles = _read_frames(file, "cell_angles", path, 3)
@@ -251,13 +266,16 @@ def _contents(file: Any, given: Given, path: Path) -> Contents:
 
 
 def _named(file: Any, *names: str) -> str:
-    """The first of some names that a file has, in small or capital letters (Radius); else the first."""
+    """Return the first of some names that a file has, in small or capital letters (Radius).
+
+    If it has none of them, the first name is returned.
+    """
     there = {name.lower(): name for name in file.variables} | {name: name for name in file.variables}
     return next((there[name] for name in names if name in there), names[0])
 
 
 def _velocities(file: Any, path: Path) -> tuple[np.ndarray | None, str | None]:
-    """(T, N, 3) velocities; None with the reason where some frames have none."""
+    """Return the velocities (T, N, 3); None with the reason if some frames have none."""
     values = _read_frames(file, "velocities", path)
     if values is None or values.ndim != 3:
         return values, None
@@ -270,7 +288,10 @@ def _velocities(file: Any, path: Path) -> tuple[np.ndarray | None, str | None]:
 def _positions(
     file: Any, given: Given, lengths: np.ndarray | None, origin: np.ndarray | None, path: Path
 ) -> tuple[np.ndarray, float]:
-    """(T, N, 3) positions, (T, N, 2) if z was never filled, and their resolution."""
+    """Return the positions and their resolution.
+
+    Positions are (T, N, 3), or (T, N, 2) if z was never filled.
+    """
     name = next((name for name in _POSITIONS if name in file.variables), None)
     if name is None or "atom" not in file.dimensions:
         raise SceneError("file", str(path), "has no coordinates in frames: not AMBER's convention")
@@ -303,9 +324,10 @@ def _positions(
 
 
 def _times(file: Any) -> tuple[np.ndarray | None, float]:
-    """Times in double precision, also where LAMMPS has steps and a scale factor; their resolution.
+    """Return times in double precision, and their resolution.
 
-    OVITO numbers the frames in `time`, and has the time, if it knows it, in `Time`.
+    LAMMPS may have steps and a scale factor instead. OVITO numbers the frames in `time`, and has the time, if
+    it knows it, in `Time`.
     """
     name = "Time" if str(getattr(file, "program", "")) == "OVITO" else "time"
     if name not in file.variables:
@@ -323,7 +345,7 @@ def _times(file: Any) -> tuple[np.ndarray | None, float]:
 
 
 def _check_units(file: Any, path: Path) -> None:
-    """Refuse velocities and times in different units of time, as of LAMMPS's `units electron`."""
+    """Reject velocities and times in different units of time, like LAMMPS's `units electron`."""
     units = [str(getattr(file.variables.get(name), "units", "")).lower() for name in ("velocities", "time")]
     of_velocity, of_time = (unit.rpartition("/")[2].removesuffix("s") for unit in units)
     if of_velocity in _SECONDS and of_time in _SECONDS and of_velocity != of_time:

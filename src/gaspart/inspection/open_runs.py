@@ -25,8 +25,8 @@ _CHANGING = "particles come and go: its theory is of those that stay"
 def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Check]]:
     """Check a trajectory with open faces.
 
-    Returns a line that names its particles, and the checks: of positions, of the books of particles and of
-    energy, and of flights. tolerance: allowed overlap, as a fraction of a diameter.
+    Returns a line that names its particles, and the checks of positions, of the books of particles and of
+    energy, and of flights. `tolerance` is the allowed overlap, as a fraction of a diameter.
     """
     scene = read_recipe(path).scene
     with open_trajectory(path) as data:

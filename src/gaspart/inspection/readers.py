@@ -46,13 +46,16 @@ def read_frames(
     time_step: float | None = None,
     origin: str | tuple[float, ...] | None = None,
 ) -> Frames:
-    """The frames of a trajectory; the arguments take precedence over the file.
+    """Read the frames of a trajectory; the arguments take precedence over the file.
 
-    radius: of all particles; lengths: (d,) sides; boundary: "periodic" (the default for files of other
-    programs that state nothing else) or "wall", or one for each axis; time_step: simulated time of one step,
-    where a file counts steps (GSD), or between frames; origin: (d,) the lower corner of the container, or
-    "centre" if its middle is at 0. Raises SceneError for a file that cannot be read, or
-    for missing data.
+    radius : radius of all particles.
+    lengths : (d,), sides.
+    boundary : "periodic" (the default for files of other programs without a statement) or "wall", or one for
+        each axis.
+    time_step : simulated time of one step, where a file counts steps (GSD), or between frames.
+    origin : (d,), lower corner of the container, or "centre" if its middle is at 0.
+
+    Raises SceneError for a file that cannot be read, or for missing data.
     """
     path, given = Path(path), Given(radius, lengths, boundary, time_step, origin)
     with _reading(path):
@@ -68,7 +71,7 @@ def is_open_run(path: str | Path) -> bool:
 
 
 def read_contents(path: Path, given: Given) -> Contents:
-    """The contents of a file, as `read_frames` reads it. Raises SceneError."""
+    """Read the contents of a file as `read_frames` does; raise SceneError."""
     with _reading(path):
         return _contents(path, given)
 
@@ -83,7 +86,10 @@ def _contents(path: Path, given: Given) -> Contents:
 
 @contextmanager
 def _reading(path: Path) -> Iterator[None]:
-    """Raises SceneError for whatever is wrong with a file. Values that are not finite are refused later."""
+    """Raise SceneError for any error in reading a file.
+
+    Values that are not finite are rejected later.
+    """
     try:
         with np.errstate(all="ignore"):
             yield
@@ -95,7 +101,10 @@ def _reading(path: Path) -> Iterator[None]:
 
 
 def _require_memory(path: Path) -> None:
-    """Raise SceneError for a file whose frames do not fit the memory, as a sparse one; OSError for none."""
+    """Raise SceneError for a file whose frames exceed the memory, for example a sparse one.
+
+    Raises OSError without a file.
+    """
     with open_regular(path) as file:
         size = os.fstat(file.fileno()).st_size
     there, needed = memory(), COPIES * size
@@ -114,15 +123,44 @@ _SAME = 1e-6
 
 
 def read_state(path: str | Path, scene: Scene) -> State:
-    """The state at time 0 of a scene, with the positions and velocities of the last frame of a GSD file or an
-    XYZ file (extended, with velocities), in the precision that the file has.
+    r"""Return the initial state of a scene from a GSD or XYZ file.
 
-    Its particles are those of the scene: in the order of their ids, if it has them; in that order, or, if the
-    radii and masses that it states are in another one, by these. Radii, masses and the container are the
-    scene's. Velocities are about the flow of a sheared scene; spins are 0.
+    The file has the state in its last frame.
 
-    Raises SceneError for a file without velocities, of another number of particles, other sizes or masses,
-    another container, a file that `gaspart check` cannot read, and as `Simulation` does for a given state.
+    Parameters
+    ----------
+    path : str or Path
+        GSD file, or XYZ file (extended, with velocities).
+    scene : Scene
+        The scene, whose radii, masses and container hold.
+
+    Returns
+    -------
+    State
+        State at time 0, with the positions and velocities of the frame, in the precision of the file.
+        Velocities are about the flow of a sheared scene; spins are 0.
+
+    Raises
+    ------
+    SceneError
+        If the file has no velocities, another number of particles, other sizes or masses, or another
+        container, if `gaspart check` cannot read it, or if `Simulation` rejects the state.
+
+    Notes
+    -----
+    The particles of the file are in the order of their ids, if it has ids. This order is the order of the
+    scene, unless the stated radii and masses are in another order: then these decide.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> from pathlib import Path
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(1, 0.2, temperature=1.0)])
+    >>> columns = "Properties=species:S:1:pos:R:3:velo:R:3"
+    >>> lines = ["1", f'Lattice="9 0 0 0 9 0 0 0 1" {columns}', "A 4 5 0 1 0 0", ""]
+    >>> _ = Path("start.xyz").write_text("\n".join(lines))
+    >>> gp.read_state("start.xyz", scene).positions.tolist()
+    [[4.0, 5.0]]
     """
     path = Path(path)
     if path.suffix not in STARTS:
@@ -150,8 +188,10 @@ def read_state(path: str | Path, scene: Scene) -> State:
 
 
 def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> np.ndarray:
-    """(N, d) of the values (N, 2 or 3) of a frame. Refused: discs that are not in a plane, and spheres in
-    one."""
+    """Return the values (N, d) from the values (N, 2 or 3) of a frame.
+
+    Discs that are not in a plane, and spheres in a plane, are rejected.
+    """
     d, stated = scene.dimension, values.shape[1]
     if stated < d:
         raise SceneError("file", str(path), f"has {name} in {stated} dimensions, and the scene has {d}")
@@ -163,8 +203,10 @@ def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> n
 
 
 def _origin(contents: Contents, scene: Scene) -> np.ndarray:
-    """(d,) the lower corner of the container. A file has the part of it up to a piston, which is at its side
-    when a run begins."""
+    """Return the lower corner (d,) of the container.
+
+    A file has the part of the container up to a piston, which is at its side when a run begins.
+    """
     low, sides = np.zeros(scene.dimension), np.array(scene.container.lengths)
     for number, _ in scene.pistons if contents.lengths is not None else ():
         axis, high = divmod(number, 2)
@@ -178,8 +220,10 @@ def _origin(contents: Contents, scene: Scene) -> np.ndarray:
 
 
 def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
-    """Refuse a container of other sides; those between walls may be unknown, 0, and those up to a piston
-    smaller."""
+    """Reject a container of other sides.
+
+    Sides between walls may be unknown, 0, and sides up to a piston may be smaller.
+    """
     if contents.flat is not None and contents.flat != (scene.dimension == 2):
         has = "two" if contents.flat else "three"
         raise SceneError("file", str(path), f"has {has} dimensions, and the scene {scene.dimension}")
@@ -195,7 +239,10 @@ def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
 
 
 def _order(contents: Contents, scene: Scene, path: Path) -> np.ndarray:
-    """(N,) which particle of a file each of the scene is, by the radii and masses that it states."""
+    """Return the particle (N,) of a file for each particle of the scene.
+
+    Particles are identified by the radii and masses that the file states.
+    """
     pairs: list[tuple[str, np.ndarray, np.ndarray]] = []
     for name, stated in (("radius", contents.radii), ("mass", contents.masses)):
         if stated is not None:
@@ -213,5 +260,5 @@ def _order(contents: Contents, scene: Scene, path: Path) -> np.ndarray:
 
 
 def _alike(values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """(N,) whether values are the wanted ones but for their rounding."""
+    """Return True for each value (N,) that has the wanted value but for rounding."""
     return np.abs(values - wanted) <= _SAME * wanted

@@ -1,7 +1,8 @@
-"""How many independent samples a trajectory holds: from the motion of its own particles, whatever made it.
+"""Number of independent samples of a trajectory, from the motion of its own particles.
 
-Velocities change by collisions, positions by flights. So the first are judged on a clock of collisions, the
-second by the way that particles have moved; neither needs times, nor a law of motion.
+Velocities change by collisions, positions by flights. So the clock of velocities is the number of collisions,
+the clock of positions is the distance that particles have moved; neither needs times, nor a law of motion,
+and the program does not matter.
 """
 
 from __future__ import annotations
@@ -29,12 +30,12 @@ _CHANGED = 0.05  # of the root-mean-square speed, from which on a velocity has c
 
 
 def collided(frames: Frames) -> np.ndarray:
-    """(T,) collisions of a particle since the first frame, or fewer: a lower bound.
+    """Compute a lower bound of the collisions (T,) of a particle since the first frame.
 
     From frame to frame it is the smaller of two numbers: -ln of the fraction of particles whose velocity has
     not changed (reflections at walls apart), and -(d/2) ln of the correlation of velocities, which falls by
-    exp(-2s/d) in s collisions. The first is deceived by a thermostat, which changes all velocities a
-    little, the second by walls.
+    exp(-2s/d) in s collisions. The first is deceived by a thermostat, which changes all velocities a little,
+    the second by walls.
     """
     velocities = frames.velocities
     assert velocities is not None, "requires velocities"
@@ -51,8 +52,11 @@ def collided(frames: Frames) -> np.ndarray:
 
 
 def independent(times: np.ndarray, rate: float) -> float:
-    """Number of independent samples that a mean over frames at `times` is worth, for a property whose
-    correlation decays as exp(-rate t): 1 / mean of exp(-rate |t_i - t_j|) over all pairs i, j."""
+    """Compute the number of independent samples in a mean over frames at `times`.
+
+    For a property whose correlation decays as exp(-rate t) it is 1 / mean of exp(-rate |t_i - t_j|) over all
+    pairs i, j.
+    """
     total, before = 0.0, 0.0  # sum over earlier frames of their correlation with this one
     for decay in np.exp(-rate * np.diff(times, prepend=times[0])):
         before *= decay
@@ -62,21 +66,25 @@ def independent(times: np.ndarray, rate: float) -> float:
 
 
 def steps(frames: Frames) -> np.ndarray:
-    """(T - 1, N, d) displacements from frame to frame, by nearest images."""
+    """Compute displacements (T - 1, N, d) from frame to frame, by nearest images."""
     apart = np.diff(frames.positions, axis=0)
     return apart - np.where(frames.periodic, frames.lengths * np.round(apart / frames.lengths), 0.0)
 
 
 def path(frames: Frames) -> np.ndarray:
-    """(T, N, d) way of each particle since the first frame, about the centre of mass where
-    nothing but particles gives it momentum."""
+    """Compute the path (T, N, d) of each particle since the first frame.
+
+    It is about the centre of mass along axes on which only particles exchange momentum.
+    """
     way = np.concatenate([np.zeros_like(frames.positions[:1]), np.cumsum(steps(frames), axis=0)])
     return way - np.where(frames.periodic, way.mean(axis=1, keepdims=True), 0.0)
 
 
 def decorrelated_frames(way: np.ndarray, distance: float, first: int = 0) -> list[int]:
-    """Frames, from `first` on, between which the particles have moved by a root mean square of `distance` or
-    more, one after the other."""
+    """Return frames, from `first` on, between which particles have moved by `distance`.
+
+    The distance is a minimum of the root mean square, from each frame to the next.
+    """
     chosen = [first]
     for n in range(first + 1, len(way)):
         if ((way[n] - way[chosen[-1]]) ** 2).sum(axis=1).mean() >= distance**2:
@@ -85,14 +93,20 @@ def decorrelated_frames(way: np.ndarray, distance: float, first: int = 0) -> lis
 
 
 def first_relaxed_frame(way: np.ndarray, distance: float) -> int | None:
-    """The first frame until which particles have moved by a root mean square of `distance`, or None."""
+    """Return the first frame until which particles have moved by `distance`, or None.
+
+    The distance is a root mean square.
+    """
     far = np.flatnonzero((way**2).sum(axis=2).mean(axis=1) >= distance**2)
     return int(far[0]) if far.size else None
 
 
 def density_modulation(frames: Frames, n: int, of: np.ndarray | None = None) -> float:
-    """The largest power of the two longest waves along each axis, of the particles' density in frame n or,
-    with `of` (N,), of that property about its mean: about 1 if it does not depend on the place."""
+    """Compute the largest power of the two longest waves of the density along each axis.
+
+    It is of the particles' density in frame n or, with `of` (N,), of that property about its mean; about 1 if
+    the density is uniform.
+    """
     weights = np.ones(frames.count) if of is None else of - of.mean()
     total = float((weights**2).sum())
     if total == 0.0:
@@ -119,7 +133,7 @@ _MOST_SKEWED = 1.0  # skewness of a mean whose probability is known well enough
 
 
 def why_not_speeds(frames: Frames) -> str | None:
-    """The reason why speeds cannot be checked; None if they can."""
+    """Return the reason why speeds cannot be checked; None if they can."""
     if frames.velocities is None:
         return frames.no_velocities
     if not np.any(frames.velocities):
@@ -136,10 +150,10 @@ def why_not_speeds(frames: Frames) -> str | None:
 
 
 def judge_speeds(frames: Frames) -> list[Check]:
-    """Checks of the distribution of speeds in the last frame, and of its kurtosis in all relaxed ones.
+    """Check the distribution of speeds in the last frame, and its kurtosis in all relaxed frames.
 
-    The clock is that of `samples.collided`. A deviation of the kurtosis decays by its slowest rate of the
-    homogeneous Boltzmann equation; what the first frame has of it is known from that frame.
+    The clock is `samples.collided`. A deviation of the kurtosis decays by its slowest rate of the homogeneous
+    Boltzmann equation; the deviation in the first frame is known from that frame.
     """
     names = SPEEDS
     if reason := why_not_speeds(frames):
@@ -170,7 +184,7 @@ def judge_speeds(frames: Frames) -> list[Check]:
 
 
 def _law(frames: Frames) -> Check:
-    """The last frame's speeds against Maxwell's law, of their own temperature."""
+    """Check the speeds of the last frame against Maxwell's law of their own temperature."""
     bins = min(30, frames.count // 10)
     if bins < 4:
         return Check("speed law", None, f"{frames.count} particles are too few for a histogram")
@@ -184,12 +198,12 @@ def _law(frames: Frames) -> Check:
 
 
 def _squares(frames: Frames, n: int) -> np.ndarray:
-    """(N,) squared speeds in a frame, about the centre of mass along periodic axes."""
+    """Compute squared speeds (N,) in a frame, about the centre of mass along periodic axes."""
     return np.asarray((frames.motion.velocities[n] ** 2).sum(axis=1))
 
 
 def _kurtosis(frames: Frames) -> np.ndarray:
-    """(T,) <v^4> / <v^2>^2; 1 in a frame in which all are at rest."""
+    """Compute <v^4> / <v^2>^2 of each frame (T,); 1 in a frame at rest."""
     values = []
     for n in range(len(frames.positions)):
         square = _squares(frames, n)
@@ -199,9 +213,10 @@ def _kurtosis(frames: Frames) -> np.ndarray:
 
 
 def _expected_kurtosis(frames: Frames) -> float:
-    """In equilibrium at fixed energy, and zero momentum along periodic axes (exact).
+    """Compute the kurtosis in equilibrium at fixed energy (exact).
 
-    As `theory.kurtosis`; along a periodic axis <v_k^2> is the part 1 - 1/N of that along another one.
+    The momentum along periodic axes is zero. As `theory.kurtosis`; along a periodic axis <v_k^2> is 1 - 1/N
+    of its value along another axis.
     """
     parts = np.where(frames.periodic, 1.0 - 1.0 / frames.count, 1.0)
     freedoms = frames.count * parts.sum()
@@ -209,9 +224,11 @@ def _expected_kurtosis(frames: Frames) -> float:
 
 
 def _normal(deviation: float, skewness: float) -> float:
-    """The normal deviation of the same probability as one above the mean of a skewed distribution, by that of
-    the gamma distribution (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17, 684 (1931)); unchanged below it,
-    where the tail is the shorter one."""
+    """Return the normal deviation with the probability of a deviation of a skewed distribution.
+
+    Above the mean it uses the gamma distribution (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17, 684
+    (1931)); below the mean, where the tail is shorter, the deviation is unchanged.
+    """
     if deviation <= 0.0:
         return deviation
     return 6.0 / skewness * (math.cbrt(1.0 + 0.5 * skewness * deviation) - 1.0) + skewness / 6.0
@@ -235,7 +252,7 @@ spheres at packing fractions 0.4, 0.45, 0.49, 0.511 and 0.52 -0.4(7), -0.2(5), -
 
 
 def contact_values(frames: Frames) -> np.ndarray:
-    """(T,) g(sigma) of each frame of equal particles in a periodic container. Dimensionless."""
+    """Compute g(sigma) (T,) of each frame of equal particles in a periodic container, dimensionless."""
     n, d, sigma = frames.count, frames.dimension, frames.diameter
     assert sigma is not None, "requires equal particles"
     edges = 1.0 + WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)
@@ -253,7 +270,7 @@ def contact_values(frames: Frames) -> np.ndarray:
 
 
 def _at_contact(edges: np.ndarray, volumes: np.ndarray, dimension: int) -> np.ndarray:
-    """(shells,) coefficients that turn a polynomial's means over shells into its value at r = 1."""
+    """Return coefficients (shells,) for a polynomial's value at r = 1 from its means over shells."""
     nodes, weights = np.polynomial.legendre.leggauss(_DEGREE + dimension)
     radii = 0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 * np.diff(edges)[:, None] * nodes
     weights = weights * radii ** (dimension - 1)
@@ -270,7 +287,10 @@ _GROUPS = 32
 
 
 def why_not(frames: Frames) -> str | None:
-    """The reason why D cannot be measured from a trajectory of equal particles with velocities, or None."""
+    """Return the reason why D cannot be measured from a trajectory, or None.
+
+    Particles are equal and have velocities.
+    """
     if frames.dimension == 2:
         return "discs have none: the displacement's square grows like t ln t"
     if frames.time is None or not all(frames.periodic):
@@ -291,16 +311,17 @@ def why_not(frames: Frames) -> str | None:
 
 
 def groups_of(frames: Frames) -> int:
-    """Number of groups of particles whose scatter gives the error."""
+    """Return the number of groups of particles whose scatter gives the error."""
     return min(frames.count, _GROUPS)
 
 
 def diffusion(frames: Frames) -> tuple[Estimate, tuple[float, float]]:
-    """Measure D by the slope of the mean-squared displacement that no longer changes, as `gaspart measure`,
-    with the collisions of a particle between which it is taken. Raises SceneError if it still changes.
+    """Measure D by the slope of the mean-squared displacement that no longer changes.
 
-    Of N particles whose total momentum is zero D is (N - 1) / N of its value without this condition; this is
-    corrected. The error is the scatter of groups of particles.
+    `gaspart measure` does the same. Returned are D and the collisions of a particle between which the slope
+    is taken. Raises SceneError if it still changes. For N particles whose total momentum is zero, D is (N -
+    1) / N of its value without this condition; this is corrected. The error is the scatter of groups of
+    particles.
     """
     way, n = path(frames), frames.count
     lags = _lags(frames)
@@ -317,14 +338,17 @@ def diffusion(frames: Frames) -> tuple[Estimate, tuple[float, float]]:
 
 
 def expected_diffusion(frames: Frames, window: tuple[float, float]) -> tuple[float, float, str]:
-    """D in this cube, its uncertainty and source, by the equation of the engine, if the file states one."""
+    """Return D in this cube, its uncertainty and source.
+
+    They hold for the equation of the engine, if the file states one.
+    """
     found = diffusion_in_cube(_gas(frames), float(frames.lengths[0]), frames.engine, frames.scene, window)
     assert found is not None, "see `why_not`"
     return found
 
 
 def _interval(frames: Frames) -> float:
-    """Mean time between frames."""
+    """Return the mean time between frames."""
     assert frames.time is not None, "see `why_not`"
     return float(np.diff(frames.time).mean())
 

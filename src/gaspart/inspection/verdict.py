@@ -14,9 +14,10 @@ LIMIT = 4.0
 
 @dataclass(frozen=True)
 class Check:
-    """The outcome of one check: whether it is passed (None: it could not be made), and why.
+    """Outcome of one check: whether it is passed, and the reason.
 
-    acts: whether it has found that more than elastic contacts moves the particles.
+    A check that could not be made has the value None. If `acts`, it has found that more than elastic contacts
+    moves the particles.
     """
 
     name: str
@@ -32,10 +33,10 @@ class Check:
 def compared(
     name: str, measured: Estimate, theory: Estimate, basis: str, deviation: float | None = None
 ) -> Check:
-    """Passed within `LIMIT` standard errors, those of both sides in quadrature.
+    """Compare a measurement with theory; it passes within `LIMIT` combined standard errors.
 
-    basis: the source of theory, and how many samples there are; deviation: in standard errors, if it is not
-    the one of a normal or Student's distribution.
+    basis : source of theory, and the number of samples.
+    deviation : deviation in standard errors, if its distribution is neither normal nor Student's.
     """
     sigma = abs((measured - theory).deviation if deviation is None else deviation)
     text = f"{measured.value:.5g} +- {measured.error:.2g}, theory {theory.value:.5g}"

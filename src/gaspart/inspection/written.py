@@ -11,7 +11,7 @@ from gaspart.state.initial import initial_state
 
 
 def judge_scene(path: Path, tolerance: float | None = None) -> list[Check]:
-    """Checks of a scene, and of the placement of its particles. Raises SceneError for an invalid scene."""
+    """Check a scene, and the placement of its particles; raise SceneError for an invalid scene."""
     scene = Scene.from_file(path)
     facts = f"{scene.count} particles, packing fraction {scene.packing_fraction:.6g}"
     checks = [Check("scene", True, f"{facts}, number density {scene.number_density:.6g}")]

@@ -38,8 +38,10 @@ _TRUE, _FALSE = ("t", "true", "1"), ("f", "false", "0")
 
 
 def read_xyz(path: Path, given: Given) -> Contents:
-    """All frames, or the last. Raises SceneError for contents that cannot be checked, ValueError for other
-    text."""
+    """Read all frames, or the last one.
+
+    Raises SceneError for contents that cannot be checked, ValueError for other text.
+    """
     kinds: dict[str, int] = {}  # a number for each name of a species
     with open_regular(path) as file, TextIOWrapper(file, encoding="utf-8") as lines:
         frames = (_read_frame(n, *frame, kinds, given, path) for n, frame in enumerate(_frames(lines, path)))
@@ -86,7 +88,10 @@ def _drop_velocities(parts: list[dict]) -> str | None:
 
 
 def _add_origins(parts: list[dict]) -> None:
-    """Set the corner of a container to 0 where only other frames state it: OVITO leaves out one of 0."""
+    """Set a missing corner of a container to 0 if other frames state it.
+
+    OVITO leaves out a corner of 0.
+    """
     stated = [part["origin"] for part in parts if "origin" in part]
     if stated:
         for part in parts:
@@ -107,7 +112,7 @@ def _require_same_fields(n: int, part: dict, first: dict, path: Path) -> None:
 
 
 def _velocities(columns: dict[str, np.ndarray], path: Path) -> np.ndarray | None:
-    """(T, N, d), from momenta if need be."""
+    """Return the velocities (T, N, d), from momenta if need be."""
     if "velo" in columns or "momenta" not in columns:
         return columns.get("velo")
     if "mass" not in columns:
@@ -116,7 +121,10 @@ def _velocities(columns: dict[str, np.ndarray], path: Path) -> np.ndarray | None
 
 
 def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[str]]]]:
-    """Comment and words of the lines of each frame; blank lines before a frame are passed over."""
+    """Yield the comment and the words of the lines of each frame.
+
+    Blank lines before a frame are skipped.
+    """
     frame = 0
     for line in lines:
         if not line.strip():
@@ -135,9 +143,10 @@ def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[s
 def _read_frame(
     n: int, comment: str, rows: list[list[str]], kinds: dict[str, int], given: Given, path: Path
 ) -> dict:
-    """The fields of frame n, by the names of `_NAMES`, and of its comment; without those that are given.
+    """Return the fields of frame n, by the names of `_NAMES`, and of its comment.
 
-    kinds: the numbers of species, to which new ones are added.
+    Fields that the user has given are left out. `kinds` are the numbers of species, to which new ones are
+    added.
     """
     pairs = {key.lower(): value.strip("\"'") for key, value in _PAIR.findall(comment)}
     named = _columns(pairs["properties"], path) if "properties" in pairs else _PLAIN
@@ -169,7 +178,10 @@ def _read_frame(
 
 
 def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
-    """First column and number of columns of each field that is used; of "" the number of all."""
+    """Return the first column and the number of columns of each field that is used.
+
+    The key "" has the number of all columns.
+    """
     parts, first, columns = properties.split(":"), 0, {}
     if len(parts) % 3 or not all(width.isdigit() and int(width) > 0 for width in parts[2::3]):
         raise SceneError("Properties", properties, "must be of the form name:type:columns:...", str(path))
@@ -184,7 +196,7 @@ def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
 
 
 def _numbers(words: list[list[str]]) -> np.ndarray:
-    """Words as numbers, also with the exponents of Fortran. Raises ValueError."""
+    """Convert words to numbers, also with the exponents of Fortran; raise ValueError."""
     try:
         return np.array(words, dtype=float)
     except ValueError:
@@ -192,9 +204,9 @@ def _numbers(words: list[list[str]]) -> np.ndarray:
 
 
 def _of_comment(pairs: dict[str, str], dimension: int, given: Given, path: Path) -> dict:
-    """Container, boundary and time of a frame, as its comment states them; without those that are given.
+    """Return container, boundary and time of a frame from its comment.
 
-    dimension: number of columns of the positions.
+    Fields that the user has given are left out. `dimension` is the number of columns of the positions.
     """
     fields: dict = {}
     if "lattice" in pairs and (given.lengths is None or len(_words(pairs["lattice"])) in (3, 4, 9)):
@@ -223,12 +235,15 @@ def _of_comment(pairs: dict[str, str], dimension: int, given: Given, path: Path)
 
 
 def _words(text: str) -> list[str]:
-    """The words of a value, in whatever brackets."""
+    """Split a value into its words, in any brackets."""
     return re.findall(r"[^\s,\[\]{}]+", text)
 
 
 def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], option: str, path: Path) -> np.ndarray:
-    """The numbers of a value, of one of these counts. option: that can be given instead."""
+    """Return the numbers of a value, of one of these counts.
+
+    The error message names an `option` that can be given instead.
+    """
     words = _words(pairs[key])
     if len(words) not in sizes or not all(_NUMBER.fullmatch(word) for word in words):
         *some, last = map(str, dict.fromkeys(sizes))
@@ -238,7 +253,7 @@ def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], option: str
 
 
 def _most_digits(words: Iterable[str]) -> int:
-    """The largest number of significant digits of some printed numbers."""
+    """Return the largest number of significant digits of some printed numbers."""
     most = 0
     for word in words:
         if len(word) > most:  # else it cannot have more
@@ -247,15 +262,16 @@ def _most_digits(words: Iterable[str]) -> int:
 
 
 def _significant(word: str) -> int:
-    """Significant digits of a printed number."""
+    """Count the significant digits of a printed number."""
     mantissa = re.split("[eEdD]", word)[0].lstrip("+-").replace(".", "")
     return len(mantissa.lstrip("0"))
 
 
 def _resolution(positions: np.ndarray, digits: int) -> float:
-    """By how much a printed coordinate is off: one of the last of `digits` places of the largest one.
+    """Return the error of a printed coordinate, one unit of the last printed digit.
 
-    Numbers such as 0 or 2.5, whose further digits were left out, do not make the others coarser.
+    The largest coordinate has `digits` digits. Numbers such as 0 or 2.5, whose further digits were left out,
+    do not make the others coarser.
     """
     largest = float(np.abs(positions).max())
     if not 0.0 < largest < math.inf:

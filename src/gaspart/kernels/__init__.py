@@ -1,1 +1,4 @@
-"""All code compiled by numba, and nothing else: compile policy and cache digest follow from this folder."""
+"""Functions compiled by numba, and no other code.
+
+The compile policy and the digest of the cache apply to this folder.
+"""

@@ -1,7 +1,8 @@
 """Products of the present velocities and positions with earlier ones, summed over particles and axes.
 
-Earlier samples lie side by side, so that the inner loop runs over them: each lag has a sum of its own, over
-particles in their order. It is compiled to vector instructions, and the bits do not depend on their width.
+Earlier samples are adjacent in memory, so that the inner loop runs over them: each lag has its own sum over
+the particles in their order. The loop is compiled to vector instructions, and the bits do not depend on their
+width.
 """
 
 from math import sqrt
@@ -11,9 +12,10 @@ from gaspart.kernels.compile.policy import inner_helper, kernel
 
 @kernel
 def add_velocity_products(earlier, now, used, sums):
-    """Add v(0).v(t) to the row of sums (1, S) for the first `used` of S earlier samples.
+    """Add v(0).v(t) to the row of sums (1, S) for the first `used` earlier samples.
 
-    earlier: (1, K, S), velocities; now: (1, K), the present ones.
+    earlier : (1, K, S), velocities of S earlier samples
+    now : (1, K), present velocities
     """
     for k in range(now.shape[1]):
         v = now[0, k]
@@ -23,9 +25,12 @@ def add_velocity_products(earlier, now, used, sums):
 
 @kernel
 def add_displacement_products(earlier, now, used, sums):
-    """The same with |r(t) - r(0)|^2 and (r(t) - r(0)).(v(t) + v(0)) in two more rows of sums (3, S).
+    """Add v(0).v(t) and the products with displacements to three rows of sums (3, S).
 
-    earlier: (2, K, S), velocities and positions; now: (2, K), the present ones.
+    The products with displacements are |r(t) - r(0)|^2 and (r(t) - r(0)).(v(t) + v(0)).
+
+    earlier : (2, K, S), velocities and positions of S earlier samples
+    now : (2, K), present velocities and positions
     """
     for k in range(now.shape[1]):
         v, r = now[0, k], now[1, k]
@@ -38,8 +43,12 @@ def add_displacement_products(earlier, now, used, sums):
 
 @inner_helper
 def shear_components(sums, first, d, components, filled):
-    """The (d - 1)(d + 2) / 2 components of a tensor's symmetric part that shear, which fluctuate alike in an
-    isotropic fluid; the tensor begins at `first`, they at `filled`. Returns where they end."""
+    """Compute the shear components of the symmetric part of a tensor.
+
+    There are (d - 1)(d + 2) / 2 such components; in an isotropic fluid they have equal fluctuations. The
+    tensor begins at index `first` of the sums, the components at index `filled`; the index after the last
+    component is returned.
+    """
     for a in range(d):
         for b in range(a + 1, d):
             components[filled] = 0.5 * (sums[first + d * a + b] + sums[first + d * b + a])
@@ -55,9 +64,12 @@ def shear_components(sums, first, d, components, filled):
 
 @kernel
 def flux_components(sums, dimension, components):
-    """What is correlated of the sums (2 d^2 + d,) of the stress tensor, of its collisional part and of the
-    heat flux: the components of the first that shear, those of its antisymmetric part, those of the second
-    that shear, a d-th of the trace of the first, and the vector."""
+    """Compute the components of the fluxes that are correlated.
+
+    sums : (2 d^2 + d,), the stress tensor, its collisional part and the heat flux
+    components : the shear components of the stress tensor, the components of its antisymmetric part, the
+        shear components of the collisional part, 1/d of the trace of the stress tensor, and the heat flux
+    """
     d = dimension
     filled = shear_components(sums, 0, d, components, 0)
     for a in range(d):
@@ -74,11 +86,14 @@ def flux_components(sums, dimension, components):
 
 @kernel
 def add_flux_products(earlier, now, groups, used, sums):
-    """Add J(0) J(t), (G(t) - G(0))^2, [J(0) + J(t)] / 2 and G(t) - G(0) to sums (groups, 4, S) for the first
-    `used` of S earlier samples.
+    """Add the products of fluxes for the first `used` earlier samples.
 
-    earlier: (2, K, S), fluxes J and their integrals G; now: (2, K), the present ones; groups (K,): the group
-    of each component.
+    The products J(0) J(t), (G(t) - G(0))^2, [J(0) + J(t)] / 2 and G(t) - G(0) are added to sums (groups, 4,
+    S).
+
+    earlier : (2, K, S), fluxes J and their integrals G of S earlier samples
+    now : (2, K), present fluxes and integrals
+    groups : (K,), group of each component
     """
     for k in range(now.shape[1]):
         flux, integral, group = now[0, k], now[1, k], groups[k]

@@ -1,8 +1,8 @@
-"""Random sequential insertion: the kernel that tries places one after another.
+"""Random sequential insertion: the kernel that tries positions one after another.
 
-Particles that are placed stay where they are, so a place that is taken once is taken for good. Trials are
-therefore rejected a block at a time, by the particles in the boxes that are nearest to each, which by then
-have been fetched from memory. The few that remain are tested in turn, against all particles near them.
+Particles that are placed stay where they are, so a position that is occupied once stays occupied. Trials are
+therefore rejected a block at a time, by the particles in the nearest boxes of each trial, which by then have
+been fetched from memory. The few that remain are tested one by one, against all particles near them.
 """
 
 from typing import NamedTuple
@@ -15,19 +15,27 @@ from gaspart.kernels.physics.flight import box_coordinate
 from gaspart.kernels.prefetch import fetch
 
 BLOCK = 256  # trials of one block
-PLACES = 4  # of a box, for particles that are read in one go
+PLACES = 4  # particles of a box that are read at once
 _NEAREST = (0, 1, 2, 4, 3, 5, 6, 7)
-"""The eight boxes that meet at the corner which is nearest to a trial, the likeliest to hold a particle too
-near first: a bit for each axis along which it is not the trial's own box."""
+"""Boxes around the corner nearest to a trial, with a bit for each axis along which a box is not its own box.
+
+The box that most probably holds a particle too near comes first.
+"""
 
 
 class Placed(NamedTuple):
-    """The particles, of which the first are placed, and where they are found.
+    """Particles, the first of which are placed, and the boxes that contain them.
 
-    positions (N, d); radii (N,); failures (N,), the failed attempts before each found its place; near (boxes,
-    4, PLACES): coordinates along three axes and radii of the first few particles of each box, infinite where
-    there is none; filled (boxes,), how many of these there are; head (boxes,), following (N,): a list of any
-    others.
+    Attributes
+    ----------
+    positions : (N, d)
+    radii : (N,)
+    failures : (N,), number of failed attempts before each particle was placed
+    near : (boxes, 4, PLACES), coordinates along three axes and radii of the first few particles of each box,
+        infinite for absent particles
+    filled : (boxes,), number of these particles in each box
+    head : (boxes,), first of the other particles of each box
+    following : (N,), next of the other particles after each particle
     """
 
     positions: np.ndarray
@@ -40,8 +48,10 @@ class Placed(NamedTuple):
 
 
 class PeriodicBoxes(NamedTuple):
-    """The boxes (see `state.boxes.Boxes`), and the periods (d,) of the container, beyond reach on an axis
-    without one."""
+    """Boxes (see `state.boxes.Boxes`), and the periods (d,) of the container.
+
+    On an axis without a period, its value is beyond reach.
+    """
 
     periods: tuple[float, ...]
     per_side: np.ndarray
@@ -51,11 +61,16 @@ class PeriodicBoxes(NamedTuple):
 
 
 class Block(NamedTuple):
-    """Room for the trials of one block.
+    """Working arrays for the trials of one block.
 
-    places (BLOCK, 3); at (BLOCK, 3), the coordinates of their boxes; own and beside (BLOCK, 3), what the box,
-    and its neighbour on the nearer side, adds to the index along each axis; remaining (BLOCK,), the trials
-    not rejected; box (BLOCK,), with which each of these is compared next.
+    Attributes
+    ----------
+    places : (BLOCK, 3), positions of the trials
+    at : (BLOCK, 3), coordinates of their boxes
+    own : (BLOCK, 3), contribution of the trial's box to the index along each axis
+    beside : (BLOCK, 3), contribution of its neighbour on the nearer side to the index along each axis
+    remaining : (BLOCK,), trials that are not rejected
+    box : (BLOCK,), box with which each of these is compared next
     """
 
     places: np.ndarray
@@ -67,9 +82,15 @@ class Block(NamedTuple):
 
 
 class Task(NamedTuple):
-    """Which particles to place, those from `first` to `stop` of one radius; the failed attempts of the first
-    before, and the `patience`: the number of them at which the search gives up; lower, upper (d,): corners of
-    the region for the centres."""
+    """Particles to place, from `first` to `stop`, all of one radius.
+
+    Attributes
+    ----------
+    first, stop : first particle, and end of the particles
+    failures : number of failed attempts of the first particle so far
+    patience : number of failed attempts at which the search ends
+    lower, upper : (d,), corners of the region for the centres
+    """
 
     first: int
     stop: int
@@ -80,7 +101,7 @@ class Task(NamedTuple):
 
 
 def put(placed, box, i):
-    """Enter a particle, which `positions` places there, into a box."""
+    """Insert a particle with its position into a box."""
     place = placed.filled[box]
     if place < PLACES:
         placed.filled[box] += 1
@@ -97,14 +118,14 @@ _put = inner_helper(put)
 
 @inner_helper
 def gap_between(x, other, period):
-    """How far apart two coordinates are, by the nearest image."""
+    """Return the distance of two coordinates, by the nearest image."""
     gap = abs(x - other)
     return min(gap, period - gap)
 
 
 @inner_helper
 def overlaps(place, radius, other, placed, periods):
-    """Whether a particle at a place (3,) would overlap another."""
+    """Return True if a particle at a position (3,) would overlap another."""
     square = 0.0
     for k in range(len(periods)):
         gap = gap_between(place[k], placed.positions[other, k], periods[k])
@@ -115,7 +136,7 @@ def overlaps(place, radius, other, placed, periods):
 
 @inner_helper
 def overlaps_near(place, radius, box, placed, periods):
-    """The same for any of the first particles of a box."""
+    """Return True if a particle would overlap one of the first particles of a box."""
     found = 0
     for n in range(placed.near.shape[2]):  # PLACES, but with that constant no vectors would be made of it
         square = 0.0
@@ -129,14 +150,17 @@ def overlaps_near(place, radius, box, placed, periods):
 
 @inner_helper
 def fetch_box(placed, box):
-    """Begin to load the first particles of a box: two cache lines."""
+    """Prefetch the first particles of a box: two cache lines."""
     fetch(placed.near[box], 0)
     fetch(placed.near[box], 2)
 
 
 @inner_helper
 def fetch_around(at, placed, boxes):
-    """The same for all boxes about the one of coordinates at (3,) that hold particles."""
+    """Prefetch the first particles of all boxes around a box that hold particles.
+
+    at : (3,), coordinates of the box
+    """
     for dz in range(3):
         z = boxes.neighbour[2, at[2], dz]
         for dy in range(3):
@@ -149,7 +173,7 @@ def fetch_around(at, placed, boxes):
 
 @inner_helper
 def nearest_box(block, n, which):
-    """One of the eight boxes that are nearest to trial n."""
+    """Return one of the eight boxes that are nearest to trial n."""
     box = 0
     for k in range(3):
         box += block.beside[n, k] if which >> k & 1 else block.own[n, k]
@@ -158,7 +182,7 @@ def nearest_box(block, n, which):
 
 @inner_helper
 def draw_trials(draws, boxes, block, task):
-    """Turn draws (n, d) into places, and find their boxes."""
+    """Convert draws (n, d) to positions, and find their boxes."""
     lower, upper = task.lower, task.upper
     for n in range(len(draws)):
         for k in range(len(lower)):
@@ -173,7 +197,7 @@ def draw_trials(draws, boxes, block, task):
 
 @inner_helper
 def reject_overlapping(count, radius, placed, boxes, block):
-    """Reject the trials that a particle of the nearest boxes overlaps; returns how many remain."""
+    """Reject the trials that overlap particles of the nearest boxes; return the number that remain."""
     number = count
     for which in _NEAREST:
         if which < 1 << len(boxes.periods):
@@ -185,7 +209,7 @@ def reject_overlapping(count, radius, placed, boxes, block):
                 n = block.remaining[m]
                 block.remaining[kept] = n
                 kept += not overlaps_near(block.places[n], radius, block.box[m], placed, boxes.periods)
-            if kept > 0.9 * number:  # so thin a gas that a complete test of each trial costs less
+            if kept > 0.9 * number:  # in a thin gas a complete test of each trial costs less
                 return kept
             number = kept
     return number
@@ -193,7 +217,7 @@ def reject_overlapping(count, radius, placed, boxes, block):
 
 @inner_helper
 def is_clear_of_walls(place, radius, periods, walls):
-    """Whether no interior wall is too near to a place (3,)."""
+    """Return True if no interior wall is too near to a position (3,)."""
     if walls is not None:
         for m in range(len(walls)):
             x, y, z = to_wall(walls, m, place, periods)
@@ -205,8 +229,10 @@ def is_clear_of_walls(place, radius, periods, walls):
 
 @inner_helper
 def is_free(place, at, radius, placed, boxes, oversized, walls):
-    """Whether no particle and no interior wall is too near to a place (3,) in the box of coordinates at
-    (3,)."""
+    """Return True if no particle and no interior wall is too near to a position (3,).
+
+    at : (3,), coordinates of the box of the position
+    """
     if not is_clear_of_walls(place, radius, boxes.periods, walls):
         return False
     for other in oversized:
@@ -235,7 +261,7 @@ def is_free(place, at, radius, placed, boxes, oversized, walls):
 
 @inner_helper
 def enter(placed, i, block, n):
-    """Place a particle where trial n is."""
+    """Place a particle at the position of trial n."""
     box = 0
     for k in range(3):
         box += block.own[n, k]
@@ -246,13 +272,13 @@ def enter(placed, i, block, n):
 
 @kernel
 def place(draws, placed, boxes, block, task, oversized, walls):
-    """Try the `draws` (M, d) in [0, 1) as places for the particles of a `Task`, in their order.
+    """Try the `draws` (M, d) in [0, 1) as positions for the particles of a task.
 
-    A place is free if no particle already there is nearer than the sum of the radii. oversized (K,): placed
-    particles that may reach further than neighbouring boxes; walls (M,): interior walls to keep clear of (see
-    `obstacles`), or None.
+    A position is free if no particle already placed is nearer than the sum of the radii. Returns (next
+    particle to place, its failed attempts so far, number of draws used).
 
-    Returns (next particle to place, its failed attempts so far, draws used).
+    oversized : (K,), placed particles that may reach further than neighbouring boxes
+    walls : (M,), interior walls that must not be too near (see `obstacles`), or None
     """
     used = 0
     i, failures = task.first, task.failures

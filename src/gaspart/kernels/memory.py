@@ -1,4 +1,4 @@
-"""Arrays that lie well in memory."""
+"""Memory layout of arrays."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def aligned(shape: tuple[int, ...], dtype: DTypeLike) -> np.ndarray:
-    """An array of zeros that starts on a cache line."""
+    """Return an array of zeros that starts on a cache line."""
     size = int(np.prod(shape)) * np.dtype(dtype).itemsize
     buffer = np.zeros(size + 64, dtype=np.uint8)
     start = -buffer.ctypes.data % 64

@@ -1,8 +1,9 @@
-"""What kernels pass to one another: the particles, the model of the scene, the tally.
+"""Data structures of the kernels: the particles, the model of the scene, the tally.
 
-Arguments come in one order: the particles and which of them, the queue, the boxes, the model, the tally, and
-last whatever may be absent. An absent entry of the model is None. It is passed on to the function that uses
-it as an argument of its own, because numba removes a branch on `None` only for arguments.
+Arguments have one order: the particles and their indices, the queue, the boxes, the model, the tally, and
+last arguments that may be absent. None stands for an absent entry of the model. Such an entry is passed to
+the function that uses it as an argument of its own, because numba removes a branch on `None` only for
+arguments.
 """
 
 from typing import Any, NamedTuple
@@ -11,22 +12,28 @@ import numpy as np
 
 COUNTS = ("collisions", "crossings", "outdated", "pair_tests", "box_visits", "fixed_collisions")
 SUMS = ("virial_sum", "dissipated_energy")
-"""What Tally.counts and Tally.sums hold, by the fields of `state.tally.Tally`, which has no outdated
-predictions. Sums are in the kernels' unit of mass, and proportional to it."""
+"""Entries of Tally.counts and Tally.sums, by the fields of `state.tally.Tally`, which has no outdated
+predictions.
+
+Sums are in the kernels' unit of mass, and proportional to it.
+"""
 COLLISIONS, CROSSINGS, OUTDATED, PAIR_TESTS, BOX_VISITS, FIXED_COLLISIONS = range(len(COUNTS))
 VIRIAL, LOSS = range(len(SUMS))
 NONE = -1  # no particle, no face
 BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES more for those between boxes,
 WELL_EDGES = 12  # WELL_EDGES more for the edges of the wells at the container's faces,
 WALLS = 18  # and from here on the rows of interior walls
-NUMBER_BITS = 26  # of a particle's number where a search lists it beside its image
-IMAGE_BITS = 2  # above them, for each axis: the image, signed
-HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON, OPEN = range(7)  # of `obstacles.face.RULES`
-PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # of Piston.motion and MovingWall.motion
+NUMBER_BITS = 26  # bits of a particle's number in a candidate of a search, below its image
+IMAGE_BITS = 2  # bits of the image along each axis, above the number, signed
+HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON, OPEN = range(7)  # codes of `obstacles.face.RULES`
+PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # entries of Piston.motion and MovingWall.motion
 
 
 def flight_dtype(dimension: int) -> np.dtype:
-    """One particle between its events, one cache line of 64 bytes: all is true at the time of its clock."""
+    """Return the type of a particle between its events, at the time of its clock.
+
+    It is one cache line of 64 bytes.
+    """
     vector = (float, (dimension,))
     at = 8 * dimension
     return np.dtype(
@@ -41,25 +48,33 @@ def flight_dtype(dimension: int) -> np.dtype:
 
 PREDICTION = np.dtype(
     [
-        ("contact_time", "f8"),  # time of the next contact predicted, with
-        ("face_time", "f8"),  # time of the next face, edge of a well or interior wall, and
-        ("predicted", "i8"),  # the event count at which the contact was predicted,
-        ("changed", "i8"),  # and that at which this particle's flight last changed
-        ("partner", "i4"),  # the particle met,
-        ("face", "i4"),  # the code of the face
+        ("contact_time", "f8"),  # predicted time of the next contact
+        ("face_time", "f8"),  # predicted time at the next face, edge of a well or interior wall
+        ("predicted", "i8"),  # event count at which the contact was predicted
+        ("changed", "i8"),  # event count at the last change of this particle's flight
+        ("partner", "i4"),  # partner of the contact
+        ("face", "i4"),  # code of the face
         ("box", "i4", 3),  # coordinates of the particle's box
-        ("before", "i4"),  # its neighbours in its bucket of the queue,
+        ("before", "i4"),  # neighbours in its bucket of the queue: before, after
         ("after", "i4"),
-        ("bucket", "i4"),  # which is this one, or -1
+        ("bucket", "i4"),  # bucket of the queue, or -1
     ],
     align=True,
 )
-"""What is predicted of one particle, one cache line: what an event reads and writes beside the flight."""
+"""Predicted events of one particle, one cache line, which an event reads and writes in addition to the
+flight.
+"""
 
 
 class Particles(NamedTuple):
-    """flights (N,), see `flight_dtype`; images (N, d), how often each has crossed the container on periodic
-    axes; predictions (N,), see `PREDICTION`."""
+    """Particles: flights, periodic images, predictions.
+
+    Attributes
+    ----------
+    flights : (N,), see `flight_dtype`
+    images : (N, d), number of crossings of the container on periodic axes
+    predictions : (N,), see `PREDICTION`
+    """
 
     flights: np.ndarray
     images: np.ndarray
@@ -67,7 +82,13 @@ class Particles(NamedTuple):
 
 
 class Space(NamedTuple):
-    """lengths (d,), periodic (d,); margin: 1 if walls stop surfaces, 0 if they stop centres."""
+    """Container of the particles.
+
+    Attributes
+    ----------
+    lengths, periodic : (d,)
+    margin : 1 if walls stop surfaces, 0 if they stop centres
+    """
 
     lengths: tuple
     periodic: tuple
@@ -75,10 +96,17 @@ class Space(NamedTuple):
 
 
 class Support(NamedTuple):
-    """What particles rest on or slide along, up to 3 planes each: number (N,) of these; normal (N, 3, 3), the
-    unit vectors towards the particle; plane (N, 3), where its centre is along them; row (N, 3), that of an
-    interior wall, or NONE for a face; pull (N, 3), the acceleration that remains. height: the highest bounce
-    on an interior wall that is taken for rest."""
+    """Planes on which particles rest or slide, at most three per particle.
+
+    Attributes
+    ----------
+    number : (N,), number of planes of each particle
+    normal : (N, 3, 3), unit vectors towards the particle
+    plane : (N, 3), coordinates of its centre along them
+    row : (N, 3), row of an interior wall, or NONE for a face
+    pull : (N, 3), acceleration that remains
+    height : highest bounce on an interior wall that is taken for rest
+    """
 
     number: np.ndarray
     normal: np.ndarray
@@ -89,14 +117,21 @@ class Support(NamedTuple):
 
 
 def no_support(count: int, height: float) -> Support:
-    """No particle rests on any wall."""
+    """Return the support of particles that rest on no wall."""
     normal, plane, pull = np.zeros((count, 3, 3)), np.zeros((count, 3)), np.zeros((count, 3))
     return Support(np.zeros(count, np.int64), normal, plane, np.zeros((count, 3), np.int64), pull, height)
 
 
 class Gravity(NamedTuple):
-    """acceleration (d,); fixed (N,), which particles it does not move, now or ever; shortest_bounce, the
-    longest bounce on a floor that is taken for rest; support, None without interior walls."""
+    """Gravity and its effect on particles at rest.
+
+    Attributes
+    ----------
+    acceleration : (d,)
+    fixed : (N,), particles that gravity does not move, now or ever
+    shortest_bounce : longest bounce on a floor that is taken for rest
+    support : None without interior walls
+    """
 
     acceleration: tuple
     fixed: np.ndarray
@@ -105,12 +140,20 @@ class Gravity(NamedTuple):
 
 
 class ContactDuration(NamedTuple):
-    """Contacts less than `length` after an earlier one are elastic. Of the particles: latest (N,), the time
-    of the latest contact; met (N,), that with another particle; island (N,), see `event.jams`, or NONE;
-    contacts (N,), their number since the last look at what rests; inverse_mass (N,), those that the law has
-    of them when no jam holds them. moving: the speed that frees a particle from a jam (`event.jams`). elastic
-    (1,): the number of contacts that last; kept (1, 2): the energy that they have not dissipated, see
-    `running_sum.add`."""
+    """Contact duration: a contact less than `length` after an earlier one is elastic.
+
+    Attributes
+    ----------
+    length : contact duration
+    latest : (N,), time of the latest contact of a particle
+    met : (N,), time of its latest contact with another particle
+    island : (N,), see `event.jams`, or NONE
+    contacts : (N,), number of contacts since the last search for particles at rest
+    inverse_mass : (N,), inverse masses when no jam holds the particles
+    moving : speed that frees a particle from a jam (`event.jams`)
+    elastic : (1,), number of contacts that last
+    kept : (1, 2), energy that these contacts have not dissipated, see `physics.running_sum.add`
+    """
 
     length: float
     latest: np.ndarray
@@ -124,10 +167,20 @@ class ContactDuration(NamedTuple):
 
 
 class ContactLaw(NamedTuple):
-    """normal, tangential: restitution; viscous: None, or of viscoelastic particles the damping over the fifth
-    root of speed, radius and squared inverse mass (`viscoelastic.normal_restitution`); inverse_mass (N,), 0
-    if fixed or in a jam, inverse_inertia (N,), 0 if fixed; spins (N, 3); vibrations (N,), energies of modes,
-    -1 where there is none, or None if no particle has one; duration, None if every contact dissipates."""
+    """Collision law of inelastic or rough particles.
+
+    Attributes
+    ----------
+    normal, tangential : coefficients of restitution
+    viscous : None, or for viscoelastic particles the damping divided by the fifth root of speed, radius and
+        squared inverse mass (`physics.contact.normal_restitution`)
+    inverse_mass : (N,), 0 if fixed or in a jam
+    inverse_inertia : (N,), 0 if fixed
+    spins : (N, 3)
+    vibrations : (N,), energies of vibrational modes, -1 for particles without a mode, or None if no particle
+        has a mode
+    duration : None if every contact dissipates
+    """
 
     normal: float
     tangential: float
@@ -140,9 +193,17 @@ class ContactLaw(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Vibrating faces. Of the container's faces (2d,): stroke, how far each moves inwards, 0 if it does not;
-    period; sine, or else a sawtooth; begun, the time of its period at which the clocks are at zero; slowest,
-    the speed at which particles part from it at least. epoch (1,): the length of the clocks' epoch."""
+    """Vibrating faces.
+
+    Attributes
+    ----------
+    stroke : (2d,), distance that each face of the container moves inwards, 0 if it does not move
+    period : (2d,)
+    sine : (2d,), True for a sine, False for a sawtooth
+    begun : (2d,), time of the period at which the clocks are at zero
+    slowest : (2d,), minimum speed of separation of particles
+    epoch : (1,), length of the clocks' epoch
+    """
 
     stroke: np.ndarray
     period: np.ndarray
@@ -153,9 +214,16 @@ class Motion(NamedTuple):
 
 
 class Piston(NamedTuple):
-    """The face that is a piston: its number; mass, in the kernel's unit; push, its acceleration inwards by
-    its load; motion (3,), how far inwards it is and how fast it moves inwards at the time of its clock;
-    slowest (1,), the speed at which particles part from it at least."""
+    """Face that is a piston.
+
+    Attributes
+    ----------
+    face : its number
+    mass : in the kernel's unit
+    push : inward acceleration due to its load
+    motion : (3,), inward position and velocity at the time of its clock
+    slowest : (1,), minimum speed of separation of particles
+    """
 
     face: int
     mass: float
@@ -165,27 +233,41 @@ class Piston(NamedTuple):
 
 
 class Sliding(NamedTuple):
-    """Thermal faces that move along themselves, or along which a force drives the gas. velocity (2d, d), of
-    the container's faces; shear (2d^2, 2): the momentum along each axis that particles have given to each
-    face, see `running_sum.add`."""
+    """Thermal faces that move along themselves, or along which a force drives the gas.
+
+    Attributes
+    ----------
+    velocity : (2d, d), velocities of the container's faces
+    shear : (2d^2, 2), momentum along each axis given to each face by particles, see `physics.running_sum.add`
+    """
 
     velocity: np.ndarray
     shear: np.ndarray
 
 
 class Ramp(NamedTuple):
-    """Thermal faces whose temperature varies along them. Of the container's faces (2d,): axis, that along
-    which it does, NONE if it does not; high, the temperature at its high end."""
+    """Thermal faces whose temperature varies along them.
+
+    Attributes
+    ----------
+    axis : (2d,), axis along which the temperature of each face varies, or NONE
+    high : (2d,), temperature at its high end
+    """
 
     axis: np.ndarray
     high: np.ndarray
 
 
 class Open(NamedTuple):
-    """Faces through which particles leave and enter. present (N,), 1 of particles that are inside, and 0 of
-    the others, which are at no place (NaN), at rest and in no box; vacant (blocks,), the number of the others
-    in each block of numbers, see `obstacles.face`; entries (2d,), how many have entered through each of
-    the container's faces."""
+    """Faces through which particles leave and enter.
+
+    Attributes
+    ----------
+    present : (N,), 1 for particles inside; 0 for the others, which have no position (NaN), are at rest and in
+        no box
+    vacant : (blocks,), number of absent particles in each block of numbers, see `obstacles.face`
+    entries : (2d,), number of particles that have entered through each face
+    """
 
     present: np.ndarray
     vacant: np.ndarray
@@ -195,10 +277,16 @@ class Open(NamedTuple):
 class Reservoirs(NamedTuple):
     """Gases outside of open faces, whose particles try to enter.
 
-    key (2,), of the random numbers; rate: attempts per time at all faces; up_to (2d,): the fraction of the
-    attempts at a face and at those before it; width (2d,): (k_B T / m)^(1/2) of each gas. The next attempt:
-    number (1,); time (1,), on the clocks of the epoch; place (3,), room for where it happens. opened: the
-    `Open` of the faces.
+    Attributes
+    ----------
+    key : (2,), key of the random numbers
+    rate : attempts per time at all faces
+    up_to : (2d,), fraction of the attempts at a face and at the faces before it
+    width : (2d,), (k_B T / m)^(1/2) of each gas
+    number : (1,), number of the next attempt
+    time : (1,), its time on the clocks of the epoch
+    place : (3,), workspace for its position
+    opened : `Open` of the faces
     """
 
     key: np.ndarray
@@ -212,13 +300,25 @@ class Reservoirs(NamedTuple):
 
 
 class Faces(NamedTuple):
-    """Faces with a kind. Of the container's faces (2d,): kind; level, the temperature, of one that varies
-    that at the low end, or the momentum that sticks; depth and width of the well, 0 if there is none. Of the
-    particles: place (N, d), -1 or 1 in the well of an axis' low or high face, or stuck to it; held (N, d),
-    the energy kept there as vibration; draws (N,), how often random numbers were taken for it, under `key`
-    (2,). sticky (2d,), which faces are, motion, piston, sliding, accommodation (2d,), the fraction of hits
-    after which velocities are drawn, ramp, open: None if no face is sticky, none vibrates, none is a piston,
-    none slides, all draw after every hit, none varies along itself, and none is open."""
+    """Faces with a kind.
+
+    Attributes
+    ----------
+    kind : (2d,)
+    level : (2d,), temperature (at the low end if it varies), or momentum that sticks
+    depth, width : (2d,), depth and width of the well, 0 without a well
+    place : (N, d), -1 or 1 for a particle in the well of an axis' low or high face, or stuck to it
+    held : (N, d), energy held there as vibration
+    draws : (N,), number of draws of random numbers for a particle
+    key : (2,), key of these random numbers
+    sticky : (2d,), sticky faces, or None if no face is sticky
+    motion : None if no face vibrates
+    piston : None if no face is a piston
+    sliding : None if no face slides
+    accommodation : (2d,), fraction of hits after which velocities are drawn, or None if all hits draw
+    ramp : None if the temperature varies along no face
+    open : None if no face is open
+    """
 
     kind: np.ndarray
     level: np.ndarray
@@ -238,8 +338,14 @@ class Faces(NamedTuple):
 
 
 class WarmWalls(NamedTuple):
-    """Interior walls at a temperature: level (walls,), 0 of hard ones; draws (N,), how often random numbers
-    were taken for a particle, under `key` (2,)."""
+    """Interior walls at a temperature.
+
+    Attributes
+    ----------
+    level : (walls,), temperature, 0 for hard walls
+    draws : (N,), number of draws of random numbers for a particle
+    key : (2,), key of these random numbers
+    """
 
     level: np.ndarray
     draws: np.ndarray
@@ -247,9 +353,15 @@ class WarmWalls(NamedTuple):
 
 
 class MovingWall(NamedTuple):
-    """The interior wall that moves: axis, along which it does; mass, in the kernel's unit; side (N,), 1.0 of
-    particles above it and -1.0 of those below; motion (3,), where it is along its axis and how fast it moves
-    at the time of its clock."""
+    """Interior wall that moves.
+
+    Attributes
+    ----------
+    axis : axis along which the wall moves
+    mass : in the kernel's unit
+    side : (N,), 1.0 for particles above the wall and -1.0 for particles below
+    motion : (3,), position along the axis and velocity at the time of its clock
+    """
 
     axis: int
     mass: float
@@ -258,10 +370,18 @@ class MovingWall(NamedTuple):
 
 
 class InteriorWalls(NamedTuple):
-    """rows (M, 5) or (M, 11) and wall (M,), see `obstacles.interior_wall`; listed[first[b] :
-    first[b + 1]] are those near box b, for particles of a radius up to `largest_radius`; those for larger
-    ones, all, follow the last box. warm: None if no wall is at a temperature; moving: None if none moves,
-    which has no row."""
+    """Interior walls, and those near each box.
+
+    Attributes
+    ----------
+    rows : (M, 5) or (M, 11), see `obstacles.interior_wall`
+    wall : (M,), see `obstacles.interior_wall`
+    first, listed : listed[first[b] : first[b + 1]] are the rows near box b, for particles of a radius up to
+        `largest_radius`; all rows, for larger particles, follow the last box
+    largest_radius : see `listed`
+    warm : None if no wall is at a temperature
+    moving : None if no wall moves; a moving wall has no row
+    """
 
     rows: np.ndarray
     wall: np.ndarray
@@ -273,16 +393,23 @@ class InteriorWalls(NamedTuple):
 
 
 class Oversized(NamedTuple):
-    """The particles (B,) that are too large for the boxes: those with a radius above `largest_radius`."""
+    """Particles (B,) with a radius above `largest_radius`, too large for the boxes."""
 
     particles: np.ndarray
     largest_radius: float
 
 
 class Shear(NamedTuple):
-    """Periodic faces whose images slide, see `physics.lees_edwards`: rate, of the shear; velocity, of the
-    images above. origin (1,): their displacement where the clocks are at zero, but for so many lengths of the
-    container, turns (1,). kept (3,), room for where a particle was before a contact, and its velocity."""
+    """Periodic faces whose images slide, see `physics.lees_edwards`.
+
+    Attributes
+    ----------
+    rate : shear rate
+    velocity : velocity of the images above
+    origin : (1,), their displacement at clock time zero, without whole lengths of the container
+    turns : (1,), number of these lengths
+    kept : (3,), workspace for the position of a particle before a contact, and its velocity
+    """
 
     rate: float
     velocity: float
@@ -292,8 +419,13 @@ class Shear(NamedTuple):
 
 
 class Model(NamedTuple):
-    """What is simulated. space: a `Space`, of either engine; masses (N,), or None if all are 1 or the law
-    knows them; whatever else may be absent is None."""
+    """Model of the simulated scene; absent parts are set to None.
+
+    Attributes
+    ----------
+    space : `Space`, of either engine
+    masses : (N,), or None if all masses are 1 or the law has the masses
+    """
 
     space: Any
     masses: np.ndarray | None
@@ -307,11 +439,21 @@ class Model(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """counts (of `COUNTS`,); sums (of `SUMS`, 2) and by face and interior wall wall_impulse, wall_energy
-    (faces + walls, 2), see `running_sum.add`; wall_hits (faces + walls,); worst (1,): the largest
-    |r^2/sigma^2 - 1| at a contact; stress: an `event.stress.Stress`, impulses: an `event.impulses.Impulses`,
-    pair_impulses: an `event.impulses.PairImpulses`, None if they are not wanted; per_area: a
-    `physics.per_area.PerArea`, None unless particles of several sizes reach other areas of faces."""
+    """Counts and sums of events.
+
+    Attributes
+    ----------
+    counts : (of `COUNTS`,)
+    sums : (of `SUMS`, 2), see `physics.running_sum.add`
+    worst : (1,), largest value of |r^2/sigma^2 - 1| at a contact
+    wall_hits : (faces + walls,)
+    wall_impulse, wall_energy : (faces + walls, 2), by face and interior wall, see `physics.running_sum.add`
+    stress : `event.stress.Stress`, or None
+    impulses : `event.impulses.Impulses`, or None
+    pair_impulses : `event.impulses.PairImpulses`, or None
+    per_area : `physics.per_area.PerArea`, None unless particles of several sizes reach different areas of
+        faces
+    """
 
     counts: np.ndarray
     sums: np.ndarray
@@ -326,7 +468,7 @@ class Tally(NamedTuple):
 
 
 def empty_tally(walls: int) -> Tally:
-    """A tally at zero, for so many faces and interior walls."""
+    """Return a tally at zero for a number of faces and interior walls."""
     return Tally(
         counts=np.zeros(len(COUNTS), dtype=np.int64),
         sums=np.zeros((len(SUMS), 2)),

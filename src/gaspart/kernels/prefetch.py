@@ -1,4 +1,4 @@
-"""Fetching from memory what will be read soon, while something else is worked on."""
+"""Prefetch of data that will be read soon, while the processor does other work."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _LINE = 64  # bytes
 
 
 def _fetch(context, builder, kind, array, index, offset=0):
-    """Write the instruction that fetches array[index], `offset` bytes on."""
+    """Emit the instruction that prefetches array[index], `offset` bytes on."""
     array = context.make_array(kind)(context, builder, array)
     one_after_other = kind.ndim == 1 and kind.layout == "C"
     stride = _WORD(context.get_abi_sizeof(context.get_data_type(kind.dtype)))
@@ -28,7 +28,7 @@ def _fetch(context, builder, kind, array, index, offset=0):
 
 @intrinsic
 def fetch(typingctx, array, index):
-    """Let the cache line in which array[index] begins be brought near, without waiting for it."""
+    """Prefetch the cache line in which array[index] begins, without waiting for it."""
 
     def generate(context, builder, signature, arguments):
         _fetch(context, builder, signature.args[0], *arguments)
@@ -39,7 +39,7 @@ def fetch(typingctx, array, index):
 
 @intrinsic
 def fetch_two(typingctx, array, index):
-    """The same for that line and the next one."""
+    """Prefetch the cache line in which array[index] begins, and the next one."""
 
     def generate(context, builder, signature, arguments):
         _fetch(context, builder, signature.args[0], *arguments)
@@ -51,8 +51,10 @@ def fetch_two(typingctx, array, index):
 
 @intrinsic
 def fetch_numbered(typingctx, array, numbers, first, mask):
-    """The same for the rows of an array that `TOGETHER` words of 32 bits name, from numbers[first] on, by the
-    bits of a mask."""
+    """Prefetch `TOGETHER` rows of an array, whose numbers are in another array.
+
+    The numbers are words of 32 bits, from numbers[first] on, of which only the bits of a mask count.
+    """
 
     def generate(context, builder, signature, arguments):
         array, numbers, first, mask = arguments

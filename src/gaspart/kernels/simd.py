@@ -1,7 +1,7 @@
-"""Eight numbers at once, in vector instructions: what the searches of both engines are written in
-(`event.simd`, `step.simd`).
+"""Eight numbers at once, in vector instructions: the basis of the searches of both engines.
 
-LLVM makes of the vectors what the processor has, of whatever width.
+LLVM maps these vectors to the vectors of the processor, of any width. See `event.simd` and
+`step.neighbour_list`.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ _DOUBLE, _INT = ir.DoubleType(), ir.IntType(32)
 
 @dataclass(frozen=True, eq=False)
 class Lanes:
-    """Eight values, and the expressions in them that are written into the machine code."""
+    """Eight values, and the operations on them that are written into the machine code."""
 
     builder: ir.IRBuilder
     value: ir.Value
 
     def all(self, scalar: float | ir.Value) -> Lanes:
-        """The same number in every lane."""
+        """Return a vector with the same number in every lane."""
         if not isinstance(scalar, ir.Value):
             scalar = ir.Constant(_DOUBLE, scalar)
         one = ir.VectorType(scalar.type, WIDTH)
@@ -72,40 +72,43 @@ class Lanes:
         return self._than(">=", other)
 
     def equals(self, other):
-        """Lane by lane."""
+        """Compare lane by lane."""
         return self._than("==", other)
 
     def turned(self, step: int) -> Lanes:
-        """The lanes some steps on."""
+        """Rotate the lanes by some steps."""
         places = ir.Constant(ir.VectorType(_INT, WIDTH), [(n + step) % WIDTH for n in range(WIDTH)])
         return Lanes(self.builder, self.builder.shuffle_vector(self.value, self.value, places))
 
     def plus_product(self, one: Lanes, other: Lanes) -> Lanes:
-        """The sum with a product that is exact, so that it does not matter whether that is rounded."""
+        """Add a product that is exact.
+
+        So it does not matter whether the product is rounded before the addition.
+        """
         kind = ir.FunctionType(self.value.type, [self.value.type] * 3)
         name = f"llvm.fmuladd.v{WIDTH}f64"
         fused = cgutils.get_or_insert_function(self.builder.module, kind, name)
         return Lanes(self.builder, self.builder.call(fused, [one.value, other.value, self.value]))
 
     def sqrt(self):
-        """Lane by lane, rounded as IEEE wants."""
+        """Compute the square root lane by lane, rounded as IEEE requires."""
         kind = ir.FunctionType(self.value.type, [self.value.type])
         root = cgutils.get_or_insert_function(self.builder.module, kind, f"llvm.sqrt.v{WIDTH}f64")
         return Lanes(self.builder, self.builder.call(root, [self.value]))
 
     def where(self, condition: Lanes, other: Lanes | float) -> Lanes:
-        """These where the condition holds, the others elsewhere."""
+        """Select these lanes where the condition holds, the other lanes elsewhere."""
         other = other if isinstance(other, Lanes) else self.all(other)
         return Lanes(self.builder, self.builder.select(condition.value, self.value, other.value))
 
 
 def mask_of(condition: Lanes) -> ir.Value:
-    """A bit for each lane: whether a condition holds."""
+    """Return a bit for each lane that tells whether a condition holds."""
     return condition.builder.bitcast(condition.value, ir.IntType(WIDTH))
 
 
 def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -> dict:
-    """The members of a named tuple by name, those that are tuples as lists."""
+    """Return the members of a named tuple by name, with tuples as lists."""
     members = {}
     for n, (name, member) in enumerate(zip(kind.fields, kind.types, strict=True)):
         part = builder.extract_value(value, n)
@@ -115,7 +118,7 @@ def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -
 
 @intrinsic
 def lowest(typingctx, bits):
-    """The number of the lowest bit that is set, of a word that is not 0."""
+    """Return the index of the lowest bit that is set in a word other than 0."""
 
     def generate(context, builder, signature, arguments):
         return builder.cttz(arguments[0], ir.IntType(1)(1))

@@ -131,7 +131,9 @@ def film(
 
 
 def poster(source: str | Path, path: str | Path) -> None:
-    """Write the picture in the middle of an MP4 film as a JPEG file, for a page to show until it plays.
+    """Write the middle picture of an MP4 film as a JPEG file, for a page.
+
+    The page shows it until the film plays.
 
     Parameters
     ----------
@@ -163,7 +165,7 @@ def _reported(
 
 
 def _part(source: xr.Dataset, start: float | None, stop: float | None, every: int) -> xr.Dataset:
-    """The frames between two times, one of so many. Raises SceneError if there is none."""
+    """Return every `every`-th frame between two times; raise SceneError without any frame."""
     time = source["time"].values
     first = -np.inf if start is None else number("start", start, "must be a finite number")
     last = np.inf if stop is None else number("stop", stop, "must be a finite number")
@@ -180,7 +182,7 @@ def _checked(
     trail: int | None,
     camera: tuple[float, float] | None,
 ) -> tuple[float, float]:
-    """The camera's direction. Raises SceneError if no picture could be drawn."""
+    """Return the direction of the camera; raise SceneError if no picture could be drawn."""
     if trajectory.sizes["frame"] == 0:
         raise SceneError("frame", 0, "the trajectory has no frame yet")
     first = particles_of(trajectory, 0)
@@ -203,7 +205,7 @@ def _pictures(
     clock: bool,
     direction: tuple[float, float],
 ) -> Iterator[np.ndarray]:
-    """The pictures in order."""
+    """Yield the pictures in order."""
     fastest = None
     if isinstance(colour, str) and colour == "speed":  # one scale for all frames
         frames = range(trajectory.sizes["frame"])
@@ -224,7 +226,7 @@ def _pictures(
 
 
 def _pieces(path: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:
-    """A path as lines (M, 2), cut where it crosses a periodic face."""
+    """Cut a path into lines (M, 2) where it crosses a periodic face."""
     if len(path) < 2:
         return []
     points = np.array(path)
@@ -263,7 +265,7 @@ def _mp4(scratch: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate
 
 
 def _is_complete_mp4(path: Path) -> bool:
-    """Whether a file is a sequence of complete boxes, the index of the film among them."""
+    """Return True if a file is a sequence of complete boxes with the film's index."""
     size, at, kinds = path.stat().st_size, 0, set()
     with path.open("rb") as file:
         while at < size:

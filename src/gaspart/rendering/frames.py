@@ -42,11 +42,13 @@ LARGEST_FILM = 50_000_000
 
 
 class Picture(np.ndarray):
-    """An array of pixels, uint8 (H, W, 3), that a notebook shows as a picture. Parts and results of
-    arithmetic that are no picture are shown as arrays."""
+    """Array of pixels, uint8 (H, W, 3), that a notebook shows as a picture.
+
+    Parts, and results of arithmetic, that are not pictures are shown as arrays.
+    """
 
     def _repr_png_(self) -> bytes | None:
-        """The picture as the content of a PNG file; None for an array that is none."""
+        """Return the picture as the content of a PNG file; None for other arrays."""
         if self.dtype != np.uint8 or self.ndim != 3 or self.shape[2] != 3 or not self.size:
             return None
         from PIL import Image
@@ -56,7 +58,7 @@ class Picture(np.ndarray):
         return content.getvalue()
 
     def figure(self, caption: str) -> str:
-        """The picture with a line of text below it, as a piece of HTML."""
+        """Return the picture with a line of text below it, as a piece of HTML."""
         source = f"data:image/png;base64,{base64.b64encode(self._repr_png_() or b'').decode()}"
         text = html.escape(caption)
         image = f'<img src="{source}" alt="{text}" style="max-width: 100%">'
@@ -67,7 +69,7 @@ class Film(type(Path())):  # type: ignore[misc]
     """The path of a film, .mp4 or .gif, which a notebook shows."""
 
     def _repr_html_(self) -> str | None:
-        """The film, inside the notebook if it is not too large; None where there is no file."""
+        """Return the film, inside the notebook unless it is too large; None without a file."""
         if not self.is_file():
             return None
         name = html.escape(str(self))
@@ -80,7 +82,7 @@ class Film(type(Path())):  # type: ignore[misc]
 
 
 Source: TypeAlias = "str | Path | xr.Dataset | Simulation | State | Scene"
-"""What pictures are made of: a trajectory, by its path or open, a simulation, a state or a scene."""
+"""Source of pictures: a trajectory, by its path or open, a simulation, a state or a scene."""
 _CORNERS = {2: ((0,), (1,)), 3: ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))}
 """Corners of a face, along its outline, in a container whose sides are 1."""
 
@@ -94,7 +96,7 @@ def render(
     clock: bool = False,
     camera: tuple[float, float] | None = None,
 ) -> Picture:
-    """Draw a picture of a frame of a trajectory, of a simulation, a state or a scene.
+    """Draw a frame of a trajectory, a simulation, a state or a scene.
 
     Parameters
     ----------
@@ -155,7 +157,7 @@ def render(
 
 @contextmanager
 def opened(source: Source) -> Iterator[xr.Dataset | Simulation | State | Scene]:
-    """Yield an open source; a trajectory that was given as a path is closed at the end.
+    """Yield an open source; close a trajectory that was given as a path.
 
     Parameters
     ----------
@@ -228,7 +230,7 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
 
 
 def scene_of(trajectory: xr.Dataset) -> Scene:
-    """The scene of a trajectory, which is the same for all its frames."""
+    """Return the scene of a trajectory, which is the same for all its frames."""
     return _scene(trajectory.attrs["scene"])
 
 
@@ -238,7 +240,7 @@ def _scene(text: str) -> Scene:
 
 
 def parameters_of(scene: Scene) -> tuple[str, ...]:
-    """The parameters of a scene that a picture of it does not show, as short texts."""
+    """Return the parameters of a scene that its picture does not show, as short texts."""
     kind = {2: "disc", 3: "sphere"}[scene.dimension]
     texts = [f"{scene.count} {kind}{'s' if scene.count != 1 else ''}"]
     if scene.is_open:
@@ -278,8 +280,10 @@ def _place(piston: np.ndarray | None) -> float | None:
 
 
 def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.ndarray:
-    """(M, 2, d) the segments, the four sides of each plate, and those of what moves. piston: the place of
-    one along its axis, if there is one."""
+    """Return the segments (M, 2, d) of walls, sides of plates, and moving faces.
+
+    `piston` is the position of a piston along its axis, if there is one.
+    """
     segments: list[tuple] = []
     moving = scene.moving_wall
     for wall in scene.walls if moving is None else ():

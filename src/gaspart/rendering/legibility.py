@@ -1,4 +1,4 @@
-"""Whether a figure can be read: legends that cover no data, and what overlaps or leaves the canvas."""
+"""Legibility of a figure: legends off the data, texts without overlaps and on the canvas."""
 
 from __future__ import annotations
 
@@ -33,16 +33,21 @@ _PLACES: dict[Any, tuple[float, float]] = {
 }
 """Place of a legend in its panel: the parts of the free width and height that are at its left and below."""
 _NARROW, _LETTER = 0.8, 16.0
-"""Part of a panel's width up to which a legend above it has room beside the letter; else it is so many pixels
-higher."""
+"""Maximum width of a legend that fits above a panel next to the letter, as a fraction of the panel.
+
+A wider legend is higher by the second number, in pixels.
+"""
 _MOST_ROOM = 1.6
 """A vertical axis is extended by this factor at most to make room for a legend."""
 _PASSES = 5
 
 
 def place_legends(figure: Figure) -> None:
-    """Move each legend that covers data: to a free place of its panel, or to room made by extending the
-    vertical axis, or else above the panel. The figure then keeps its layout."""
+    """Move each legend that covers data to a free position.
+
+    It is in the panel, or in space made by extending the vertical axis, or else above the panel. The figure
+    then keeps its layout.
+    """
     layout = figure.get_layout_engine()
     assert layout
     for _ in range(_PASSES):
@@ -55,7 +60,7 @@ def place_legends(figure: Figure) -> None:
 
 
 def _moved(axis: Axes) -> bool:
-    """Whether the legend of this panel covered data, and so was moved."""
+    """Return True if the legend of this panel covered data, and was moved."""
     legend, frame = axis.get_legend(), axis.bbox
     assert legend
     box, everything = legend.get_window_extent(), _marks(axis, lines=True)
@@ -80,16 +85,16 @@ def _moved(axis: Axes) -> bool:
 
 
 def _filled(text: Text) -> np.ndarray:
-    """Places (n, 2) in pixels all over a text."""
+    """Return positions (n, 2) in pixels all over a text."""
     box = text.get_window_extent()
     x, y = np.linspace(box.x0, box.x1, 9), np.linspace(box.y0, box.y1, 9)
     return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
 
 
 def _extended(axis: Axes, data: np.ndarray, box: Bbox, free: float) -> bool:
-    """Whether the vertical axis was extended so that the legend has room at the top.
+    """Return True if the vertical axis was extended so that the legend fits at the top.
 
-    free: width of the panel, in pixels, beside the legend.
+    `free` is the width of the panel, in pixels, that the legend leaves.
     """
     legend, frame = axis.get_legend(), axis.bbox
     assert legend
@@ -112,19 +117,19 @@ def _extended(axis: Axes, data: np.ndarray, box: Bbox, free: float) -> bool:
 
 
 def _inside(places: np.ndarray, left: float, below: float, right: float, above: float) -> np.ndarray:
-    """Which of the places (n, 2) are in a rectangle."""
+    """Return True for each of the positions (n, 2) in a rectangle."""
     x, y = places.T
     return (x > left) & (x < right) & (y > below) & (y < above)
 
 
 def _seen(axis: Axes, places: np.ndarray) -> np.ndarray:
-    """The places (n, 2) that are inside a panel."""
+    """Return the positions (n, 2) that are inside a panel."""
     frame = axis.bbox
     return places[_inside(places, frame.x0 - 1.0, frame.y0 - 1.0, frame.x1 + 1.0, frame.y1 + 1.0)]
 
 
 def _marks(axis: Axes, lines: bool) -> np.ndarray:
-    """Places (n, 2) in pixels of a panel's points and error bars, and of its curves if `lines`.
+    """Return positions (n, 2) in pixels of a panel's points, error bars and, if `lines`, curves.
 
     Guides across the whole panel are no data.
     """
@@ -151,7 +156,7 @@ def _marks(axis: Axes, lines: bool) -> np.ndarray:
 
 
 def _along(places: np.ndarray) -> np.ndarray:
-    """Places (m, 2) along the line through places (n, 2), a few pixels from each other."""
+    """Return positions (m, 2) along the line through positions (n, 2), a few pixels apart."""
     places = np.reshape(places, (-1, 2))  # an error bar without a value has none
     begin, way = places[:-1], np.diff(places, axis=0)
     known = np.isfinite(way).all(axis=1)
@@ -162,8 +167,11 @@ def _along(places: np.ndarray) -> np.ndarray:
 
 
 def flaws(figure: Figure) -> list[str]:
-    """What is wrong with a figure that has been saved, a sentence each: text that overlaps other text or
-    leaves the canvas; a legend on data; a text in a panel on a point."""
+    """Return the flaws of a figure that has been saved, a sentence each.
+
+    Flaws are a text that overlaps other text or leaves the canvas, a legend on data, and a text in a panel on
+    a point.
+    """
     from matplotlib.text import Text
 
     figure.draw_without_rendering()  # labels have the places of the last drawing, of another resolution
@@ -194,7 +202,7 @@ def flaws(figure: Figure) -> list[str]:
 
 
 def _texts(figure: Figure) -> Iterator[tuple[str, Bbox]]:
-    """Every text that is drawn, and its rectangle in pixels; a legend as one."""
+    """Yield every text that is drawn, and its rectangle in pixels; a legend as one text."""
     from matplotlib.legend import Legend
     from matplotlib.text import Text
 
@@ -211,7 +219,7 @@ def _texts(figure: Figure) -> Iterator[tuple[str, Bbox]]:
 
 
 def _ticks(axis: Axis) -> Iterator[tuple[object, bool]]:
-    """The labels of an axis' ticks, and whether each is drawn."""
+    """Yield the labels of an axis' ticks, with True for each label that is drawn."""
     low, high = sorted(map(float, axis.get_view_interval()))
     panel = axis.axes.axison and axis.axes.get_visible()
     for minor in (False, True):
@@ -223,5 +231,5 @@ def _ticks(axis: Axis) -> Iterator[tuple[object, bool]]:
 
 
 def _smaller(box: Bbox) -> Bbox:
-    """A rectangle without its outermost pixels: letters do not fill theirs."""
+    """Return a rectangle without its outermost pixels: letters do not fill theirs."""
     return box.padded(-2.0)

@@ -27,10 +27,11 @@ _SIZE = (600, 450)
 
 
 class LiveGas:
-    """A simulation that goes on from picture to picture, of a scene that may change.
+    """Simulation that goes on from picture to picture, of a scene that may change.
 
-    interval: the time between two pictures; size: (W, H) pixels. Other arguments as of `Simulation`.
-    Raises SceneError as that, for open faces, and for a scene in which nothing moves or falls.
+    `interval` is the time between two pictures, `size` is (W, H) in pixels; other arguments are those for
+    `Simulation`. Raises SceneError as `Simulation`, for open faces, and for a scene in which nothing moves or
+    falls.
     """
 
     def __init__(
@@ -125,7 +126,7 @@ def live(
     seed: int | tuple[int, ...] = 0,
     size: tuple[int, int] = _SIZE,
 ) -> Any:
-    """Show a scene that runs as long as it is watched, in a widget of a notebook.
+    """Show a scene that runs while it is watched, in a widget of a notebook.
 
     A slider changes the packing fraction, and the gas starts again. If there is a floor, another slider
     changes gravity, under which the gas goes on.

@@ -26,10 +26,16 @@ FIXED = (0.62, 0.62, 0.62)
 
 @dataclass(frozen=True)
 class DrawnParticles:
-    """positions (N, d), radii (N,), species (N,), speeds (N,); lengths (d,) of the container; walls
-    (M, 2, d), the ends of the interior ones, of plates those of their sides; periodic, whether each axis is;
-    masses (N,), if they are known; fixed (N,), whether each never moves, None if it is not known; parameters:
-    short texts on the scene; surfaces: faces and walls with a look of their own.
+    """Particles of a picture, with their container and walls.
+
+    positions, radii, species, speeds : (N, d), (N,), (N,), (N,).
+    lengths : (d,), sides of the container.
+    walls : (M, 2, d), ends of the interior walls, for plates the ends of their sides.
+    periodic : True for each periodic axis.
+    masses : (N,), if they are known.
+    fixed : (N,), True for each particle that never moves, None if it is not known.
+    parameters : short texts on the scene.
+    surfaces : faces and walls with a look of their own.
     """
 
     positions: np.ndarray
@@ -51,21 +57,26 @@ class DrawnParticles:
 
     @property
     def reach(self) -> float:
-        """How far particles may reach out of the container: the radius of the largest that does."""
+        """Maximum distance that particles may reach out of the container.
+
+        It is the radius of the largest particle that does.
+        """
         places, radii = self.positions, self.radii[:, None]
         out = (np.maximum(radii - places, places + radii - self.lengths) > 1e-9 * self.lengths).any(axis=1)
         return float(self.radii[out].max(initial=0.0))
 
     @property
     def root_mean_square_speed(self) -> float:
-        """The root-mean-square speed of all particles; 0 if there are none."""
+        """Root-mean-square speed of all particles; 0 without particles."""
         return float(np.sqrt((self.speeds**2).mean())) if len(self.speeds) else 0.0
 
 
 @dataclass(frozen=True)
 class Legend:
-    """What the colours of a picture mean: a title, colours (M, 3), and texts, one for each colour or for the
-    two ends of a continuous scale."""
+    """Meaning of the colours of a picture.
+
+    It has a title, colours (M, 3), and texts, one for each colour or for the two ends of a continuous scale.
+    """
 
     title: str
     colours: np.ndarray
@@ -73,14 +84,14 @@ class Legend:
 
     @property
     def continuous(self) -> bool:
-        """Whether the colours are those of a scale."""
+        """True if the colours form a scale."""
         return len(self.texts) < len(self.colours)
 
 
 def legend_of(
     particles: DrawnParticles, colour: str | np.ndarray, fastest: float | None = None
 ) -> Legend | None:
-    """The legend of `colours_of`; None for given colours, and for one species."""
+    """Return the legend of `colours_of`; None for given colours, and for one species."""
     if not isinstance(colour, str):
         return None
     if colour == "species":
@@ -94,7 +105,10 @@ def legend_of(
 
 
 def _differences(particles: DrawnParticles, used: np.ndarray) -> tuple[str, tuple[str, ...]]:
-    """In what these species differ, and its value in each; their numbers where one has several values."""
+    """Return the properties in which these species differ, and their values in each species.
+
+    The numbers of the species are returned if a species has several values.
+    """
     titles, columns = [], []
     for title, values in (("radius", particles.radii), ("mass", particles.masses)):
         if values is None:
@@ -123,17 +137,18 @@ def _ramp(parts: np.ndarray) -> np.ndarray:
 
 
 def _fastest(particles: DrawnParticles, fastest: float | None) -> float:
-    """The end of the scale of speeds."""
+    """Return the end of the scale of speeds."""
     return (FASTEST * particles.root_mean_square_speed if fastest is None else fastest) or 1.0
 
 
 def colours_of(
     particles: DrawnParticles, colour: str | np.ndarray, fastest: float | None = None
 ) -> np.ndarray:
-    """(N, 3) red, green and blue from 0 to 1.
+    """Return the colours (N, 3) of particles: red, green and blue from 0 to 1.
 
-    colour: "speed", dark at rest and bright from `fastest` on (without it, from `FASTEST` root-mean-square
-    speeds on), of fixed particles grey; "species"; or an array (N, 3). Raises SceneError for anything else.
+    They are by `colour`: "speed", dark at rest and bright from `fastest` on (without it, from `FASTEST`
+    root-mean-square speeds on), grey for fixed particles; "species"; or an array (N, 3). Raises SceneError
+    for anything else.
     """
     if isinstance(colour, str):
         if colour not in COLOURINGS:
@@ -156,17 +171,19 @@ def colours_of(
 
 
 _PART = 0.035
-"""Height of the letters over that of the picture, or over 1.5 times its width if that is less; at least
-10 pixels."""
+"""Height of the letters divided by the height of the picture; at least 10 pixels.
+
+If 1.5 times the width is less than the height, it replaces the height.
+"""
 _LINE = 1.5
-"""Height of a line over that of its letters."""
+"""Height of a line divided by the height of its letters."""
 _INK, _PAPER = (40, 40, 40), (255, 255, 255)
 _LEAST = 16
 """The least height of a picture between its labels, in pixels."""
 
 
 def round_length(longest: float) -> float:
-    """The largest of 1, 2 and 5 times a power of ten that is not above `longest`.
+    """Return the largest of 1, 2 and 5 times a power of ten up to `longest`.
 
     >>> round_length(37.0), round_length(0.7)
     (20.0, 0.5)
@@ -176,7 +193,9 @@ def round_length(longest: float) -> float:
 
 
 def time_format(times: np.ndarray) -> str:
-    """The format of the times of a film: as many decimals for all, up to three, as they need.
+    """Return the format of the times of a film, with equally many decimals for all.
+
+    There are up to three decimals, as many as they need.
 
     >>> time_format([0.0, 0.25, 0.5]), time_format([0.0, 1e-9])
     ('.2f', '.4g')
@@ -189,10 +208,13 @@ def time_format(times: np.ndarray) -> str:
 
 @dataclass(frozen=True)
 class Labels:
-    """What is written above and below a picture so that both have a size (W, H).
+    """Text above and below a picture; with the picture its size is (W, H).
 
-    parameters: short texts, above; legend and surfaces: below them; the time and a bar of a round length are
-    below the picture, whose size is `inner`. Raises SceneError if nothing is left for it.
+    parameters : short texts, above.
+    legend, surfaces : below the parameters.
+
+    The time and a bar of a round length are below the picture, whose size is `inner`. Raises SceneError if no
+    space is left for the picture.
     """
 
     size: tuple[int, int]
@@ -228,7 +250,7 @@ class Labels:
 
     @cached_property
     def lines(self) -> list[str]:
-        """The parameters in lines that are not wider than the picture, as far as these leave half of it."""
+        """Parameters in lines no wider than the picture, if they leave half of it."""
         lines: list[str] = []
         for text in self.parameters:
             longer = f"{lines[-1]}, {text}" if lines else text
@@ -246,7 +268,7 @@ class Labels:
 
     @cached_property
     def rows(self) -> list[list[DrawnSurface]]:
-        """Surfaces in rows that are not wider than the picture, as far as these leave half of it."""
+        """Surfaces in rows no wider than the picture, if they leave half of it."""
         rows: list[list[DrawnSurface]] = []
         free = 0.0
         for surface in self.surfaces:
@@ -270,7 +292,7 @@ class Labels:
         return self.size[0], self.size[1] - self.top - self.line - self.letters // 3
 
     def around(self, image: np.ndarray, time: str, pixels_per_length: float) -> np.ndarray:
-        """A picture (h, W, 3) of the size `inner` with its labels, (H, W, 3)."""
+        """Add the labels (H, W, 3) to a picture (h, W, 3) of the size `inner`."""
         from PIL import Image, ImageDraw
 
         width, height = self.size
@@ -321,7 +343,7 @@ class Labels:
         return draw.textbbox(place, text, self.font, anchor)[2]
 
     def _draw_legend(self, draw: ImageDraw, legend: Legend, base: float) -> None:
-        """The title, and a bar between the numbers of its ends, or each colour with its text."""
+        """Draw the title, and a bar with numbers at its ends, or colours with texts."""
         letters, gap = self.letters, self.letters // 2
         colours = [tuple(colour) for colour in np.rint(255.0 * legend.colours).astype(int).tolist()]
         x = self._write(draw, (gap, base), legend.title) + gap

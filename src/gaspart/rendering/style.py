@@ -39,7 +39,7 @@ REFERENCE = "#0072b2"
 GREY = "#8c8c8c"
 """For guides: zero lines, bands, limits."""
 _DATED = {"svg": "Date", "pdf": "CreationDate", "png": "Software"}
-"""What a file of each format states of its making by default, and here does not."""
+"""Key of the statement about its creation that a file of each format has by default, and here lacks."""
 _SHORTEST, _SHORT = 0.5, 2.2
 """Decades of a logarithmic axis: below the first it has ticks like a linear one, up to the second also at
 twice and five times a power of ten."""
@@ -89,18 +89,18 @@ def applied(layout: str = "page") -> Iterator[None]:
 
 
 def width() -> float:
-    """The width of a figure in the layout that is applied, in inches."""
+    """Return the width of a figure in the layout that is applied, in inches."""
     import matplotlib
 
     return float(matplotlib.rcParams["figure.figsize"][0])
 
 
 def new(*groups: Sequence[float]) -> tuple[Figure, list[Axes]]:
-    """A figure of groups of panels, in the layout that is applied.
+    """Create a figure of groups of panels, in the layout that is applied.
 
-    groups: the heights in inches of the panels of each, which lie above each other and share their x axis.
-    On a page the first groups fill the left column and the others the right one, with columns of about the
-    same height; in a journal they all lie above each other. Returns (figure, panels in the order given).
+    Each of `groups` has the heights in inches of its panels, which lie above each other and share their x
+    axis. On a page the first groups fill the left column and the others the right one, with columns of about
+    the same height; in a journal they all lie above each other. Returns (figure, panels in the order given).
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -123,7 +123,10 @@ def new(*groups: Sequence[float]) -> tuple[Figure, list[Axes]]:
 
 
 def _columns(groups: Sequence[Sequence[float]]) -> list[Sequence[Sequence[float]]]:
-    """The groups in two columns, one after the other, so that the higher column is as low as possible."""
+    """Split the groups into two columns so that the higher column is as low as possible.
+
+    The groups keep their order.
+    """
     if len(groups) == 1:
         return [groups]
     cuts = [(groups[:n], groups[n:]) for n in range(1, len(groups))]
@@ -131,7 +134,7 @@ def _columns(groups: Sequence[Sequence[float]]) -> list[Sequence[Sequence[float]
 
 
 def split(axis: Axes, rows: int, columns: int) -> np.ndarray:
-    """Panels (rows, columns) in place of one."""
+    """Replace a panel by panels (rows, columns)."""
     figure, place = axis.get_figure(), axis.get_subplotspec()
     axis.remove()
     assert figure and place
@@ -148,9 +151,9 @@ def points(
     hollow: bool = False,
     **options: Any,
 ) -> ErrorbarContainer:
-    """Measured points: colour and marker number `kind`, or `color` and `marker`.
+    """Draw measured points, with colour and marker number `kind`, or `color` and `marker`.
 
-    x, y: (n,); those that are estimates have error bars. options: of `Axes.errorbar`.
+    `x` and `y` have the shape (n,); estimates have error bars. `options` are options of `Axes.errorbar`.
     """
     if isinstance(y, Estimate):
         y, error = y.value, y.error
@@ -166,7 +169,10 @@ def points(
 
 
 def labelled(axis: Axes, x: str = "", y: str = "", legend: str = "", columns: int = 1, **limits: Any) -> None:
-    """Label a panel's axes, and give it a legend, if its place is stated. limits: as of `Axes.set`."""
+    """Label the axes of a panel, and add a legend, if its position is given.
+
+    `limits` are arguments of `Axes.set`.
+    """
     labels = {"xlabel": x, "ylabel": y}
     axis.set(**{key: text for key, text in labels.items() if text}, **limits)
     if legend:
@@ -175,35 +181,41 @@ def labelled(axis: Axes, x: str = "", y: str = "", legend: str = "", columns: in
 
 
 def band(axis: Axes, low: float, high: float, **options: Any) -> Rectangle:
-    """A horizontal grey band, behind everything."""
+    """Draw a horizontal grey band, behind everything."""
     return axis.axhspan(low, high, color=GREY, alpha=0.18, linewidth=0, zorder=0, **options)
 
 
 def level(axis: Axes, value: float, **options: Any) -> Line2D:
-    """A horizontal grey line, behind the points."""
+    """Draw a horizontal grey line, behind the points."""
     return axis.axhline(value, color=GREY, linewidth=0.6, zorder=1, **options)
 
 
 def letter(axis: Axes, text: str) -> Text:
-    """(a), (b) ... and perhaps a short title, above a panel's left corner, where no data are."""
+    """Write (a), (b) ... and perhaps a short title above the left corner of a panel.
+
+    No data are there.
+    """
     return axis.set_title(text, loc="left", fontweight="bold", pad=3.0)
 
 
 def letters(*axes: Axes) -> None:
-    """(a), (b) ... above these panels."""
+    """Write (a), (b) ... above these panels."""
     for axis, text in zip(axes, "abcdefgh", strict=False):
         letter(axis, f"({text})")
 
 
 def _share_x(panels: Sequence[Axes]) -> None:
-    """One x axis for panels above each other, labelled below the last."""
+    """Make panels above each other share one x axis, labelled below the last."""
     for panel in panels[:-1]:
         panel.sharex(panels[-1])
         panel.tick_params(labelbottom=False)
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure atomically, in the format of its suffix; the same figure gives the same bytes."""
+    """Write a figure atomically, in the format of its suffix.
+
+    The same figure gives the same bytes.
+    """
     from gaspart.files import whole_file
 
     finish(figure)
@@ -259,8 +271,11 @@ def _show_positive_ends(panel: Axes, axis: Axis, number: int) -> None:
 
 
 def _number_ticks(axis: Axis) -> None:
-    """Ticks of a logarithmic axis whose numbers do not run into each other: 1, 2, 5, 10 on a short one,
-    powers of ten alone on a long one; those that a figure has chosen remain."""
+    """Choose ticks of a logarithmic axis whose numbers do not overlap.
+
+    They are 1, 2, 5, 10 on a short axis, powers of ten alone on a long axis; ticks that a figure has chosen
+    remain.
+    """
     from matplotlib.ticker import AutoLocator, FixedLocator, FuncFormatter, LogLocator, NullFormatter
 
     if axis.get_scale() != "log" or isinstance(axis.get_major_locator(), FixedLocator):

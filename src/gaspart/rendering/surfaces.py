@@ -1,10 +1,10 @@
-"""Looks of the faces of a container and of walls at a temperature: one for each kind, in all pictures.
+"""Looks of the faces of a container and of walls at a temperature, in all pictures.
 
 A hard wall at rest is a thin dark line. A surface at a temperature is thick, from blue (the coldest of the
 scene) to red (the hottest), or orange if all have one temperature; it is dashed if it draws only part of the
-velocities. An open face is dashed, with arrows for what leaves and enters. A surface that moves has hatching,
-and an arrow in the direction of its motion; behind a piston the container is shaded. A sticky face is green,
-and the edge of a well is dotted.
+velocities. An open face is dashed, with arrows for particles that leave and enter. A surface that moves has
+hatching, and an arrow in the direction of its motion; behind a piston the container is shaded. A sticky face
+is green, and the edge of a well is dotted.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class DrawnSurface:
     depth : float, [length]
         Thickness of the shaded region behind it.
     band : float, [length]
-        Distance of a dotted line inside of it; 0 if there is none.
+        Distance of a dotted line inside of it; 0 without a dotted line.
     """
 
     ends: np.ndarray
@@ -157,7 +157,7 @@ def _warm_walls(scene: Scene) -> tuple[DrawnSurface, ...]:
 
 
 def colour_of(temperature: float, scene: Scene) -> Colour:
-    """Return the colour of a temperature among those of a scene's surfaces."""
+    """Return the colour of a temperature within the range of a scene's surfaces."""
     low, high = min(scene.face_temperatures), max(scene.face_temperatures)
     if not high > low:
         return _MIDDLE

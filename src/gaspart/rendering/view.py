@@ -16,9 +16,9 @@ from gaspart.analysis.run import repeated
 from gaspart.errors import SceneError
 from gaspart.files import FileKind, output_path, writing
 from gaspart.keys.values import count_of
+from gaspart.rendering.camera import edges_of
 from gaspart.rendering.frames import opened, particles_of, scene_of
 from gaspart.rendering.particles import FASTEST, FIXED, DrawnParticles
-from gaspart.rendering.pictures import edges_of
 from gaspart.rendering.style import COLOURS
 from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
@@ -204,7 +204,10 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
 
 
 def _order(shown: list[DrawnParticles]) -> dict:
-    """Return the local bond order of every particle in every frame, in parts of the largest value shown."""
+    """Return the local bond order of every particle in every frame.
+
+    It is in units of the largest value on the scale.
+    """
     first = shown[0]
     if not all(first.periodic[: first.dimension]):
         raise SceneError("order", True, "bond order needs a periodic container")
@@ -217,9 +220,10 @@ def _order(shown: list[DrawnParticles]) -> dict:
 
 
 def _lines(lengths: np.ndarray, walls: list[np.ndarray]) -> np.ndarray:
-    """Return the ends of the container's edges and of the sides of walls, shape (frames, 2M, 3).
+    """Return the ends of the container's edges and of the sides of walls.
 
-    Walls have the shape (M, 2, d). There is one frame if they have the same positions in all frames.
+    The shape is (frames, 2M, 3). Walls have the shape (M, 2, d). There is one frame if they have the same
+    positions in all frames.
     """
     if all(np.array_equal(walls[0], one) for one in walls):
         walls = walls[:1]

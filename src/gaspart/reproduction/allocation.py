@@ -1,4 +1,4 @@
-"""Lengths of the runs of each point: the least processor time with which all claims stay decided.
+"""Lengths of the runs of each point: the least CPU time with which all claims stay decided.
 
     python -m gaspart.reproduction.allocation config/config.yaml PAGE
 
@@ -6,7 +6,7 @@ reads a finished run, writes the block `lengths` at the end of the config, and a
 The run is an independent one: before the next run the config gets another seed.
 
 The variance of a claim is a sum over the points of which its number is made, sum_p c_p / x_p, where x_p is
-the multiple of the length of point p. The part c_p is found by enlarging the uncertainties of the rows of
+the multiple of the length of point p. The part c_p follows from enlarging the uncertainties of the rows of
 point p. A decided claim needs a variance of at most V. The time sum_p t_p x_p, where t_p is the time of point
 p, is least under all these conditions if x_p^2 = sum_k lambda_k c_kp / t_p, with a multiplier lambda_k >= 0
 for each claim k (for one claim: J. Neyman, J. R. Stat. Soc. 97, 558 (1934)).
@@ -42,8 +42,12 @@ _HEAD = "\nlengths:"
 
 @dataclass(frozen=True)
 class Demand:
-    """A decided claim of a figure. parts: the part of its variance that each point has, of which the sum is 1
-    or less; rest: the part that no single point has; most: the multiple of the variance that it may have."""
+    """Decided claim of a figure.
+
+    parts : part of its variance that each point has; their sum is 1 or less.
+    rest : part that no single point has.
+    most : multiple of the variance that it may have.
+    """
 
     figure: str
     claim: str
@@ -106,9 +110,11 @@ def allocated(
 ) -> tuple[dict[str, float], list[float]]:
     """Return the multiple of the length of each point, and the price of each demand.
 
-    cost: time of each point, in s; shown: the points of each figure. The price is the time in s that e times
-    (2.72) the variance would save. The points of a figure that no row states, and those of a claim with a
-    rest, have the multiple that would suffice if all points had it.
+    cost : time of each point, in s.
+    shown : points of each figure.
+
+    The price is the time in s that e times (2.72) the variance would save. Points of a figure that no row
+    states, and the points of a claim with a rest, have the multiple that would suffice if all points had it.
     """
     names = sorted(cost)
     index = {name: n for n, name in enumerate(names)}
@@ -134,8 +140,8 @@ def allocated(
 def _least_cost(shares: np.ndarray, times: np.ndarray, least: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Minimise sum t x under shares @ (1 / x) <= 1 and least <= x <= LONGEST.
 
-    Returns x and the multipliers of the first conditions, which are found by multiplication with what is
-    missing, or too much.
+    Returns x and the multipliers of the first conditions, which are found by multiplication with the excess
+    or the deficit.
     """
     lengths = np.maximum(least, SHORTEST)
     multipliers = np.where(shares.any(axis=1), times.mean(), 0.0)
@@ -147,7 +153,7 @@ def _least_cost(shares: np.ndarray, times: np.ndarray, least: np.ndarray) -> tup
 
 
 def main(path: str, page: str) -> None:
-    """Allocate lengths by the run of a config; see the module."""
+    """Allocate lengths from the run of a config; see the module."""
     with checked(path) as (config, planned):
         results = Path("results") / (config.get("run") or "")
         shown = budget.shown_points(config, planned)
@@ -188,7 +194,10 @@ def _page(
     demanded: Sequence[Demand],
     prices: Sequence[float],
 ) -> str:
-    """Return a table of all points, the most expensive first, and one of the claims that cost most."""
+    """Return a table of all points, the most expensive first, and a table of claims.
+
+    The claims are those that cost most.
+    """
     rows = ["| point | s in the run | multiple | claim that needs it most |", "| --- | --- | --- | --- |"]
     for point in sorted(multiples, key=lambda name: -cost[name]):
         neediest = max(demanded, key=lambda one: one.parts.get(point, 0.0) / one.most, default=None)

@@ -1,4 +1,4 @@
-"""Validation of a config before any job starts: an error is one line with file, key, value and rule."""
+"""Validation of a config before any job; an error is one line with file, key, value and rule."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 
 
 def merged_with_default(path: Path, base: Path | None = None) -> tuple[dict[str, Any], list[Path]]:
-    """A config merged over another, as by the workflow, and the files that it consists of.
+    """Merge a config over another, as in the workflow, and return it with its files.
 
-    base: the other one, by default the `config.yaml` beside it. Raises SceneError for a file that cannot be
-    read.
+    The other config is `base`, by default the `config.yaml` in the same folder. Raises SceneError for a file
+    that cannot be read.
     """
     path = resolved(path)
     base = path.parent / "config.yaml" if base is None else resolved(base)
@@ -47,23 +47,23 @@ def merged_with_default(path: Path, base: Path | None = None) -> tuple[dict[str,
 
 
 def _merged(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
-    """Mappings are merged, key by key; anything else is replaced."""
+    """Merge mappings key by key; replace anything else."""
     both = {key: value for key, value in above.items() if isinstance(value, dict)}
     both = {key: value for key, value in both.items() if isinstance(below.get(key), dict)}
     return {**below, **above, **{key: _merged(below[key], value) for key, value in both.items()}}
 
 
 def read_numbers(config: dict, files: Sequence[str | Path]) -> None:
-    """Change numbers such as 1e3, which Snakemake's reader takes for text, into numbers, in a merged config.
+    """Convert numbers such as 1e3, which Snakemake reads as text, in a merged config.
 
-    files: those that were merged, in that order; what is in quotes there stays text. Raises SceneError for a
+    `files` are the merged files, in that order; what is in quotes there stays text. Raises SceneError for a
     file that cannot be read.
     """
     _read_numbers(config, [read_yaml(file) for file in files])
 
 
 def _read_numbers(block: Any, held: list[Any]) -> None:
-    """held: what the files have in this place."""
+    """Convert the numbers of a block; `held` has the same block of each file."""
     for key, value in block.items() if isinstance(block, dict) else enumerate(block):
         below = []
         for part in held:
@@ -76,8 +76,10 @@ def _read_numbers(block: Any, held: list[Any]) -> None:
 
 
 def origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | None:
-    """The last of the files, given with their contents, that holds the longest part of ``key``; or the option
-    of Snakemake, for a value that is in none of them."""
+    """Return the last of the files that holds the longest part of ``key``.
+
+    Files are given with their contents. For a value that is in no file, the option of Snakemake is returned.
+    """
     parts = key.replace("[", ".").split(".")
     dotted = parts.index("scene") if "scene" in parts else len(parts)  # `scene.` and what follows is one key
     parts[dotted:] = [".".join(parts[dotted:])]
@@ -107,9 +109,10 @@ _EXPERIMENTS = names("the experiments whose points the figure is made of, in thi
 
 @cache
 def schema(installed: tuple[tuple[str, str], ...] = ()) -> Kind:
-    """The JSON schema of a config. Scenes and engines are validated by themselves when a point makes them.
+    """Return the JSON schema of a config.
 
-    installed: figures of the config whose kind another installed package brings, each with its kind.
+    Scenes and engines are validated by themselves when a point makes them. `installed` has figures of the
+    config whose kind another installed package brings, each with its kind.
     """
     figures = {
         figure: record({"experiments": _EXPERIMENTS, **settings})
@@ -121,13 +124,13 @@ def schema(installed: tuple[tuple[str, str], ...] = ()) -> Kind:
 
 
 def _of_kind(kind: str) -> Kind:
-    """The entry of a figure with a name of one's own."""
+    """Return the entry of a figure with a name of one's own."""
     stated = choice("the kind of a figure with a name of one's own", kind)
     return record({"kind": stated, "experiments": _EXPERIMENTS, **registry.settings_of_kind(kind)})
 
 
 def scene_schema() -> Kind:
-    """The JSON schema of a scene file; rules that concern several keys are not part of it."""
+    """Return the JSON schema of a scene file, without rules that concern several keys."""
     from gaspart.keys import schema_of
     from gaspart.scene.scene import Scene
 
@@ -136,10 +139,10 @@ def scene_schema() -> Kind:
 
 @contextmanager
 def checked(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, dict[str, Point]]]]:
-    """The valid config of a file and its points, with its scene folder as the working directory.
+    """Yield the valid config of a file and its points.
 
-    The scene folder is the folder above a file in a folder named `config`; else the folder of the file.
-    Raises SceneError.
+    The working directory is its scene folder: the folder above a file in a folder named `config`; else the
+    folder of the file. Raises SceneError.
     """
     merged, files = merged_with_default(Path(path))
     folder = files[-1].parent
@@ -150,8 +153,8 @@ def checked(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, dict[s
 def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str, Point]]:
     """Validate a merged config against the schema, then the parameters of every point's job.
 
-    files: the YAML files that were merged, in that order; an error names the last one that holds the key.
-    Returns all points, by experiment and name. Raises SceneError.
+    `files` are the YAML files that were merged, in that order; an error names the last one that holds the
+    key. Returns all points, by experiment and name. Raises SceneError.
     """
     contents = [(str(file), read_yaml(file)) for file in files]
     try:
@@ -175,8 +178,11 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
 
 
 def check_values(config: object) -> None:
-    """Raise SceneError unless a config is a tree of mappings, lists and plain values, not too deep and not
-    too large, whose numbers are finite and neither too large nor too small to compute with."""
+    """Raise SceneError unless a config is a bounded tree of valid values.
+
+    The tree consists of mappings, lists and plain values, not too deep and not too large; its numbers are
+    finite and neither too large nor too small to compute with.
+    """
     stack = [("", config, 0)]  # a stack, so that a deep config does not exhaust Python's own
     for count in range(MOST_VALUES):
         if not stack:
@@ -203,7 +209,7 @@ def check_values(config: object) -> None:
 
 
 def _check_names(config: object) -> None:
-    """Refuse a figure that has neither the name of one of the package nor a kind, or both."""
+    """Refuse a figure with neither a name of the package nor a kind, or with both."""
     figures = config.get("figures") if isinstance(config, dict) else None
     for figure, block in figures.items() if isinstance(figures, dict) else ():
         if not isinstance(block, dict):
@@ -217,8 +223,10 @@ def _check_names(config: object) -> None:
 
 
 def _installed_kinds(config: object) -> tuple[tuple[str, str], ...]:
-    """(figure, kind) of each figure whose kind another installed package brings. Raises SceneError for a kind
-    that is unknown, or whose package cannot be used."""
+    """Return (figure, kind) of each figure whose kind another installed package brings.
+
+    Raises SceneError for a kind that is unknown, or whose package cannot be used.
+    """
     figures = config.get("figures") if isinstance(config, dict) else None
     found = []
     for figure, block in figures.items() if isinstance(figures, dict) else ():
@@ -237,8 +245,10 @@ def _installed_kinds(config: object) -> tuple[tuple[str, str], ...]:
 
 
 def _check_caption(figure: str, block: dict) -> None:
-    """Refuse a caption that the report cannot show. Its text is read where docutils is installed, as it is
-    where the report is made."""
+    """Refuse a caption that the report cannot show.
+
+    Its text is parsed where docutils is installed, as it is where the report is made.
+    """
     text = registry.caption(block)
     fault = place_fault(text)
     if not fault and find_spec("docutils"):
@@ -251,7 +261,7 @@ def _check_caption(figure: str, block: dict) -> None:
 
 
 def _animation(config: dict, animation: str, block: dict | None) -> None:
-    """Refuse a film of an experiment that the config does not have, or that makes no trajectories."""
+    """Refuse a film of an experiment that is missing in the config, or has no trajectories."""
     experiment = block["experiment"] if block else None
     kinds = {name: made.get("job", "simulate") for name, made in config["experiments"].items()}
     if block and kinds.get(experiment) != TRAJECTORIES:
@@ -263,8 +273,10 @@ def _animation(config: dict, animation: str, block: dict | None) -> None:
 
 
 def checked_points(config: dict, experiment: str) -> dict[str, Point]:
-    """The points of an experiment, by name, after a check of each value of the grid and of every point.
-    Raises SceneError."""
+    """Return the points of an experiment, by name, after a check of every point.
+
+    Each value of the grid is checked too. Raises SceneError.
+    """
     made = gridded_points(config, experiment)
     for point in made.values():
         check_point(point)
@@ -272,8 +284,10 @@ def checked_points(config: dict, experiment: str) -> dict[str, Point]:
 
 
 def gridded_points(config: dict, experiment: str) -> dict[str, Point]:
-    """The points of an experiment, by name, after a check of each value of the grid by itself. Raises
-    SceneError."""
+    """Return the points of an experiment, by name, after a check of each value of the grid.
+
+    Values are checked by themselves. Raises SceneError.
+    """
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):
         if key.startswith(point_keys.PREFIX):  # a value of a scene file, which the scene validates
@@ -295,7 +309,7 @@ def check_point(point: Point) -> None:
 
 
 def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
-    """Every (key, value) that a grid holds; an empty list is refused by gaspart.reproduction.points."""
+    """Yield every (key, value) that a grid holds; points refuse an empty list."""
     if isinstance(block, list):
         for part in block:
             yield from _grid_values(part)
@@ -306,8 +320,11 @@ def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
 
 
 def explained(error: SceneError, config: dict, module: bool) -> SceneError:
-    """An error of a config; what lacks all keys is explained. config: the merged one; module: whether the
-    Snakefile of another workflow uses this one as a module."""
+    """Return an error of a config, with an explanation if all keys are missing.
+
+    `config` is the merged one; `module` is True if the Snakefile of another workflow uses this one as a
+    module.
+    """
     if error.rule != "is required" or Path("config/config.yaml").exists() or (module and config):
         return error
     if module:
@@ -321,9 +338,10 @@ def explained(error: SceneError, config: dict, module: bool) -> SceneError:
 
 
 def judge_config(path: Path) -> list[Check]:
-    """Every point of every grid, and every figure. Raises SceneError for a config that cannot be run.
+    """Check every point of every grid, and every figure.
 
-    A config next to `config.yaml` is merged over it, as in the workflow.
+    A config next to `config.yaml` is merged over it, as in the workflow. Raises SceneError for a config that
+    cannot be run.
     """
     from gaspart.inspection.checks import Check  # .5 s, which planning does not need
 

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 
 def predict(path: str) -> list[str]:
-    """Lines with the core-hours of each experiment of a config, and of all, on this machine.
+    """Predict the core-hours of each experiment of a config, and of all, on this machine, in lines.
 
-    A config beside `config.yaml` is merged over that, as in the workflow. Raises SceneError.
+    A config next to `config.yaml` is merged over that, as in the workflow. Raises SceneError.
     """
     lines, total, unknown = [], 0.0, []
     with checked(path) as (_, planned):
@@ -48,8 +48,10 @@ def predict(path: str) -> list[str]:
 
 
 def _seconds(point: Point) -> float | None:
-    """Processor time of a point's simulations, from the theoretical number of contacts; None where it is
-    unknown."""
+    """Predict the CPU time of a point's simulations from the theoretical number of contacts.
+
+    None where the number is unknown.
+    """
     if point.job != "simulate":
         return None
     gas = point.scene.gas
@@ -73,7 +75,7 @@ def _seconds(point: Point) -> float | None:
 
 
 def _speed(gas: Gas, engine: str, precision: str) -> float:
-    """Relative speed at the nearest power of ten of the number of particles, so that few sizes are timed."""
+    """Return the relative speed at the nearest power of ten of particles; so few sizes are timed."""
     return speed.factor(gas.dimension, engine, precision, 10 ** round(math.log10(max(gas.count, 10))))
 
 
@@ -90,7 +92,10 @@ _COLUMNS = ("figure", "cpu_seconds", "shared_seconds", "claim", "verdict", "requ
 
 @dataclass(frozen=True)
 class Need:
-    """A claim; required, reached: uncertainties; multiple: of the measurement, which would just decide it."""
+    """Claim with its uncertainties, `required` and `reached`.
+
+    `multiple` is the multiple of the measurement that would just decide it.
+    """
 
     claim: str
     verdict: str
@@ -101,8 +106,12 @@ class Need:
 
 @dataclass(frozen=True)
 class Budget:
-    """A figure; seconds: processor time of its points, its numbers and its picture; shared: of points that
-    other figures show as well; needs: its claims that runs decide, the most demanding first."""
+    """Budget of a figure.
+
+    seconds : CPU time of its points, its numbers and its picture.
+    shared : CPU time of points that other figures show as well.
+    needs : its claims that runs decide, the most demanding first.
+    """
 
     figure: str
     seconds: float
@@ -116,14 +125,14 @@ class Budget:
 
     @property
     def sufficient(self) -> float:
-        """The multiple of the figure's runs at which all claims that are decided just would be; 0 without."""
+        """Multiple of the figure's runs at which all decided claims just would be; 0 without."""
         return max((need.multiple for need in self.conclusive), default=0.0)
 
 
 def budgets(path: str | Path) -> list[Budget]:
-    """The budget of each figure of a config of which the workflow has made all, the dearest figure first.
+    """Return the budget of each figure of a finished config, the most expensive figure first.
 
-    Raises SceneError for an invalid config, and if a figure or a time is not there.
+    Raises SceneError for an invalid config, and if a figure or a time is missing.
     """
     import xarray as xr
 
@@ -149,8 +158,10 @@ def budgets(path: str | Path) -> list[Budget]:
 
 
 def lines(path: str | Path, target: str | Path | None = None) -> list[str]:
-    """The lines that `gaspart budget` prints of a config; raises as `budgets` does. target: a CSV file, to
-    which they are written instead, a line for each claim."""
+    """Return the lines of `gaspart budget` for a config; raise as `budgets` does.
+
+    If `target` is a CSV file, they are written there instead, a line for each claim.
+    """
     found = budgets(path)
     if target is not None:
         _write(found, target)
@@ -194,7 +205,7 @@ def point_seconds(results: Path, point: tuple[str, str]) -> float:
 
 
 def _made(results: Path, figure: str) -> float:
-    """Return the processor time of the jobs that make a figure of its points: numbers, verdicts, picture."""
+    """Return the CPU time of the jobs that make numbers, verdicts and picture of a figure."""
     jobs = (job_time.used(results, rule, figure) for rule in ("measure", "judge", "draw"))
     return sum(used.seconds for used in jobs if used)
 

@@ -1,6 +1,6 @@
-"""A process that has loaded the modules of all jobs, and makes each job as a copy of itself by fork.
+"""Process that has loaded the modules of all jobs, and makes each job as a copy by fork.
 
-A job of the workflow needs 0.5 to 3 s of processor time to load its modules, a copy 0.1 s. On one machine the
+A job of the workflow needs 0.5 to 3 s of CPU time to load its modules, a copy 0.1 s. On one machine the
 workflow starts the server. On a cluster, and where processes cannot be copied, jobs start by themselves.
 
 `workflow/scripts/_client.py` stands for the job: it sends the server its arguments, folder, environment and
@@ -49,9 +49,9 @@ _MOST = 1 << 16
 
 
 def start(python: str, client: Path) -> str:
-    """Start the server; returns the command, for a shell, that runs a script in a copy of it.
+    """Start the server, and return the shell command that runs a script in a copy of it.
 
-    python: the command of the interpreter, as a shell reads it; it runs scripts where there is no server.
+    `python` is the command of the interpreter, as a shell reads it; it runs scripts where there is no server.
     """
     if sys.platform != "linux":
         return python
@@ -79,7 +79,10 @@ def _search_path() -> list[str]:
 
 
 def serve(listener: socket.socket, path: Path) -> None:
-    """Make a copy of this process for each request, until the standard input is closed and all have ended."""
+    """Make a copy of this process for each request.
+
+    It ends when the standard input is closed and all copies have ended.
+    """
     dispositions = {number: signal.getsignal(number) for number in SIGNALS}
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)  # copies take them, and the process that started this one

@@ -1,7 +1,7 @@
-"""Processor time and memory of a job of the workflow, as the last line of its log.
+"""CPU time and memory of a job of the workflow, as the last line of its log.
 
-Snakemake samples the processor time of a job now and then, and not at its end: of 736 s it recorded 607 s. A
-job that a server runs it does not see at all. So each job asks the operating system when its work is done.
+Snakemake samples the CPU time of a job now and then, and not at its end: of 736 s it recorded 607 s. A job
+that a server runs it does not see at all. So each job asks the operating system when its work is done.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _LINE = re.compile(r"^processor time: (\d+\.\d+) s, memory: (\d+\.\d+|nan) MB$",
 
 
 class Used(NamedTuple):
-    """Processor time of a job with its children, in s, and its largest memory, in MB; nan where unknown."""
+    """CPU time of a job with its children, in s, and its largest memory, in MB; nan if unknown."""
 
     seconds: float
     memory: float
@@ -31,7 +31,8 @@ def stated() -> str:
 def used(results: Path, rule: str, *names: str) -> Used | None:
     """Return what the log of a job states; None if it states nothing.
 
-    results: the folder of the logs' folder; names: the wildcards of the rule, as folders and file of the log.
+    `results` is the folder of the logs' folder; `names` are the wildcards of the rule, as folders and file of
+    the log.
     """
     log = (results / "logs").joinpath(rule, *names)
     try:

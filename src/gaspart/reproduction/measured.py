@@ -32,8 +32,10 @@ Value = tuple[int, str, Row, Estimate]
 
 
 def measured(folder: Path) -> Iterator[dict[str, object]]:
-    """The rows of the table, from the files <figure>.nc of a folder, in units of the diameter, the mass and
-    k_B T. Raises OSError for a file that is missing."""
+    """Yield the rows of the table, from the files <figure>.nc of a folder.
+
+    Units are the diameter, the mass and k_B T. Raises OSError for a file that is missing.
+    """
     for figure in ("virial_discs", "virial_spheres", "msd_spheres", "viscosity", "conductivity"):
         with xr.open_dataset(folder / f"{figure}.nc") as dataset:
             for dimension, quantity, row, value in _values(figure, dataset.load()):
@@ -50,7 +52,7 @@ def measured(folder: Path) -> Iterator[dict[str, object]]:
 
 
 def _decimals(value: Estimate) -> int:
-    """Those of two digits of the error."""
+    """Return the number of decimals that gives the error two digits."""
     return max(0, 1 - math.floor(math.log10(value.error)))
 
 

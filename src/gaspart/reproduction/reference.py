@@ -55,7 +55,7 @@ def pages() -> dict[str, str]:
 
 
 def _scene_keys() -> list[str]:
-    """The keys of a scene file, then those of each mapping in it."""
+    """Describe the keys of a scene file, then the keys of each mapping in it."""
     scene = scene_schema()
     parts = [_KEYS, "## Scene file\n", _table(scene["properties"])]
     for name, part in _parts(scene):
@@ -64,7 +64,7 @@ def _scene_keys() -> list[str]:
 
 
 def _experiment_keys() -> list[str]:
-    """The keys of a config but for those of figures."""
+    """Describe the keys of a config without those for figures."""
     parts = [_KEYS, "## Config\n", _table(_outline(schema()["properties"]))]
     for title, table in {
         "Experiment": _outline(config_keys.EXPERIMENT),
@@ -82,7 +82,7 @@ def _experiment_keys() -> list[str]:
 
 
 def _figure_keys() -> list[str]:
-    """The settings of figures: of those with a name of one's own, then of each of gaspart's."""
+    """Describe the settings of figures: of those with other names, then of gaspart's."""
     parts = [_KEYS]
     for kind, settings in registry.kinds().items():
         claims = settings["claims"]["items"]["properties"]
@@ -99,7 +99,7 @@ def _features() -> list[str]:
 
 
 def _models() -> str:
-    """Which engine models which feature of a scene."""
+    """Describe the features of a scene that each engine models."""
     rows = [f"| feature | {' | '.join(ENGINES)} |", f"| --- |{' --- |' * len(ENGINES)}"]
     for name, feature in FEATURES.items():
         marks = ("yes" if name in engine.models else "" for engine in ENGINES.values())
@@ -112,7 +112,7 @@ def _models() -> str:
 
 
 def _observables() -> list[str]:
-    """Each named observable, as it is declared."""
+    """Return each named observable, as it is declared."""
     heads = (
         "name",
         "also",
@@ -147,7 +147,7 @@ def _observables() -> list[str]:
 
 
 def _excluded() -> str:
-    """Which features exclude each other in any scene."""
+    """Describe the features that exclude each other in any scene."""
     rows = ["| feature | excludes | why |", "| --- | --- | --- |"]
     for (one, other), why in EXCLUDED.items():
         rows.append(f"| {FEATURES[one].meaning} | {FEATURES[other].meaning} | {why} |")
@@ -155,7 +155,7 @@ def _excluded() -> str:
 
 
 def _parts(scene: Kind) -> list[tuple[str, Kind]]:
-    """The mappings inside a scene file, each with its title."""
+    """Return the mappings inside a scene file, each with its title."""
     titled: dict[str, Kind] = {}
     queue = list(scene["properties"].values())
     while queue:
@@ -168,7 +168,7 @@ def _parts(scene: Kind) -> list[tuple[str, Kind]]:
 
 
 def _outline(table: dict[str, Kind]) -> dict[str, Kind]:
-    """A table of keys without those inside their mappings, which have tables of their own."""
+    """Return a table of keys without those inside their mappings, which have tables of their own."""
     return {name: kind.stating(properties={}) for name, kind in table.items()}
 
 
@@ -185,7 +185,7 @@ def _default(value: Any) -> str:
 
 
 def in_words(kind: Kind) -> str:
-    """The kind of a value in words: `number > 0 and ≤ 0.1, or list of 2 to 3`."""
+    """Describe the kind of a value in words: `number > 0 and ≤ 0.1, or list of 2 to 3`."""
     if "title" in kind:
         return kind["title"]
     if "const" in kind:
@@ -200,7 +200,7 @@ def in_words(kind: Kind) -> str:
 
 
 def _typed(kind: Kind, name: str) -> str:
-    """One of the types of a kind, with the rules for it."""
+    """Describe one of the types of a kind, with the rules for it."""
     word = _TYPES.get(name, name)
     if name in ("number", "integer"):
         rules = [f"{sign}{kind[end]:.10g}" for end, sign in _ENDS.items() if end in kind]
@@ -221,8 +221,11 @@ def _typed(kind: Kind, name: str) -> str:
 
 @dataclass(frozen=True)
 class _Page:
-    """A page of the reference: its title, what it is about, as the index repeats it, more of that, and the
-    function that gives its parts."""
+    """Page of the reference.
+
+    It has its title, its subject, as the index repeats it, more of that, and the function that gives its
+    parts.
+    """
 
     title: str
     about: str

@@ -25,8 +25,11 @@ _PACKING_FRACTION = 1e-3  # packing fraction
 
 
 def relaxation(dimension: int, count: int, collisions: float, seed: int) -> np.ndarray:
-    """(rows, 4) of `COLUMNS`, until so many collisions of a particle: 2 N_coll / N, <v^4> / <v^2>^2, the part
-    of the particles without a collision so far, and <v> over the root-mean-square speed."""
+    """Simulate the relaxation of speeds, and return rows of `COLUMNS`, (rows, 4).
+
+    They are 2 N_coll / N, <v^4> / <v^2>^2, the fraction of the particles without a collision so far, and <v>
+    over the root-mean-square speed, until `collisions` collisions of a particle.
+    """
     unit = np.pi / (4.0 if dimension == 2 else 6.0)
     side = (count * unit / _PACKING_FRACTION) ** (1.0 / dimension)
     kind = Species(count, 0.5, speed=1.0)

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     pass
 
 EXPERIMENT = "points"
-"""The folder of the trajectories within that of a sweep; with each point's name it makes the seeds."""
+"""Folder of the trajectories within the folder of a sweep; with each point's name it makes the seeds."""
 _SAMPLES = 128
 _KEPT = ("radius", "packing_fraction", "count", "side")
 """The extents of a gas in the order in which they keep their values where others vary."""
@@ -159,7 +159,7 @@ def sweep(
 
 @dataclass(frozen=True)
 class _Plan:
-    """Points of a sweep, and the reasons why some cannot be run, by the names of the points."""
+    """Points of a sweep, and reasons why some cannot be run, by the names of the points."""
 
     points: list[Point]
     failures: dict[str, str]
@@ -383,7 +383,7 @@ def _require_measurable(names: list[str], points: list[Point]) -> None:
 
 
 def _row(point: Point, names: list[str], part: bool, failure: str) -> Measured:
-    """Return a row of the table: the results of a point, or the reason of its failure."""
+    """Return the row of a point: its results, or the reason of its failure."""
     if failure:
         return Measured({}, [], failure)
     found, refused = measured(point, names, part)

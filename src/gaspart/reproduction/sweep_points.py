@@ -30,9 +30,12 @@ from gaspart.workers import in_processes, require_processes
 def make_all(
     points: Sequence[Point], workers: int, overwrite: bool, finished: Callable[[Point, str], None]
 ) -> None:
-    """Make the trajectories of all points; finished(point, reason) is called for each, with the reason why it
-    could not be made, or "". Those whose trajectories exist come first: a conflict is then found before
-    anything is run. Raises SceneError for files that cannot be written or are of another sweep."""
+    """Make the trajectories of all points, and call finished(point, reason) for each.
+
+    The reason states why it could not be made, or is "". Points whose trajectories exist come first: a
+    conflict is then found before anything is run. Raises SceneError for files that cannot be written or are
+    of another sweep.
+    """
     ordered = sorted(points, key=lambda point: not Path(point.path).exists())
     if workers == 1:
         for point in ordered:
@@ -47,8 +50,10 @@ def make_all(
 
 
 def make(point: Point, overwrite: bool) -> str:
-    """Make the trajectories of a point, or check that those in its folder are these; returns the reason why
-    it could not be done, or "". Raises SceneError for files; see `make_all`."""
+    """Make the trajectories of a point, or check those in its folder.
+
+    Returns the reason why it could not be done, or "". Raises SceneError for files; see `make_all`.
+    """
     folder = Path(point.path)
     try:
         wanted = recipes(**point.arguments)
@@ -89,8 +94,10 @@ _SAME_FOR_ALL = (
 
 
 def axes_of(over: object) -> dict[str, list]:
-    """The values of each key that varies, as Python's own numbers, words and lists; a single value counts as
-    a list of one. Raises SceneError."""
+    """Return the values of each key that varies, as Python's own numbers, words and lists.
+
+    A single value counts as a list of one. Raises SceneError.
+    """
     if not isinstance(over, Mapping):
         rule = "must be a mapping from each key that varies to its values, such as {'count': [50, 100]}"
         raise SceneError("over", over, rule)
@@ -109,7 +116,7 @@ def axes_of(over: object) -> dict[str, list]:
 
 
 def names_of(observables: object, axes: Mapping[str, list]) -> list[str]:
-    """The observables, each once; a single name counts as a list of one. Raises SceneError."""
+    """Return the observables, each once; a single name counts as a list of one; raise SceneError."""
     given = [observables] if isinstance(observables, str) else observables
     if not isinstance(given, Iterable) or isinstance(given, bytes | Mapping):
         raise SceneError("observables", observables, "must be the names of observables")
@@ -122,7 +129,7 @@ def names_of(observables: object, axes: Mapping[str, list]) -> list[str]:
 
 
 def _values(where: str, given: Any) -> list:
-    """The values of a key. Raises SceneError for too many, or an iterator that fails."""
+    """Return the values of a key; raise SceneError for too many, or an iterator that fails."""
     plain = _plain(given)
     if isinstance(plain, str | bytes | Mapping) or not isinstance(plain, Iterable):
         return [plain]
@@ -138,7 +145,7 @@ def _values(where: str, given: Any) -> list:
 
 
 def _plain(value: Any) -> Any:
-    """A value with the numbers and arrays of numpy, and of what converts to these, as Python's."""
+    """Convert numbers and arrays of numpy, and convertible objects, to Python's own."""
     if hasattr(value, "__array__"):
         value = np.asarray(value).tolist()
     if isinstance(value, Mapping):

@@ -84,7 +84,7 @@ class SweepTable(ByFace):
 
 
 def _known(key: str, given: str | None, known: list[str]) -> str:
-    """A name of the table, by default the first. Raises SceneError."""
+    """Return a name of the table, by default the first; raise SceneError."""
     if not known:
         raise SceneError(key, given, "there is nothing to be drawn: the sweep has one point")
     if given is not None and given not in known:
@@ -93,7 +93,7 @@ def _known(key: str, given: str | None, known: list[str]) -> str:
 
 
 def _preferred(values: xr.DataArray) -> list[str]:
-    """The dimensions of an observable, those first that make the best axis."""
+    """Return the dimensions of an observable, those first that make the best axis."""
     dims = [str(dim) for dim in values.dims]
     numbers = [dim for dim in dims if _is_number(values, dim)]
     curves = [dim for dim in numbers if dim.startswith(f"{values.name}_")]
@@ -106,7 +106,7 @@ def _is_number(values: xr.DataArray, dim: str) -> bool:
 
 
 def _label(table: xr.Dataset, chosen: dict[str, int]) -> str:
-    """The label of a curve: what distinguishes it from others."""
+    """Return the label of a curve: what distinguishes it from others."""
     words = []
     for dim, number in chosen.items():
         if table.sizes[dim] > 1:
@@ -116,7 +116,10 @@ def _label(table: xr.Dataset, chosen: dict[str, int]) -> str:
 
 
 def _draw_curve(axis: Axes, curve: xr.Dataset, name: str, along: str, label: str) -> None:
-    """One curve, with theory as a line of its colour; of places that are words, as crosses."""
+    """Draw a curve, with theory as a line of its colour.
+
+    If positions are words, it is drawn as crosses.
+    """
     values, error = np.broadcast_arrays(curve[name].values, curve[f"{name}_error"].values)
     places: Any = np.arange(values.size)
     for at in (f"{along}_places", along):
@@ -140,9 +143,9 @@ _PARTS = ("", "_error", "_theory")
 
 @dataclass(frozen=True)
 class Measured:
-    """The observables of one point, each of all its replicas, and the duration of each replica.
+    """Observables of one point, each of all its replicas, and the duration of each replica.
 
-    An observable that was not measured is not there; failure: the reason, "" if there is none.
+    An observable that was not measured is missing; `failure` is the reason, or "".
     """
 
     observables: dict[str, list[Observable]]
@@ -151,8 +154,10 @@ class Measured:
 
 
 def measured(point: Point, names: Sequence[str], part: bool) -> tuple[Measured, dict[str, SceneError]]:
-    """Observables of a point, by name, of its frames after the equilibration, or, with `part`, after the
-    first quarter of each run; and the error of each that cannot be measured."""
+    """Measure observables of a point, by name, and return the error of each that fails.
+
+    Frames count after the equilibration, or, with `part`, after the first quarter of each run.
+    """
     start = None if part else point.schedule.equilibration
     found: dict[str, list[Observable]] = {name: [] for name in names}
     durations: list[float] = []
@@ -174,8 +179,11 @@ def measured(point: Point, names: Sequence[str], part: bool) -> tuple[Measured, 
 def table(
     rows: list[Measured], names: Sequence[str], axes: Mapping[str, list], run: Mapping[str, Any]
 ) -> SweepTable:
-    """The Dataset of a sweep; rows: in the order of the product of the values of `axes`; run: scene, engine
-    and seed, which its attributes state."""
+    """Return the Dataset of a sweep.
+
+    rows : in the order of the product of the values of `axes`.
+    run : scene, engine and seed, which its attributes state.
+    """
     data = xr.Dataset(
         coords={key: [_coordinate(value) for value in values] for key, values in axes.items()},
         attrs=_attributes(**run),
@@ -198,7 +206,7 @@ def table(
 
 
 def _of_other_form(points: Sequence[list[Observable] | None]) -> list[int]:
-    """The numbers of the points whose observable has other dimensions than that of the first one."""
+    """Return the numbers of the points whose observable has other dimensions than the first one's."""
     known = [(number, replicas[0]) for number, replicas in enumerate(points) if replicas]
     return [number for number, one in known if one.estimate.dims != known[0][1].estimate.dims]
 
@@ -208,15 +216,17 @@ def _attributes(scene: Scene, engine: Engine, seed: int) -> dict[str, Any]:
 
 
 def _coordinate(value: Any) -> Any:
-    """A value as a coordinate: of a list, its text."""
+    """Return a value as a coordinate: of a list, its text."""
     return value if isinstance(value, (int, float, str)) else str(value)
 
 
 def _variables(
     name: str, points: Sequence[list[Observable] | None], axes: Mapping[str, list]
 ) -> dict[str, xr.DataArray]:
-    """An observable of all points and, where they differ, the places of its curve, as arrays over `axes`.
-    None: it is not known at a point."""
+    """Return an observable of all points as arrays over `axes`, and its coordinates if they differ.
+
+    An observable that is unknown at a point has the value None there.
+    """
     known = [replicas for replicas in points if replicas]
     if not known:
         nothing = xr.DataArray(_stacked(points, axes), dims=tuple(axes))
@@ -246,9 +256,12 @@ def _variables(
 
 
 def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
-    """The mean of independent runs, or another part: its standard uncertainty (_error), theory (_theory) and
-    the uncertainty of that (_theory_error), None where there is no theory. Runs that end when they are
-    accurate may have curves of different lengths, of which the common part is taken."""
+    """Average independent runs, or compute another part of the mean.
+
+    The part is its standard uncertainty (_error), theory (_theory) or the uncertainty of theory
+    (_theory_error), None without a theory. Runs that end when they are accurate may have curves of different
+    lengths, of which the common part is taken.
+    """
     quantity = replicas[0].attrs["quantity"]
     if part.startswith("_theory") and any(one.theory is None for one in replicas):
         return None
@@ -261,7 +274,7 @@ def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
 
 
 def _stacked(each: Sequence[Any], axes: Mapping[str, list]) -> np.ndarray:
-    """The arrays of all points, of which some may be shorter or missing (None), as one; the rest is nan."""
+    """Join the arrays of all points, some shorter or missing (None), to one; the rest is nan."""
     known = [np.asarray(one) for one in each if one is not None]
     inner = tuple(np.max([one.shape for one in known], axis=0).astype(int)) if known else ()
     numbers = all(one.dtype.kind in "fiu" for one in known)

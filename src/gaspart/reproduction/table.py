@@ -1,4 +1,4 @@
-"""The numbers of a figure as a table: a row for each point, whose columns are numbers, words or estimates.
+"""Table of a figure's numbers: a row for each point, with numbers, words or estimates as columns.
 
 `table` makes the data set of a measurement from the columns of each point, `Table` reads it, for claims and
 pictures, and `each` states one claim about every row.
@@ -44,8 +44,11 @@ class _Columns:
 
 
 class Row(_Columns):
-    """One row of a table: its columns as single numbers or words, single estimates, or arrays over the inner
-    dimensions; `"{count:.0f} discs".format_map(row)` is a text about it."""
+    """Row of a table.
+
+    Its columns are single numbers or words, single estimates, or arrays over the inner dimensions;
+    `"{count:.0f} discs".format_map(row)` is a text about it.
+    """
 
     def __init__(self, dataset: xr.Dataset) -> None:
         self.dataset = dataset
@@ -55,13 +58,13 @@ class Row(_Columns):
 
 
 class Table(_Columns):
-    """The rows of a data set along its dimension `over`; none if it has no such dimension.
+    """Rows of a data set along its dimension `over`; none if it has no such dimension.
 
     A column is an attribute: `table.Z` is an Estimate of all rows if there is a Z_error like it, else an
-    array (rows, ...); what is not over rows is as the data set has it, attributes too. `table[condition]` has
-    the rows for which the condition (rows,) holds, or those of a slice or of a list of numbers; `table[0]` is
-    a Row, and so is what it is iterated over. A table without rows is false. Raises AttributeError for what
-    is no column.
+    array (rows, ...); other variables are as in the data set, attributes too. `table[condition]` has the rows
+    for which the condition (rows,) holds, or the rows of a slice or of a list of numbers; `table[0]` is a
+    Row, and so is what it is iterated over. A table without rows is false. Raises AttributeError for what is
+    no column.
     """
 
     def __init__(self, dataset: xr.Dataset, over: str) -> None:
@@ -69,7 +72,10 @@ class Table(_Columns):
 
     @classmethod
     def prefixed(cls, dataset: xr.Dataset, over: str) -> Table:
-        """The rows along `over` of the variables that begin with its name; see the function `prefixed`."""
+        """Return the rows along `over` of the variables that begin with its name.
+
+        See the function `prefixed`.
+        """
         start = f"{over}_"
         names = {name: str(name).removeprefix(start) for name in dataset if str(name).startswith(start)}
         return cls(dataset[list(names)].rename(names), over)
@@ -86,8 +92,10 @@ class Table(_Columns):
         return (self[n] for n in range(len(self)))
 
     def by(self, *keys: str | np.ndarray) -> Iterator[tuple[Any, ...]]:
-        """(value of each key, ..., the rows that have these) by ascending values. keys: names of columns, or
-        arrays (rows,)."""
+        """Yield (value of each key, ..., the rows with these values) by ascending values.
+
+        Keys are names of columns, or arrays (rows,).
+        """
         if not self:
             return
         columns = [np.asarray(getattr(self, key) if isinstance(key, str) else key) for key in keys]
@@ -96,12 +104,12 @@ class Table(_Columns):
             yield *values, self[np.all(same, axis=0)]
 
     def sorted_by(self, *names: str) -> Table:
-        """The rows by ascending values of these columns; those of equal values keep their order."""
+        """Sort the rows by ascending values of these columns; equal values keep their order."""
         part = self.dataset.sortby(list(names)) if self else self.dataset
         return Table(part, self._over)
 
     def assign(self, **columns: Any) -> Table:
-        """The table with further columns, each (rows,), or one value for all rows."""
+        """Return the table with further columns, each (rows,), or one value for all rows."""
         filled = {
             name: (self._over, values if np.ndim(values) else [values] * len(self))
             for name, values in _spread(columns).items()
@@ -118,12 +126,16 @@ def table(
     units: Mapping[str, str] | None = None,
     of: Sequence[Any] | None = None,
 ) -> xr.Dataset:
-    """Return a data set with a row for each point: row(point, *rest) gives its columns by name.
+    """Return a data set with a row for each point: row(point, *rest) gives its columns.
 
     An Estimate under `name` gives the variables `name`, `name`_error and `name`_freedom, a pair of a value
-    and its error the first two. inner, units: see `from_rows`. If rows are made of points of a grid, as by
-    `made_of`, `over`_made_of has their experiments and names, a line for each. of: what each row is made of,
-    where `points` do not tell.
+    and its error the first two.
+
+    inner, units : see `from_rows`.
+    of : points of each row, where `points` do not tell.
+
+    If rows are made of points of a grid, as by `made_of`, `over`_made_of has their experiments and names, a
+    line for each.
     """
     rows = [_spread(row(point, *rest)) for point in points]
     named = ["\n".join(made_of(one)) for one in (points if of is None else of)]
@@ -132,7 +144,10 @@ def table(
 
 
 def made_of(value: Any) -> list[str]:
-    """Return experiment/name of each point of a grid in a value: a point, or lists and mappings of points."""
+    """Return experiment/name of each point of a grid in a value.
+
+    The value is a point, or lists and mappings of points.
+    """
     if hasattr(value, "experiment") and hasattr(value, "name"):
         return [f"{value.experiment}/{value.name}"]
     inner = value.values() if isinstance(value, Mapping) else value
@@ -140,11 +155,13 @@ def made_of(value: Any) -> list[str]:
 
 
 def each(rows: Table, claim: str, form: Callable[..., Claim] = Claim, **stated: Any) -> list[Claim]:
-    """A claim about each row.
+    """Return a claim about each row.
 
-    form: what makes it, as `Claim.at_most`; stated: its arguments. Texts may name columns, as "Z at
-    {packing_fraction:.2g}". Lists, arrays and estimates of arrays have one element for each row; ValueError
-    if they do not.
+    form : function that makes it, such as `Claim.at_most`.
+    stated : its arguments.
+
+    Texts may name columns, as "Z at {packing_fraction:.2g}". Lists, arrays and estimates of arrays have one
+    element for each row; ValueError if they do not.
     """
     made = []
     for n, row in enumerate(rows):
@@ -169,7 +186,7 @@ def _plain(value: Any) -> Any:
 
 
 def _spread(row: Mapping[str, Any]) -> dict[str, Any]:
-    """The variables of a row; see `table`."""
+    """Return the variables of a row; see `table`."""
     spread: dict[str, Any] = {}
     for name, value in row.items():
         spread |= entries({name: value}) if isinstance(value, (Estimate, tuple)) else {name: value}
@@ -177,8 +194,10 @@ def _spread(row: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def prefixed(**tables: xr.Dataset) -> xr.Dataset:
-    """Tables with different rows in one data set, by the names of their dimensions: the column `volume` along
-    `path` is the variable `path_volume`."""
+    """Merge tables with different rows to one data set, by the names of their dimensions.
+
+    The column `volume` along `path` is the variable `path_volume`.
+    """
     renamed = (part.rename({name: f"{over}_{name}" for name in part}) for over, part in tables.items())
     return xr.merge(renamed, join="outer", compat="no_conflicts")
 
@@ -189,12 +208,14 @@ def from_rows(
     inner: Inner = (),
     units: Mapping[str, str] | None = None,
 ) -> xr.Dataset:
-    """One variable over the dimension `over` for each key of the rows.
+    """Return a variable over the dimension `over` for each key of the rows.
 
-    inner: the further dimensions of arrays, the same for all of them, or by key. Arrays that are shorter than
-    the longest are filled up with NaN, and so is what a row does not have. units: by key, "1" for others; by
-    default none are stated. A key with the suffix _error has the dimensions and the unit of the one without,
-    one with _freedom the dimensions.
+    inner : further dimensions of arrays, the same for all of them, or by key.
+    units : by key, "1" for others; by default none are stated.
+
+    Arrays that are shorter than the longest are filled up with NaN, and so are missing entries of a row. A
+    key with the suffix _error has the dimensions and the unit of the one without, one with _freedom the
+    dimensions.
     """
     columns = {}
     for name in dict.fromkeys(name for row in rows for name in row):
@@ -208,10 +229,12 @@ def from_rows(
 
 
 def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | None = None) -> dict[str, Any]:
-    """The entries of a row for numbers with uncertainties: `name`, `name`_error, and `name`_freedom.
+    """Return the entries of a row for numbers with uncertainties.
 
-    numbers: by name, each an Estimate, or a value and its error, numbers or arrays. freedom: the degrees of
-    freedom of the latter; without it they have no such entry.
+    The entries are `name`, `name`_error, and `name`_freedom.
+
+    numbers : by name, each an Estimate, or a value and its error, numbers or arrays.
+    freedom : degrees of freedom of the latter; without it they have no such entry.
     """
     row: dict[str, Any] = {}
     for name, number in numbers.items():
@@ -225,7 +248,10 @@ def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | No
 
 
 def _stacked(arrays: list[np.ndarray]) -> np.ndarray:
-    """Arrays of one number of dimensions along a new first one; NaN alone stands for an empty array."""
+    """Join arrays of one number of dimensions along a new first one.
+
+    NaN alone stands for an empty array.
+    """
     shape = max((array.shape for array in arrays), key=len)
     if all(array.shape == shape for array in arrays):
         return np.stack(arrays)

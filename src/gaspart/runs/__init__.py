@@ -1,1 +1,1 @@
-"""Runs as users ask for them: of a duration, or until they are accurate, alone or as replicas."""
+"""Runs on request: of a duration, or until they are accurate, alone or as replicas."""

@@ -1,4 +1,4 @@
-"""End of a run without a duration: the accuracy of its observables, and accuracies that no run can reach.
+"""End of a run without a duration: accuracies of its observables, and limits of accuracy.
 
 The rule by which it ends is in `gaspart.accuracy.reached`.
 """
@@ -31,7 +31,7 @@ class Accuracy(Requirement):
     Parameters
     ----------
     observable : str
-        Name of the observable, as of `gaspart measure`: Z, D, collision_rate, pressure, heat_flux,
+        Name of the observable, as in `gaspart measure`: Z, D, collision_rate, pressure, heat_flux,
         wall_shear, density, velocity or shear_viscosity.
     accuracy : float, [1]
         Requested relative standard error; the error includes correlations. For an observable with components
@@ -79,7 +79,7 @@ class Accuracy(Requirement):
 
     @classmethod
     def named(cls, name: str, accuracy: float, start: float | None = None) -> Self:
-        """Return the accuracy of an observable with a name as on the command line and in a config.
+        """Return the accuracy of an observable, named as on the command line and in a config.
 
         Parameters
         ----------

@@ -24,7 +24,6 @@ from gaspart.runs.ending import (
 )
 from gaspart.runs.replicas import record_together, resume_together
 from gaspart.scene.scene import Scene, require_scene
-from gaspart.state.optional_tallies import OptionalTally, impulse_tallies, pair_impulse_tallies
 from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
@@ -35,6 +34,7 @@ from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.recording import Progress
 from gaspart.trajectory.replicas import found, in_replicas, replica_paths
 from gaspart.trajectory.run import WriteOptions
+from gaspart.trajectory.run_options import recipe_fields
 from gaspart.trajectory.until import Until
 
 
@@ -159,12 +159,17 @@ def run(
     """
     engine = _engine_of(scene, engine)
     wanted = _request(duration, sample_interval, until, at_most)
-    displacements |= _needs_paths(wanted, scene, engine, follow, correlations, initial)
+    needs_paths = _needs_paths(wanted, scene, engine, follow, correlations, initial)
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    settings = scene, engine, seed, duration, sample_interval, displacements, follow, correlations, wanted
-    tallies = *_tallies(impulses, wanted, scene, engine), *pair_impulse_tallies(pair_impulses)
-    recipe = Recipe(*settings, pairs, _start(initial, scene, path, replicas), tallies, keep=keep)
+    if impulses is None and wanted is not None:
+        impulses = _useful_impulses(wanted, scene, engine)
+    tallies = {"impulses": impulses, "pair_impulses": pair_impulses}
+    recipe = Recipe(
+        scene, engine, seed, duration, sample_interval, displacements or needs_paths,
+        correlations=correlations, until=wanted, initial=_start(initial, scene, path, replicas),
+        **recipe_fields({"follow": follow, "keep": keep, "pairs": pairs, **tallies}),
+    )  # fmt: skip
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return _record(_in_replicas(recipe, replicas), _required(path), options, examined)
 
@@ -178,16 +183,12 @@ def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
     return chosen(engine)
 
 
-def _tallies(
-    impulses: str | None, wanted: Until | None, scene: Scene, engine: Engine
-) -> tuple[OptionalTally, ...]:
-    """Return the requested optional tallies, or else tallies that make requested accuracies cheaper."""
-    if impulses is not None or wanted is None:
-        return impulse_tallies(impulses)
+def _useful_impulses(wanted: Until, scene: Scene, engine: Engine) -> str | None:
+    """Return the tally of impulses that makes requested accuracies cheaper; None without one."""
     from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
 
     each = (Target(scene, asked.observable, asked.face).tallies(engine) for asked in wanted.accuracies)
-    return next(filter(None, each), ())
+    return next((tally.to_text() for tallies in each for tally in tallies), None)
 
 
 def _in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
@@ -240,7 +241,7 @@ def _start(
 ) -> State | None:
     """Return the initial state of a run; of a file, its last state.
 
-    Raises SceneError if that file is one of the files at `path`, by whatever name: it would be lost.
+    Raises SceneError if that file is one of the files at `path`, by any name: it would be lost.
     """
     paths = replica_paths(_required(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
     if not isinstance(initial, str | Path):

@@ -1,1 +1,1 @@
-"""The simulated system: container, species, walls, faces, contact law; validated once, no numerics."""
+"""Simulated system: container, species, walls, faces, collision law; validated once, no numerics."""

@@ -1,12 +1,12 @@
-r"""Accessible volume and areas: where centres of particles of a radius can be.
+"""Accessible volume and areas: the points that centres of particles of a radius can reach.
 
 A centre can be at a point if a particle there overlaps no wall of the container, no interior wall and no
-fixed particle; other particles that move do not count, nor whether a way leads there. A body is a ball, a
-segment or a rectangle, grown by the radius of the particle: it is convex, and covers one interval of a
-line. On a face of a container of two dimensions the accessible length is that of the line without these
+fixed particle; other moving particles do not count, nor whether a path leads there. A body is a ball, a
+segment or a rectangle, grown by the radius of the particle: it is convex, and covers one interval of a line.
+On a face of a container of two dimensions the accessible length is the length of the line without these
 intervals, exactly. Otherwise it is exact where no body reaches, and where bodies overlap neither each other
-nor the border; elsewhere it is the mean over `SETS` sets of `LINES` parallel lines, shifted at random,
-whose error is the scatter of the sets.
+nor the border; elsewhere it is the mean over `SETS` sets of `LINES` parallel lines, shifted at random, whose
+error is the scatter of the sets.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ SPREADING = {1: 1.61803398874989484820, 2: 1.32471795724474602596}
 
 
 class Measure(NamedTuple):
-    """A volume or an area, and the estimated error of its quadrature, 0 where it is exact."""
+    """Volume or area, and the estimated error of its quadrature, 0 if exact."""
 
     value: float
     error: float
 
 
 class Ball(NamedTuple):
-    """A ball: centre (d,) and radius."""
+    """Ball with centre (d,) and radius."""
 
     centre: np.ndarray
     radius: float
@@ -52,8 +52,10 @@ class Ball(NamedTuple):
         return Ball(self.centre + shift, self.radius)
 
     def interval(self, points: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the ends of the interval covered on each line along an axis through points (M, d), inf and
-        -inf if there is none."""
+        """Return the ends of the covered interval on each line through points (M, d).
+
+        The lines are along an axis. Without an interval the ends are inf and -inf.
+        """
         away = np.delete(points - self.centre, axis, axis=1)
         square = self.radius**2 - (away**2).sum(axis=1)
         half = np.sqrt(np.maximum(square, 0.0))
@@ -65,8 +67,10 @@ class Ball(NamedTuple):
 
 
 class Slab(NamedTuple):
-    """Points within a distance of the inside of a segment or a rectangle: from `start` (d,), its orthogonal
-    `edges` (K, d). Its rim is not included."""
+    """Points within a distance of the inside of a segment or a rectangle.
+
+    It is given by `start` (d,) and its orthogonal `edges` (K, d). Its rim is not included.
+    """
 
     start: np.ndarray
     edges: np.ndarray
@@ -85,8 +89,11 @@ class Slab(NamedTuple):
         return Slab(self.start + shift, self.edges, self.distance)
 
     def interval(self, points: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the same as `Ball.interval`: p + t e is inside where 0 <= its part along each edge <= 1
-        and its distance from their span, a quadratic function of t, is small enough."""
+        """Return the ends of the covered intervals like `Ball.interval`.
+
+        A point p + t e is inside if its component along each edge is from 0 to 1 and its distance from the
+        span of the edges, a quadratic function of t, is small enough.
+        """
         from_start = np.array(points)
         from_start[:, axis] = 0.0
         from_start -= self.start
@@ -122,7 +129,7 @@ def _between(part: np.ndarray, slope: float, low: float, high: float) -> tuple[n
 
 
 class Body(NamedTuple):
-    """A fixed particle or an interior wall, grown: the parts whose union it is, and its volume."""
+    """Fixed particle or interior wall, grown: its parts, whose union it is, and its volume."""
 
     parts: list[Ball | Slab]
     volume: float
@@ -158,10 +165,12 @@ def grown_wall(wall: Wall | Plate, radius: float) -> Body:
 
 
 class Accessible:
-    """Accessible volume and areas of a scene, for each radius found once.
+    """Accessible volume and areas of a scene, computed once for each radius.
 
-    fixed: positions (F, d) and radii (F,) of its fixed particles, by default those of its single particles.
-    Raises SceneError for fixed species without them: their positions are known of a run, not of a scene.
+    Making it raises SceneError for fixed species without `fixed`: their positions are known in a run, not in
+    a scene.
+
+    fixed : positions (F, d) and radii (F,) of the fixed particles, by default of the single particles
     """
 
     def __init__(self, scene: Scene, fixed: tuple[np.ndarray, np.ndarray] | None = None) -> None:
@@ -176,13 +185,14 @@ class Accessible:
         self._found: dict[tuple[float, int | None], Measure] = {}
 
     def volume(self, radius: float) -> Measure:
-        """Return the volume, in two dimensions the area, that centres of particles of a radius can
-        reach."""
+        """Return the volume (2D: area) that centres of particles of a radius can reach."""
         return self._measure(radius, None)
 
     def areas(self, radii: np.ndarray) -> np.ndarray:
-        """Return the area of each face, in two dimensions the length, that centres of particles of radii (K,)
-        can reach, (K, 2d)."""
+        """Return the areas (2D: lengths) of faces that centres of particles can reach.
+
+        radii : (K,); the result has the shape (K, 2d)
+        """
         scene, faces = self._scene, range(2 * self._scene.dimension)
         if self._fixed or scene.walls:
             return np.array([[self._measure(r, face).value for face in faces] for r in radii.tolist()])
@@ -192,7 +202,7 @@ class Accessible:
         return np.repeat(np.stack(across, axis=1), 2, axis=1)
 
     def _bodies(self, radius: float) -> list[Body]:
-        """All bodies grown by a radius, and their periodic images."""
+        """Return all bodies grown by a radius, and their periodic images."""
         bodies = [
             Body([Ball(place, size + radius)], ball_volume(len(place), size + radius))
             for place, size in self._fixed
@@ -215,7 +225,7 @@ class Accessible:
         return self._found[radius, face]
 
     def _computed(self, radius: float, face: int | None) -> Measure:
-        """The volume, or the area of a face."""
+        """Compute the volume, or the area of a face."""
         lower, upper = (np.array(ends) for ends in self._scene.reach(radius))
         axes = [axis for axis in range(len(lower)) if face is None or axis != face // 2]
         if face is not None:  # the plane in which centres touch it
@@ -240,8 +250,10 @@ def _meets(body: Body, lower: np.ndarray, upper: np.ndarray) -> bool:
 
 
 def _apart(bodies: list[Body], lower: np.ndarray, upper: np.ndarray, scene: Scene) -> float | None:
-    """Return the volume of bodies that are inside a box, but for images beyond periodic faces, and apart
-    from each other; None for others."""
+    """Return the total volume of bodies that are inside a box and apart from each other.
+
+    Images beyond periodic faces may be outside. Returns None for other bodies.
+    """
     periodic, lengths = np.array(scene.container.periodic), np.array(scene.container.lengths)
     total = 0.0
     for n, body in enumerate(bodies):
@@ -258,8 +270,12 @@ def _apart(bodies: list[Body], lower: np.ndarray, upper: np.ndarray, scene: Scen
 def free_fraction(
     parts: list[Ball | Slab], axes: list[int], ends: tuple[np.ndarray, np.ndarray], shift: int
 ) -> float:
-    """Return the mean free fraction of `LINES` lines along the first of some axes, evenly spread over the
-    others and shifted at random, with this number of the shift."""
+    """Return the mean free fraction of `LINES` lines along the first of some axes.
+
+    The lines are evenly spread over the other axes and shifted at random.
+
+    shift : number of the random shift
+    """
     (lower, upper), across = ends, axes[1:]
     steps = SPREADING[len(across)] ** -np.arange(1.0, len(across) + 1)
     random = np.random.default_rng(shift).random(len(across))
@@ -272,8 +288,10 @@ def free_fraction(
 def free_lengths(
     parts: list[Ball | Slab], points: np.ndarray, axis: int, ends: tuple[np.ndarray, np.ndarray]
 ) -> np.ndarray:
-    """Return the length of each line along an axis through points (M, d), between ends (d,), that parts of
-    bodies leave."""
+    """Return the free length of each line along an axis through points (M, d).
+
+    The lines are between ends (d,); the free length excludes the parts of bodies.
+    """
     low, high = (float(end[axis]) for end in ends)
     lines, starts, stops = [], [], []
     across = [k for k in range(points.shape[1]) if k != axis]

@@ -1,4 +1,4 @@
-"""The simulated volume and its boundary conditions."""
+"""Simulated volume and its boundary conditions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A uniform force along a periodic axis, which drives a flow: what must take what it gives."""
+"""Uniform force along a periodic axis, which drives a flow: sinks of its momentum and energy."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ _ENERGY = "inelastic contacts, or faces or walls at a temperature"
 
 
 def check_driven(scene: Scene) -> None:
-    """Raise SceneError for a force along a periodic axis if nothing takes the momentum or the energy that it
-    gives."""
+    """Raise SceneError for a force along a periodic axis without a sink.
+
+    Both the momentum and the energy of the force need a sink.
+    """
     for axis in scene.driven_axes:
         for taken, what, by in (
             (_takes_momentum(scene, axis), "momentum", _MOMENTUM),
@@ -33,7 +35,10 @@ def check_driven(scene: Scene) -> None:
 
 
 def _takes_momentum(scene: Scene, axis: int) -> bool:
-    """Whether anything acts on particles along a periodic axis but they themselves."""
+    """Return True if particles exchange momentum along a periodic axis with other objects.
+
+    Other objects are fixed particles, walls and faces.
+    """
     if scene.has_fixed:
         return True
     length = scene.container.lengths[axis]
@@ -44,12 +49,15 @@ def _takes_momentum(scene: Scene, axis: int) -> bool:
 
 
 def _takes_energy(scene: Scene) -> bool:
-    """Whether contacts lose energy, or faces at a temperature exchange it."""
+    """Return True if contacts lose energy, or faces at a temperature exchange it."""
     return scene.dissipates or bool(scene.face_temperatures)
 
 
 def _spans(wall: Wall | Plate, axis: int, length: float) -> bool:
-    """Whether a wall lies along an axis from end to end, so that no particle meets it across."""
+    """Return True if a wall spans an axis from end to end.
+
+    No particle then hits it along the axis.
+    """
     first, *others = wall.corners.values()
     edges = ([b - a for a, b in zip(first, corner, strict=True)] for corner in others)
     return any(abs(edge[axis]) >= length and not any(edge[:axis] + edge[axis + 1 :]) for edge in edges)

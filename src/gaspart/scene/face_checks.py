@@ -1,4 +1,4 @@
-"""Which faces a scene cannot have: rules that concern more than the face itself."""
+"""Checks of faces that concern more than the face itself."""
 
 from __future__ import annotations
 
@@ -89,7 +89,10 @@ def _check_ramp(scene: Scene, name: str, surface: Thermal, axis: int) -> None:
 
 
 def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
-    """Raise SceneError for a second piston, and one so light that its load moves it too fast, or so fast."""
+    """Raise SceneError for a second piston, and for a piston that its load moves too fast.
+
+    The same holds for a prescribed speed that is too high.
+    """
     if len(scene.pistons) > 1:
         raise SceneError("faces", [FACES[n] for n, _ in scene.pistons], "only one may be a piston")
     size(f"faces.{name}.mass", surface.acceleration(scene, FACES.index(name) // 2))
@@ -97,8 +100,11 @@ def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
 
 
 def piston_end(scene: Scene, place: float | None = None) -> float:
-    """The time at which a piston at a stated speed leaves the particles no room in closest packing; without
-    one it is infinite. place: where it is along its axis at time 0, by default at its side.
+    """Return the time at which a piston of prescribed speed compresses the particles to closest packing.
+
+    Without such a piston it is infinite.
+
+    place : position along its axis at time 0, by default at its side
     """
     for number, face in scene.pistons:
         if face.speed is not None:
@@ -141,7 +147,7 @@ def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
 
 
 def _is_upright(wall: Wall | Plate, axis: int) -> bool:
-    """Whether a wall stands upright on a face across this axis."""
+    """Return True if a wall is perpendicular to the faces across an axis."""
     corners = list(wall.corners.values())
     edges = [[b - a for a, b in zip(corners[0], corner, strict=True)] for corner in corners[1:3]]
     upright = [not any(edge[:axis] + edge[axis + 1 :]) for edge in edges]

@@ -38,7 +38,7 @@ FACES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 COMPONENTS = ("all", "normal")
 WAVEFORMS = ("sine", "sawtooth")
 FLOW, GRADIENT = 0, 1
-"""The axes of the flow of a sheared gas and of its gradient."""
+"""Axes of the flow of a sheared gas and of its gradient."""
 
 
 FACE_KINDS: dict[str, type[Surface]] = {}
@@ -47,7 +47,7 @@ FACE_KINDS: dict[str, type[Surface]] = {}
 
 @dataclass(frozen=True)
 class Surface:
-    """A kind of face; a class derived from it is registered by its `kind`.
+    """Kind of face; a class derived from it is registered by its `kind`.
 
     `moves` is True if the face moves by itself. Only the event-driven engine has such faces.
     """
@@ -188,7 +188,9 @@ class Thermal(Surface):
 
     @property
     def rule(self) -> tuple[str, float]:
-        """Name of the effect in the kernels, and the temperature, at the low end if it varies.
+        """Name of the effect in the kernels, and the temperature.
+
+        If the temperature varies, it is the one at the low end.
 
         Examples
         --------
@@ -246,7 +248,7 @@ class Well(Surface):
     width : float, [length]
         Width of the well: largest distance of a particle's surface from the wall inside the well.
     temperature : float, [energy], optional
-        Temperature of the wall behind the well, as of `Thermal`. Default: the wall is hard.
+        Temperature of the wall behind the well, see `Thermal`. Default: the wall is hard.
 
     Raises
     ------
@@ -457,7 +459,7 @@ class Vibrating(Surface):
 class Piston(Surface):
     """A smooth wall of finite mass under an external pressure, or one that moves at a constant speed.
 
-    Particles are smooth and elastic, and nothing else is in the container.
+    Particles are smooth and elastic, and the container has only particles inside.
 
     Parameters
     ----------
@@ -703,7 +705,7 @@ SCHEMA = {
         ]
     },
 }
-"""The JSON schema of the faces of a scene, by name."""
+"""JSON schema of the faces of a scene, by name."""
 
 
 def surface_from_dict(mapping: object, where: str) -> Surface:
@@ -750,7 +752,9 @@ def surface_to_dict(surface: Surface) -> dict:
 
 
 def key_of(face: Any) -> Any:
-    """Return the key of a face that is given by either of its names; other values are unchanged.
+    """Return the key of a face that is given by either of its names.
+
+    Other values are unchanged.
 
     Parameters
     ----------

@@ -1,11 +1,10 @@
-"""Facts of a scene: what follows from the keys of a `Scene`, each with one definition, computed once.
+"""Facts of a scene: properties that follow from the keys of a `Scene`.
 
-Observables, theory, tallies, refusals and advice ask these properties by name and compute none of them. A
-`Scene` has them as its own attributes:
+Each has one definition and is computed once. Observables, theory, tallies, rejections and advice use these
+properties by name and compute none of them. A `Scene` has them as its own attributes:
 
 - faces: `numbered_faces`, `faces_of(kind)`, `pistons`, `sliding_faces`, `partial_faces`, `ramps`,
-  `thermal_numbers`,
-  `drawing_numbers`, `face_temperatures`;
+  `thermal_numbers`, `drawing_numbers`, `face_temperatures`;
 - container: `dimension`, `is_periodic`, `walled_axes`, `image_axes`;
 - matter: `kinds`, `moving_kinds`, `count`, `moving_count`, `capacity`, `has_fixed`, `has_obstacles`, `alike`,
   `has_unequal_areas`, `largest_radius`, `smallest_radius`, `largest_moving_radius`, `number_density`,
@@ -90,8 +89,10 @@ class Facts:
 
     @cached_property
     def image_axes(self) -> tuple[bool, ...]:
-        """(d,) True for axes with images of the particles at the container's length, always: the periodic
-        axes, without the gradient of a sheared gas, whose images slide."""
+        """True for axes with images of the particles at the container's length, always; shape (d,).
+
+        These are the periodic axes, without the gradient of a sheared gas, whose images slide.
+        """
         sheared = self.shear_rate is not None
         return tuple(
             around and not (sheared and axis == GRADIENT)
@@ -148,7 +149,10 @@ class Facts:
 
     @cached_property
     def face_temperatures(self) -> frozenset[float]:
-        """Temperatures of all faces and interior walls that have one; of a face that varies, both ends."""
+        """Temperatures of all thermal faces and interior walls.
+
+        If the temperature of a face varies, both ends count.
+        """
         warm = {wall.temperature for wall in self.walls if wall.temperature is not None}
         return frozenset(warm.union(*(face.temperatures for face in self.faces.values())))
 
@@ -159,7 +163,7 @@ class Facts:
 
     @cached_property
     def moving_kinds(self) -> tuple[Species | Particle, ...]:
-        """Those of `kinds` that have particles and are not fixed."""
+        """Kinds that have particles and are not fixed."""
         return tuple(kind for kind in self.kinds if kind.count and not kind.fixed)
 
     @cached_property
@@ -179,8 +183,7 @@ class Facts:
 
     @cached_property
     def has_obstacles(self) -> bool:
-        """True if anything but particles that move is inside the container: fixed particles or interior
-        walls."""
+        """True if fixed particles or interior walls are inside the container."""
         return self.has_fixed or bool(self.walls)
 
     @cached_property
@@ -212,7 +215,7 @@ class Facts:
 
     @cached_property
     def largest_moving_radius(self) -> float:
-        """Largest radius of any particle that is not fixed (0 if there is none)."""
+        """Largest radius of any particle that is not fixed, 0 without such particles."""
         return max((kind.largest_radius for kind in self.moving_kinds), default=0.0)
 
     @cached_property
@@ -231,8 +234,11 @@ class Facts:
 
     @cached_property
     def gas(self: Scene) -> Gas | None:  # type: ignore[misc]
-        """The plain gas that the scene is, at the temperature of its initial velocities; None if it is
-        empty, has particles of several sizes or masses, or has any feature but `centres_to_walls`."""
+        """Plain gas that is equivalent to the scene, at the temperature of its initial velocities.
+
+        It is absent (None) if the scene is empty, has particles of several sizes or masses, or has any
+        feature but `centres_to_walls`.
+        """
         kinds = [kind for kind in self.kinds if kind.count]
         if not kinds or not self.alike or self.features - {"centres_to_walls"}:
             return None
@@ -245,16 +251,22 @@ class Facts:
 
     @cached_property
     def mixture(self: Scene) -> Mixture | None:  # type: ignore[misc]
-        """The mixture of plain gases that the scene is; None if it is empty, or has any feature but
-        `polydispersity` and `centres_to_walls`."""
+        """Mixture of plain gases that is equivalent to the scene.
+
+        It is absent (None) if the scene is empty, or has any feature but `polydispersity` and
+        `centres_to_walls`.
+        """
         if self.features - {"polydispersity", "centres_to_walls"}:
             return None
         return mixture_of(self)
 
     @cached_property
     def contact_duration(self) -> float:
-        """Time after a contact of a particle within which its next contacts are elastic (`Restitution`), 0
-        if all dissipate. By default 0.01 sqrt(d/g), d the smallest diameter, if there is gravity g."""
+        """Time after a contact of a particle within which its next contacts are elastic.
+
+        It is 0 if all contacts dissipate (`Restitution`). By default it is 0.01 sqrt(d/g), d the smallest
+        diameter, if there is gravity g.
+        """
         law = self.restitution
         if law is None or not law.dissipative:
             return 0.0
@@ -276,8 +288,10 @@ class Facts:
 
     @cached_property
     def vibrates(self) -> bool:
-        """True if any particle may store energy in a vibration: a fixed one, or one that sticks to a
-        face."""
+        """True if any particle may store energy in a vibration.
+
+        Such a particle is fixed, or sticks to a face.
+        """
         return bool(self.faces_of(Sticky)) or any(kind.vibrates for kind in self.kinds)
 
     @cached_property
@@ -292,7 +306,7 @@ class Facts:
 
     @cached_property
     def moving_wall(self) -> MovingWall | None:
-        """The interior wall that moves, None without one."""
+        """Interior wall that moves, or None."""
         return moving_wall_among(self.walls, self.container.lengths)
 
     @cached_property
@@ -324,14 +338,17 @@ class Facts:
 
     @cached_property
     def drags_faces(self) -> bool:
-        """True if the momentum along faces is tallied, of faces that draw velocities along themselves:
-        where one of them slides, or a force drives the gas along them."""
+        """True if the momentum along faces is tallied.
+
+        It is tallied for faces that draw velocities along themselves, if one of them slides, or a force
+        drives the gas along them.
+        """
         rubs = any(not face.smooth for face in self.faces.values())
         return bool(self.sliding_faces) or (rubs and bool(self.driven_axes))
 
     @cached_property
     def frame_velocity(self) -> tuple[float, ...]:
-        """(d,) mean velocity of the faces that drag particles along: 0 unless a face slides."""
+        """Mean velocity (d,) of the faces that drag particles along, 0 unless a face slides."""
         dragging = [face.velocity for _, face in self.faces_of(Thermal) if not face.smooth]
         if not any(any(velocity or ()) for velocity in dragging):
             return (0.0,) * self.dimension
@@ -340,31 +357,41 @@ class Facts:
 
     @cached_property
     def flow_changes(self) -> bool:
-        """True if the flow of the gas changes with time: where faces or walls move along their normal, and
-        between open faces."""
+        """True if the flow of the gas changes with time.
+
+        It changes where faces or walls move along their normal, and between open faces.
+        """
         return bool(self.moving_axes) or self.is_open
 
     @cached_property
     def flow_axes(self) -> tuple[int, ...]:
-        """Axes along which the velocity of the gas may vary; none if it moves as a whole only. A wind,
-        which no key states but a run has, is added by `analysis.flow`."""
+        """Axes along which the velocity of the gas may vary.
+
+        If the gas moves only as a whole, no axis is listed. A wind, which no key states but a run has, is
+        added by `analysis.flow`.
+        """
         if self.flow_changes:
             return self.moving_axes or self.open_axes
         across = tuple(sorted({number // 2 for number, _ in self.sliding_faces}))
         return self.resolved_axes(across) if across or self.driven_axes else ()
 
     def resolved_axes(self, across: tuple[int, ...] = ()) -> tuple[int, ...]:
-        """Return the axes along which a steady flow may vary: `across` the faces that drive it, by default
-        all with walls, or the first without any; all axes around obstacles."""
+        """Return the axes along which a steady flow may vary.
+
+        Around obstacles these are all axes; otherwise `across`, the axes of the faces that drive the flow, by
+        default all axes with walls, or the first axis without any.
+        """
         if self.has_obstacles:
             return tuple(range(self.dimension))
         return across or self.walled_axes or (0,)
 
     @cached_property
     def conserved_axes(self) -> tuple[bool, ...]:
-        """(d,) True for axes along which the total momentum is conserved: a periodic axis, if no particle
-        is fixed and nothing but smooth faces or a wall that moves, which act along their normals, is in the
-        container; of a sheared gas the momentum about the flow."""
+        """True for axes along which the total momentum is conserved, shape (d,).
+
+        These are periodic axes, if no particle is fixed and the container has only smooth faces or a moving
+        wall, which act along their normals. In a sheared gas the momentum is relative to the flow.
+        """
         smooth = all(face.smooth for face in self.faces.values())
         rubbed = not self.is_periodic and (self.rough or not smooth)
         obstructed = self.has_fixed or (bool(self.walls) and self.moving_wall is None)

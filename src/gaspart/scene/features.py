@@ -1,7 +1,8 @@
-"""Features of a scene: all but smooth, elastic particles in a hard or periodic container, each by a name.
+"""Features of a scene, each with a name.
 
-`FEATURES` is the table of all features, `EXCLUDED` that of pairs which no scene may have. An engine states
-those that it models (`Engine.models`): what it refuses, and the table in the documentation, follow from it.
+A scene without features has smooth, elastic particles in a hard or periodic container. `FEATURES` is the
+table of all features, `EXCLUDED` the table of pairs which no scene may have. An engine states the features
+that it models (`Engine.models`): its rejections, and the table in the documentation, follow from it.
 """
 
 from __future__ import annotations
@@ -17,8 +18,10 @@ if TYPE_CHECKING:
 
 
 class Feature(NamedTuple):
-    """A feature: the key of a scene that brings it, and value(scene), None where it is absent. A kind of face
-    has a `kind`."""
+    """Feature of a scene: its key, and value(scene), None if it is absent.
+
+    A kind of face has a `kind`.
+    """
 
     meaning: str
     key: str
@@ -26,14 +29,14 @@ class Feature(NamedTuple):
     kind: str | None = None
 
     def refuse(self, scene: Scene, rule: str) -> SceneError:
-        """An error that names the key, and the face, of a scene that has this feature."""
+        """Return an error that names the key, and the face, of a scene with this feature."""
         faces = (name for name, face in scene.faces.items() if face.kind == self.kind)
         key = f"faces.{next(faces)}" if self.kind else self.key
         return SceneError(key, self.value(scene), rule)
 
 
 def _face(kind: str) -> Feature:
-    """A kind of face of the container."""
+    """Return the feature of a kind of face of the container."""
 
     def value(scene: Scene) -> str | None:
         return kind if any(face.kind == kind for face in scene.faces.values()) else None
@@ -42,7 +45,7 @@ def _face(kind: str) -> Feature:
 
 
 def _law(key: str, meaning: str, value: Callable[[Any], Any]) -> Feature:
-    """A property of the law of contacts."""
+    """Return the feature of a property of the collision law."""
 
     def of_scene(scene: Scene) -> Any:
         return value(scene.restitution) if scene.restitution is not None else None

@@ -1,4 +1,4 @@
-"""The plain gas: the scene of which most formulas of kinetic theory speak."""
+"""Plain gas: the scene of most formulas of kinetic theory."""
 
 from __future__ import annotations
 
@@ -14,10 +14,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Gas:
-    """Equal, smooth and elastic particles that only their contacts with each other and hard faces deflect.
+    """Equal, smooth and elastic particles that are deflected only by each other and hard faces.
 
-    dimension: 2 or 3; packing_fraction: volume (area) of the particles over that of the container; count;
-    diameter; temperature: k_B T; mass.
+    Attributes
+    ----------
+    dimension : 2 or 3
+    packing_fraction : volume (area) of the particles divided by the volume of the container
+    count, diameter, mass : of the particles
+    temperature : k_B T
     """
 
     dimension: int
@@ -29,27 +33,30 @@ class Gas:
 
     @property
     def thermal_speed(self) -> float:
-        """sqrt(k_B T / m)."""
+        """Thermal speed sqrt(k_B T / m)."""
         return math.sqrt(self.temperature / self.mass)
 
     @property
     def particle(self) -> dict[str, float]:
-        """diameter, temperature and mass, as keyword arguments of the functions of `gaspart.theory`."""
+        """Diameter, temperature and mass, as keyword arguments of the functions of `gaspart.theory`."""
         return {"diameter": self.diameter, "temperature": self.temperature, "mass": self.mass}
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """The parameters of `particle`, with packing_fraction and dimension."""
+        """Parameters of `particle`, with packing_fraction and dimension."""
         return {"packing_fraction": self.packing_fraction, "dimension": self.dimension, **self.particle}
 
 
 @dataclass(frozen=True)
 class Mixture:
-    """Smooth and elastic particles of any sizes and masses that only their contacts with each other and hard
-    faces deflect.
+    """Smooth, elastic particles of any sizes and masses, deflected only by each other and hard faces.
 
-    dimension: 2 or 3; packing_fraction; counts, diameters and masses of S sizes (S,), those of a polydisperse
-    species one for each particle; temperature: k_B T of the initial velocities.
+    Attributes
+    ----------
+    dimension : 2 or 3
+    packing_fraction : volume (area) of the particles divided by the volume of the container
+    counts, diameters, masses : (S,), of S sizes; each particle of a polydisperse species is a size
+    temperature : k_B T of the initial velocities
     """
 
     dimension: int
@@ -61,12 +68,14 @@ class Mixture:
 
     @property
     def sizes(self) -> tuple[float, int, tuple[float, ...], tuple[int, ...]]:
-        """Packing fraction, dimension, diameters and numbers, as the functions of mixtures in
-        `gaspart.theory` take them."""
+        """Packing fraction, dimension, diameters and numbers for functions in `gaspart.theory`."""
         return self.packing_fraction, self.dimension, self.diameters, self.counts
 
     def thinned(self, most: int) -> Mixture:
-        """This mixture with every k-th size only, at most so many if they are of one species."""
+        """Return the mixture with every k-th size only, at most `most` sizes.
+
+        The limit holds for sizes of one species.
+        """
         step = -(-len(self.counts) // most)
         kept = slice(step // 2, None, step)
         sizes = self.counts[kept], self.diameters[kept], self.masses[kept]
@@ -74,7 +83,7 @@ class Mixture:
 
 
 def mixture_of(scene: Scene) -> Mixture | None:
-    """See `Scene.mixture`."""
+    """Return the mixture of a scene, see `Scene.mixture`."""
     counts, diameters, masses = [], [], []
     kinds = [kind for kind in scene.kinds if kind.count]
     for kind in kinds:
@@ -90,7 +99,7 @@ def mixture_of(scene: Scene) -> Mixture | None:
 
 
 def plain_gas(scene: Scene) -> Gas:
-    """`Scene.gas`. Raises SceneError, with what it has besides, for a scene that is none."""
+    """Return `Scene.gas`, or raise SceneError with the features that it excludes."""
     if scene.gas is not None:
         return scene.gas
     rule = "a gas of equal, smooth and elastic particles alone is needed"
@@ -99,7 +108,7 @@ def plain_gas(scene: Scene) -> Gas:
 
 
 def plain_mixture(scene: Scene) -> Mixture:
-    """`Scene.mixture`. Raises SceneError, with what it has besides, for a scene that is none."""
+    """Return `Scene.mixture`, or raise SceneError with the features that it excludes."""
     if scene.mixture is None:
         rule = "smooth and elastic particles alone are needed"
         _refuse_others(scene, rule, {"polydispersity", "centres_to_walls"})

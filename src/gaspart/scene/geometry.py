@@ -8,5 +8,8 @@ _UNIT_BALL = {2: math.pi, 3: 4.0 / 3.0 * math.pi}
 
 
 def ball_volume(dimension: int, radius: float = 1.0) -> float:
-    """Area of a disc, pi r^2, or volume of a sphere, 4 pi r^3 / 3 (length^dimension)."""
+    """Return the area of a disc or the volume of a sphere.
+
+    These are pi r^2 and 4 pi r^3 / 3.
+    """
     return _UNIT_BALL[dimension] * radius**dimension

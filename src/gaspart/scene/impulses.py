@@ -1,4 +1,4 @@
-"""Scenes in which a density follows from the impulses that particles receive, and how these are summed."""
+"""Scenes whose density follows from the impulses of particles, and the rows of their sums."""
 
 from __future__ import annotations
 
@@ -25,12 +25,14 @@ _DISTURBING = (
 _STEADY = frozenset(("walls", "polydispersity", "centres_to_walls"))
 """Features with which the kinetic energy of flight is still that of the start."""
 FURTHEST = 0.499
-"""The largest distance of a pair, in the shortest side of a periodic container."""
+"""Largest distance of a pair, divided by the shortest side of a periodic container."""
 
 
 def require_impulses(scene: Scene) -> None:
-    """Raise SceneError, with the reason, if the impulses in a scene give no density: where velocities
-    depend on places, as they do but in equilibrium at one temperature."""
+    """Raise SceneError, with the reason, if the impulses in a scene give no density.
+
+    They give none if velocities depend on positions, as they do except in equilibrium at one temperature.
+    """
     if len({particle.mass for particle in scene.particles}) > 1:
         rule = "impulses are summed over all single particles, which must have one mass"
         raise SceneError("particles.mass", len(scene.particles), rule)
@@ -50,7 +52,7 @@ def require_impulses(scene: Scene) -> None:
 
 
 def require_pair_impulses(scene: Scene, furthest: float) -> None:
-    """Raise SceneError, with the reason, if the impulses in a scene give no g(r) up to a distance."""
+    """Raise SceneError, with the reason, if the impulses give no g(r) up to a distance."""
     if not scene.is_periodic:
         raise SceneError("pair_impulses", furthest, "g(r) needs a periodic container")
     diameter, half = 2.0 * scene.largest_radius, FURTHEST * min(scene.container.lengths)
@@ -63,11 +65,13 @@ def require_pair_impulses(scene: Scene, furthest: float) -> None:
 
 
 def shares_energy_evenly(scene: Scene) -> bool:
-    """Whether the kinetic energy of flight is constant, and in equilibrium each direction has its part: of
-    smooth, elastic particles without a potential, that nothing heats."""
+    """Return True if the kinetic energy of flight is constant, and equal for all directions.
+
+    This holds in equilibrium for smooth, elastic particles without a potential or a source of heat.
+    """
     return scene.features <= _STEADY
 
 
 def row_count(scene: Scene) -> int:
-    """In how many rows impulses are summed: one for each species, and one for all single particles."""
+    """Return the number of rows of impulses: one per species, one for all single particles."""
     return len(scene.species) + bool(scene.particles)

@@ -1,5 +1,8 @@
-"""Whether particles fit into a container and beside each other: size limits, the tolerance of given
-positions, the closest packing, and which particles are near a position."""
+"""Limits of sizes and positions: particles that fit into a container and next to each other.
+
+The module has the size limits, the tolerance of given positions, the closest packing, and the search of
+particles near a position.
+"""
 
 from __future__ import annotations
 
@@ -17,19 +20,22 @@ if TYPE_CHECKING:
     from gaspart.scene.species import Particle, Species
 
 _RESOLVED = 1e12  # diameters in the longest side, at most: contacts are then accurate to a thousandth
-_ROOM = 1e-6  # of a radius: the least room of a particle between two walls
+_ROOM = 1e-6  # minimum gap of a particle between two walls, in radii
 _UNITS = 8.0 * 2.0**-52  # some units in the last place, of a number
 _SUM = 1e-12  # relative: rounding of the sum of all volumes
 
 
 def rounding(position: Iterable[float], *lengths: float) -> float:
-    """The tolerance of given positions: by how much particles, and walls, that touch in decimals may overlap
-    in binary numbers. Some units in the last place of the largest of these numbers: 0.6 - 0.5 < 0.1."""
+    """Return the tolerance of given positions.
+
+    Particles and walls that touch in decimals may overlap by this length in binary numbers. It is some units
+    in the last place of the largest of these numbers: 0.6 - 0.5 < 0.1.
+    """
     return _UNITS * max(*map(abs, position), *lengths)
 
 
 def closest_packing(scene: Scene) -> float:
-    """The highest packing fraction that the particles may have: proven for equal ones, 1 for others."""
+    """Return the highest possible packing fraction: proven for equal particles, 1 for others."""
     alike = (
         len({kind.radius for kind in scene.species if kind.count} | {it.radius for it in scene.particles}) < 2
     ) and all(kind.alike for kind in scene.species)
@@ -43,8 +49,11 @@ def check_packing(scene: Scene) -> None:
 
 
 def check_room(container: Container, centres_to_walls: bool, key: str, thing: Particle | Species) -> None:
-    """Raise SceneError, with `key`, if a particle does not fit into the container, cannot move in it though
-    it is not fixed, or is so small that its contacts are lost in rounding."""
+    """Raise SceneError, with `key`, if a particle does not fit into the container.
+
+    The same holds for a particle that cannot move in it though it is not fixed, or that is so small that its
+    contacts are lost in rounding.
+    """
     radius = thing.largest_radius
     shortest, longest = min(container.lengths), max(container.lengths)
     if not centres_to_walls:
@@ -63,8 +72,10 @@ def check_room(container: Container, centres_to_walls: bool, key: str, thing: Pa
 
 
 def check_region(container: Container, key: str, kind: Species) -> None:
-    """Raise SceneError, with `key`, if the region of a species is not a box inside the container that has
-    room for one of its particles."""
+    """Raise SceneError, with `key`, for an invalid region of a species.
+
+    The region must be a box inside the container that is large enough for one of its particles.
+    """
     if kind.region is None:
         return
     lower, upper = (
@@ -80,8 +91,10 @@ def check_region(container: Container, key: str, kind: Species) -> None:
 
 
 class Nearby:
-    """Positions in cells at least `reach` wide, so that those within `reach` of a point are found without a
-    search of all."""
+    """Positions in cells at least `reach` wide, to find near positions without a search of all.
+
+    Near positions are within `reach` of a point.
+    """
 
     def __init__(self, container: Container, reach: float) -> None:
         self._container = container
@@ -97,7 +110,7 @@ class Nearby:
         self._members.setdefault(self._cell(position), []).append(n)
 
     def around(self, position: tuple[float, ...]) -> list[int]:
-        """All numbers within the reach of a position, and some others, in ascending order."""
+        """Return all numbers within the reach of a position, and some others, in ascending order."""
         axes = []
         for at, side, periodic in zip(
             self._cell(position), self._sides, self._container.periodic, strict=True

@@ -1,4 +1,4 @@
-"""A wall across the container that moves: a piston between two gases."""
+"""Moving wall across the container: a piston between two gases."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class MovingWall(NamedTuple):
-    """The axis along which it moves, its place there at time 0, and its mass."""
+    """Axis along which a wall moves, its position there at time 0, and its mass."""
 
     axis: int
     place: float
@@ -21,7 +21,7 @@ class MovingWall(NamedTuple):
 
 
 MOVING_WALL = "walls[0]"
-"""The key of a wall that moves: there is no other beside it."""
+"""Key of a moving wall, which is the only interior wall."""
 
 
 def moving_wall_among(walls: Sequence[Wall | Plate], lengths: tuple[float, ...]) -> MovingWall | None:
@@ -34,7 +34,7 @@ def moving_wall_among(walls: Sequence[Wall | Plate], lengths: tuple[float, ...])
 
 
 def crossed_axis(wall: Wall | Plate, lengths: tuple[float, ...]) -> int:
-    """The axis at right angles to which a wall reaches from side to side of a container, -1 if to none."""
+    """Return the axis perpendicular to a wall that spans a container, or -1."""
     for axis, _ in enumerate(lengths):
         places = [{corner[k] for corner in wall.corners.values()} for k in range(len(lengths))]
         whole = all(places[k] == {0.0, length} for k, length in enumerate(lengths) if k != axis)
@@ -44,7 +44,7 @@ def crossed_axis(wall: Wall | Plate, lengths: tuple[float, ...]) -> int:
 
 
 def check_moving_wall(scene: Scene) -> None:
-    """Raise SceneError for a wall that moves and is not alone, or not across the whole container."""
+    """Raise SceneError for a moving wall with other walls, or not across the whole container."""
     for n, wall in enumerate(scene.walls):
         if wall.mass is None:
             continue

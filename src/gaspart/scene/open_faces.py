@@ -1,5 +1,4 @@
-"""Open faces of the container, through which particles leave and enter: what they need, how many there may
-be."""
+"""Open faces, through which particles leave and enter: requirements and maximum number of particles."""
 
 from __future__ import annotations
 
@@ -19,8 +18,10 @@ _SIGMAS = 10.0  # standard deviations of the number of an ideal gas for which th
 
 
 def check_open_faces(scene: Scene) -> None:
-    """Raise SceneError for a scene with open faces in which it is not defined what enters, or when a particle
-    has left."""
+    """Raise SceneError for a scene in which entering or leaving particles are not defined.
+
+    This concerns scenes with open faces.
+    """
     for number, reservoir in scene.faces_of(Open):
         face = f"faces.{FACES[number]}"
         if not scene.centres_to_walls:
@@ -50,24 +51,31 @@ def refuse_open(scene: Scene, rule: str) -> None:
 
 
 def number_density(scene: Scene, face: Open) -> float:
-    """z: that of the ideal gas that is in equilibrium with a reservoir; 0 of a vacuum."""
+    """Return the number density of the ideal gas in equilibrium with a reservoir.
+
+    It is 0 for a vacuum.
+    """
     return (face.activity or 0.0) / ball_volume(scene.dimension, scene.species[0].radius)
 
 
 def attempt_rate(scene: Scene, number: int, face: Open) -> float:
-    """Number of particles per time that try to enter through an open face, z A (k_B T / 2 pi m)^(1/2)."""
+    """Return the number of particles per time that try to enter through a face.
+
+    The rate through an open face of area A is z A (k_B T / 2 pi m)^(1/2).
+    """
     area = scene.container.volume / scene.container.lengths[number // 2]
     width = math.sqrt((face.temperature or 0.0) / scene.species[0].mass)
     return number_density(scene, face) * area * width / math.sqrt(2.0 * math.pi)
 
 
 def capacity(scene: Scene) -> int:
-    """The number of particles for which there is room: those at the start, and with open faces as many as may
-    come in, 10 standard deviations above the mean.
+    """Return the maximum number of particles.
 
-    Particles that repel one another are fewer than those of an ideal gas at the same activity, whose number
-    has the distribution of Poisson. The pressure inside is that of the strongest reservoir at most, and the
-    gas as cold as the coldest thing. There are never more than fit.
+    It is the number at the start, and with open faces the number that may come in, 10 standard deviations
+    above the mean. Particles that repel one another are fewer than the particles of an ideal gas at the same
+    activity, whose number has the distribution of Poisson. The pressure inside is at most the pressure of the
+    strongest reservoir, and the gas is at least as hot as the coldest face or wall. The number is never
+    higher than the number that fits.
     """
     reservoirs = [face for _, face in scene.faces_of(Open) if face.temperature is not None]
     if not reservoirs:

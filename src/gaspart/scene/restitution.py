@@ -1,4 +1,4 @@
-"""The collision law."""
+"""Collision law."""
 
 from __future__ import annotations
 

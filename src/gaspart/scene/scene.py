@@ -1,7 +1,7 @@
-"""The simulated system: a container and its contents, without any computed result.
+"""Simulated system: a container and its contents, without any computed result.
 
-A `Scene` is immutable and validated once, when it is created. Lengths and times are in the scene's own
-units; masses are relative to the reference species; k_B = 1.
+A `Scene` is immutable and validated once, when it is created. Lengths and times are in the scene's own units;
+masses are relative to the reference species; k_B = 1.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ from gaspart.yaml_text import read_yaml, write_yaml
 THUMBNAIL = (480, 360)
 """Pixels of a picture that a notebook shows for a scene."""
 DRAWN = 20_000
-"""The most particles that such a picture has: those of a scene must be placed before."""
-_ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # not written into a file unless there
+"""Maximum number of particles of such a picture: the particles of a scene must be placed before."""
+_ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # keys that are written to a file only if present
 
 
 @dataclass(frozen=True)
@@ -187,7 +187,7 @@ class Scene(Facts):
             return
 
     def wall_at(self, position: tuple[float, ...], radius: float) -> str | None:
-        """Return the key of an interior wall that a particle overlaps; None if it overlaps no wall.
+        """Return the key of an interior wall that a particle overlaps, or None.
 
         Parameters
         ----------
@@ -225,7 +225,10 @@ class Scene(Facts):
         check_room(self.container, self.centres_to_walls, key, thing)
 
     def _check_particle(self, n: int, particle: Particle, earlier: Nearby) -> None:
-        """Raise SceneError for a particle that is not inside, or overlaps a wall or an earlier particle."""
+        """Raise SceneError for a particle that is outside, or overlaps a wall or another particle.
+
+        Only earlier particles count.
+        """
         where = f"particles[{n}]"
         finite_vector(f"{where}.position", particle.position, self.dimension)
         finite_vector(f"{where}.velocity", particle.velocity, self.dimension)

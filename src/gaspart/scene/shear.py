@@ -1,4 +1,4 @@
-"""The flow of a gas between sheared faces (`faces.LeesEdwards`)."""
+"""Flow of a gas between sheared faces (`faces.LeesEdwards`)."""
 
 from __future__ import annotations
 
@@ -14,12 +14,17 @@ if TYPE_CHECKING:
 
 
 def flow(scene: Scene, positions: np.ndarray) -> np.ndarray:
-    """(..., d) the velocity of the flow at positions (..., d); 0 without sheared faces."""
+    """Return the velocity (..., d) of the flow at positions; 0 without sheared faces."""
     return flow_of_rate(scene.shear_rate, scene.container.lengths[GRADIENT], positions)
 
 
 def flow_of_rate(rate: float | None, height: float, positions: np.ndarray) -> np.ndarray:
-    """(..., d) the same of a shear rate, in a container of this height; 0 if the rate is None."""
+    """Return the velocity (..., d) of a flow of a shear rate at positions.
+
+    It is 0 without a rate.
+
+    height : side of the container along the gradient
+    """
     import numpy as np  # planning a workflow needs the rest of this module, without it
 
     velocities = np.zeros_like(positions, dtype=float)

@@ -18,7 +18,7 @@ MOST_UNIFORM = 1.0 / math.sqrt(3.0)
 """Polydispersity of a uniform distribution that begins at 0."""
 
 _LN2 = 0.6931471805599453
-_TERMS = 16  # of the series of exp, for |x| < 0.35
+_TERMS = 16  # terms of the series of exp, for |x| < 0.35
 # Numerators and denominators of Wichura's algorithm AS 241 (Appl. Stat. 37, 477 (1988)), the highest power
 # first, for the middle, the tails, and far out in these.
 # fmt: off
@@ -44,7 +44,7 @@ _FAR = (
 
 
 def _exp(x: np.ndarray) -> np.ndarray:
-    """e^x, by its series."""
+    """Compute e^x by its series."""
     import numpy as np
 
     power = np.rint(x / _LN2)
@@ -56,7 +56,7 @@ def _exp(x: np.ndarray) -> np.ndarray:
 
 
 def _log(x: np.ndarray) -> np.ndarray:
-    """ln x, by Halley's iteration, which triples the number of correct digits."""
+    """Compute ln x by Halley's iteration, which triples the number of correct digits."""
     import numpy as np
 
     mantissa, exponent = np.frexp(x)
@@ -68,7 +68,10 @@ def _log(x: np.ndarray) -> np.ndarray:
 
 
 def normal_quantile(p: np.ndarray) -> np.ndarray:
-    """The standard normal number below which lies the probability p in (0, 1), by Wichura's AS 241."""
+    """Return the quantile of the standard normal distribution, by Wichura's AS 241.
+
+    p : probability in (0, 1)
+    """
     import numpy as np
 
     def ratio(parts: tuple[tuple[float, ...], tuple[float, ...]], x: np.ndarray) -> np.ndarray:
@@ -83,8 +86,11 @@ def normal_quantile(p: np.ndarray) -> np.ndarray:
 
 @lru_cache(maxsize=16)
 def relative_radii(count: int, polydispersity: float, distribution: str) -> np.ndarray:
-    """(count,) radii over their mean in falling order: the quantiles at (k + 1/2) / count, k = 0, 1 ..., of a
-    distribution of this standard deviation, scaled so that their mean is 1."""
+    """Return the radii (count,) divided by their mean, in falling order.
+
+    They are the quantiles at (k + 1/2) / count, k = 0, 1 ..., of a distribution of this standard deviation,
+    scaled so that their mean is 1.
+    """
     import numpy as np
 
     p = (np.arange(count - 1, -1, -1) + 0.5) / max(count, 1)
@@ -93,7 +99,7 @@ def relative_radii(count: int, polydispersity: float, distribution: str) -> np.n
     else:
         square = polydispersity * polydispersity
         more = 1.0 + square
-        # ln(1 + s^2), also of an s^2 that is lost beside 1
+        # ln(1 + s^2), also for an s^2 that rounding loses in 1 + s^2
         variance = float(_log(np.array(more))) * square / (more - 1.0) if more > 1.0 else square
         found = _exp(math.sqrt(variance) * normal_quantile(p))
     found = found * (count / math.fsum(found)) if count else found

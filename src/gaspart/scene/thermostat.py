@@ -1,4 +1,4 @@
-"""A stochastic thermostat."""
+"""Stochastic thermostat."""
 
 from __future__ import annotations
 

@@ -405,7 +405,7 @@ def deepest_overlap(
     Particles are sorted into classes of sizes within a factor of two, with a tree for each class. So a search
     reaches no farther than its pair of classes may touch.
     """
-    from scipy.spatial import cKDTree  # which few runs need
+    from scipy.spatial import cKDTree  # few runs need it
 
     if not len(positions):
         return 0.0

@@ -176,7 +176,7 @@ def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins
         not displaced yet.
     """
     radii, masses = per_particle(scene, "radius").astype(float), per_particle(scene, "mass").astype(float)
-    shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # of a uniform disc or sphere
+    shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # moment of inertia / (m r^2), uniform density
     inertia = per_particle(scene, "moment_of_inertia").astype(float)  # None becomes nan
     inertia = np.where(np.isnan(inertia), shape * masses * radii**2, inertia)
     groups = [len(scene.species), *range(len(scene.species))]

@@ -198,7 +198,7 @@ RATES = (2.0**-4, 2.0**-7, 2.0**-10)
 """Growth of the largest diameter per thermal speed: the rates that `compressed` tries, in this order."""
 
 _START = {2: 0.3, 3: 0.2}  # packing fraction at which growth begins, within easy reach of insertion
-_SPARE = 2.0**-36  # by which particles are grown larger than wanted, so that rounding leaves no overlap
+_SPARE = 2.0**-36  # relative excess of the grown size, so that rounding leaves no overlap
 _COLLISIONS = 8  # per particle between two resettings of the temperature
 _POSITIONS, _MOTION = 0, 4
 

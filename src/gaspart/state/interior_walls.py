@@ -15,7 +15,7 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.walls import Plate, Wall
 from gaspart.state.boxes import Boxes
 
-_SLACK = 1e-9  # by which neighbourhoods are drawn wider, so that rounding leaves no wall out of a box's list
+_SLACK = 1e-9  # relative extension of neighbourhoods, so that rounding leaves no wall out of a box's list
 
 
 def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:

@@ -1,15 +1,16 @@
 """Tallies that not every run has, see `Tally`: requested tallies, and tallies of some scenes.
 
-A run requests a tally by an instance of its class, which holds its settings. An engine that can make it has
-its name in `Engine.tallies`, and a part (`engines.features.part.TallyPart`) that is found by that name.
+A run requests a tally by an instance of its class, which holds its settings, or by the text of these. An
+engine that can make it has its name in `Engine.tallies`, and a part (`engines.features.part.TallyPart`) that
+is found by that name.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Iterable
-from dataclasses import asdict, dataclass, fields
-from typing import TYPE_CHECKING, ClassVar, TypeVar
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import MISSING, asdict, dataclass, fields
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
@@ -31,9 +32,44 @@ class OptionalTally:
     ----------
     name : str
         Name in messages, in files, and as `only` in the metadata of its fields of `Tally`.
+    meaning, form : str
+        Meaning of the option of a run that requests it, and the form of its text: the settings, in their
+        order, with colons between; "" without such an option.
     """
 
     name: ClassVar[str]
+    meaning: ClassVar[str] = ""
+    form: ClassVar[str] = ""
+
+    @classmethod
+    def from_text(cls, text: str) -> Self:
+        """Make the tally from the text of its option.
+
+        Parameters
+        ----------
+        text : str
+            Text in the `form` of the tally.
+
+        Returns
+        -------
+        OptionalTally
+            Tally.
+
+        Raises
+        ------
+        SceneError
+            If the text is invalid.
+        """
+        readers = {"str": str, "int": int, "float": float}
+        parts, keys = str(text).split(":"), fields(cls)
+        least = sum(item.default is MISSING for item in keys)
+        try:
+            settings = [readers[str(item.type)](part) for item, part in zip(keys, parts, strict=False)]
+        except ValueError:
+            settings = []
+        if len(settings) < max(least, len(parts)):
+            raise SceneError(cls.name, text, f"must be of the form {cls.form}")
+        return cls(*settings)
 
     def check(self, scene: Scene) -> None:
         """Raise SceneError for a scene of which no engine can make the tally.
@@ -55,13 +91,24 @@ class OptionalTally:
         Returns
         -------
         dict of str to int
-            Lengths by the name of the axis.
+            Lengths by the name of the axis. A setting states the length of the axis with its name in the
+            singular.
         """
-        return {}
+        from gaspart.state.tally import Tally  # loads numpy, which planning does not need
+
+        lengths = {key.removesuffix("s"): length for key, length in asdict(self).items()}
+        lengths |= {"axis": scene.dimension, "direction": scene.dimension, "species": row_count(scene)}
+        own = (field.metadata for field in fields(Tally) if field.metadata.get("only") == self.name)
+        return {axis: lengths[axis] for data in own for axis in data.get("along", ()) if axis != "face"}
 
     def to_text(self) -> str:
-        """Return the settings as an option of `gaspart run`; "" without such an option."""
-        return ""
+        """Return the text of its option, the inverse of `from_text`."""
+        return ":".join(map(str, asdict(self).values()))
+
+    @property
+    def option(self) -> str:
+        """Option of `gaspart run` that requests it, with its text."""
+        return f"--{self.name.replace('_', '-')} {self.to_text()}"
 
 
 @dataclass(frozen=True)
@@ -79,21 +126,6 @@ class StressTally(OptionalTally):
             Scene to check.
         """
         require_tallied(scene)
-
-    def axes(self, scene: Scene) -> dict[str, int]:
-        """Return the lengths of both axes of the tensor.
-
-        Parameters
-        ----------
-        scene : Scene
-            Scene of the run.
-
-        Returns
-        -------
-        dict of str to int
-            Lengths by the name of the axis.
-        """
-        return {"axis": scene.dimension, "direction": scene.dimension}
 
 
 @dataclass(frozen=True)
@@ -119,39 +151,16 @@ class ImpulseTally(OptionalTally):
     bins: int
 
     name: ClassVar[str] = "impulses"
+    meaning: ClassVar[str] = (
+        "keep impulses along an axis in so many bins, such as `z:200`: in equilibrium `density` along the "
+        "axis and `pressure` across it are then several times as accurate"
+    )
+    form: ClassVar[str] = "AXIS:BINS"
     most: ClassVar[int] = 100_000
 
     def __post_init__(self) -> None:
         one_of("impulses.axis", self.axis, ("x", "y", "z"))
         count_of("impulses.bins", self.bins, least=2, most=self.most)
-
-    @classmethod
-    def from_text(cls, text: str) -> ImpulseTally:
-        """Make the tally from its axis and number of bins, such as "z:200".
-
-        Parameters
-        ----------
-        text : str
-            Axis and number of bins.
-
-        Returns
-        -------
-        ImpulseTally
-            Tally.
-
-        Raises
-        ------
-        SceneError
-            If the text is invalid.
-        """
-        axis, _, bins = str(text).partition(":")
-        if not bins.isdecimal():
-            raise SceneError("impulses", text, "must be an axis and a number of bins, such as z:200")
-        return cls(axis, int(bins))
-
-    def to_text(self) -> str:
-        """Return the form that `from_text` accepts."""
-        return f"{self.axis}:{self.bins}"
 
     def check(self, scene: Scene) -> None:
         """Raise SceneError unless the scene has the axis and is in equilibrium at one temperature.
@@ -163,21 +172,6 @@ class ImpulseTally(OptionalTally):
         """
         one_of("impulses.axis", self.axis, tuple("xyz"[: scene.dimension]))
         require_impulses(scene)
-
-    def axes(self, scene: Scene) -> dict[str, int]:
-        """Return the numbers of species and bins.
-
-        Parameters
-        ----------
-        scene : Scene
-            Scene of the run.
-
-        Returns
-        -------
-        dict of str to int
-            Lengths by the name of the axis.
-        """
-        return {"species": row_count(scene), "bin": self.bins}
 
 
 @dataclass(frozen=True)
@@ -206,71 +200,26 @@ class PairImpulseTally(OptionalTally):
     share: float = 1.0
 
     name: ClassVar[str] = "pair_impulses"
+    meaning: ClassVar[str] = (
+        "keep impulses of pairs up to a distance in so many shells, at a fraction of contacts (default: 1), "
+        "such as `3:300:0.5`: in equilibrium `rdf` is then more accurate"
+    )
+    form: ClassVar[str] = "DISTANCE:SHELLS[:FRACTION]"
 
     def __post_init__(self) -> None:
         number("pair_impulses.furthest", self.furthest, "must be positive", above=0.0)
         count_of("pair_impulses.shells", self.shells, least=2, most=ImpulseTally.most)
         number("pair_impulses.share", self.share, "must be above 0 and at most 1", above=0.0, most=1.0)
 
-    @classmethod
-    def from_text(cls, text: str) -> PairImpulseTally:
-        """Make the tally from its distance, number of shells and fraction, such as "3:300:0.5".
-
-        Parameters
-        ----------
-        text : str
-            Distance, number of shells and, optionally, fraction of contacts.
-
-        Returns
-        -------
-        PairImpulseTally
-            Tally.
-
-        Raises
-        ------
-        SceneError
-            If the text is invalid.
-        """
-        parts = str(text).split(":")
-        try:
-            furthest, shells = float(parts[0]), int(parts[1])
-            share = float(parts[2]) if parts[2:] else 1.0
-        except (ValueError, IndexError):
-            parts = []
-        if len(parts) not in (2, 3):
-            rule = "must be a distance, a number of shells and a share of contacts, such as 3:300:0.5"
-            raise SceneError("pair_impulses", text, rule)
-        return cls(furthest, shells, share)
-
-    def to_text(self) -> str:
-        """Return the form that `from_text` accepts."""
-        return f"{self.furthest!r}:{self.shells}:{self.share!r}"
-
     def check(self, scene: Scene) -> None:
-        """Raise SceneError unless pair impulses are defined for a scene.
+        """Raise SceneError unless a scene is periodic, in equilibrium at one temperature, and long enough.
 
         Parameters
         ----------
         scene : Scene
-            Scene, which must be periodic, in equilibrium at one temperature, and longer than twice the
-            distance.
+            Scene to check.
         """
         require_pair_impulses(scene, self.furthest)
-
-    def axes(self, scene: Scene) -> dict[str, int]:
-        """Return the number of shells.
-
-        Parameters
-        ----------
-        scene : Scene
-            Scene of the run.
-
-        Returns
-        -------
-        dict of str to int
-            Lengths by the name of the axis.
-        """
-        return {"shell": self.shells}
 
 
 def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int) -> tuple[ImpulseTally, ...]:
@@ -303,85 +252,11 @@ def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int
     return (asked,) if asked.name in tallies and (one_mass or not by_mass) else ()
 
 
-def option_of(tally: OptionalTally) -> list[str]:
-    """Return the option of `gaspart run` that requests a tally.
-
-    Parameters
-    ----------
-    tally : OptionalTally
-        Tally.
-
-    Returns
-    -------
-    list of str
-        Option and its value, or an empty list without such an option.
-    """
-    text = tally.to_text()
-    return [f"--{tally.name.replace('_', '-')}", text] if text else []
-
-
-def impulse_tallies(text: str | None) -> tuple[OptionalTally, ...]:
-    """Return the impulse tally that a text requests.
-
-    Parameters
-    ----------
-    text : str or None
-        Text of `ImpulseTally.from_text`, or None without a tally.
-
-    Returns
-    -------
-    tuple of OptionalTally
-        One tally, or none.
-
-    Raises
-    ------
-    SceneError
-        If the text is invalid.
-    """
-    return () if text is None else (ImpulseTally.from_text(text),)
-
-
-def pair_impulse_tallies(text: str | None) -> tuple[OptionalTally, ...]:
-    """Return the tally of pair impulses that a text requests.
-
-    Parameters
-    ----------
-    text : str or None
-        Text of `PairImpulseTally.from_text`, or None without a tally.
-
-    Returns
-    -------
-    tuple of OptionalTally
-        One tally, or none.
-
-    Raises
-    ------
-    SceneError
-        If the text is invalid.
-    """
-    return () if text is None else (PairImpulseTally.from_text(text),)
-
-
 @dataclass(frozen=True)
 class WallShearTally(OptionalTally):
     """Momentum given to faces along themselves."""
 
     name: ClassVar[str] = "wall_shear"
-
-    def axes(self, scene: Scene) -> dict[str, int]:
-        """Return the number of components of the momentum.
-
-        Parameters
-        ----------
-        scene : Scene
-            Scene of the run.
-
-        Returns
-        -------
-        dict of str to int
-            Lengths by the name of the axis.
-        """
-        return {"axis": scene.dimension}
 
 
 @dataclass(frozen=True)
@@ -407,26 +282,21 @@ class PerAreaTally(OptionalTally):
 
     name: ClassVar[str] = "per_area"
 
-    def axes(self, scene: Scene) -> dict[str, int]:
-        """Return the number of components of the momentum.
-
-        Parameters
-        ----------
-        scene : Scene
-            Scene of the run.
-
-        Returns
-        -------
-        dict of str to int
-            Lengths by the name of the axis.
-        """
-        return {"axis": scene.dimension}
-
 
 ASKED: dict[str, type[OptionalTally]] = {
     tally.name: tally for tally in (StressTally, ImpulseTally, PairImpulseTally)
 }
-"""Tallies that a run can request, by name."""
+"""Tallies that a run can have beside those of its scene, by name."""
+REQUESTED = {name: tally for name, tally in ASKED.items() if tally.form}
+"""Tallies that an option requests by its text, by name."""
+TALLIES: tuple[type[OptionalTally], ...] = (
+    *ASKED.values(),
+    WallShearTally,
+    EntryTally,
+    FixedCollisionTally,
+    PerAreaTally,
+)
+"""All optional tallies."""
 
 
 def tallies_of(scene: Scene) -> tuple[OptionalTally, ...]:
@@ -470,56 +340,58 @@ def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:
     return [field.name for field in fields(Tally) if field.metadata.get("only") in present]
 
 
-def tally_to_dict(tally: OptionalTally) -> dict:
-    """Return the mapping that `tally_from_dict` accepts.
+def tallies_to_json(tallies: Iterable[OptionalTally]) -> str:
+    """Return the attribute `tallies` of a trajectory.
 
     Parameters
     ----------
-    tally : OptionalTally
-        Tally.
+    tallies : iterable of OptionalTally
+        Requested tallies.
 
     Returns
     -------
-    dict
-        Name and settings.
+    str
+        JSON of their names and settings.
     """
-    return {"name": tally.name, **asdict(tally)}
+    return json.dumps([{"name": tally.name, **asdict(tally)} for tally in tallies])
 
 
-def tally_from_dict(mapping: dict) -> OptionalTally:
-    """Return the tally that a mapping describes.
+def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
+    """Return the tallies that an attribute `tallies` states, the inverse of `tallies_to_json`.
 
     Parameters
     ----------
-    mapping : dict
-        {"name": name, setting: value, ...}.
+    text : str
+        JSON of their names and settings.
 
     Returns
     -------
-    OptionalTally
-        Tally.
+    tuple of OptionalTally
+        Tallies.
 
     Raises
     ------
     SceneError
-        If the name is unknown.
+        If a name is unknown.
     TypeError
         If a setting is unknown.
     """
-    settings = dict(mapping)
-    name = settings.pop("name", None)
-    if name not in ASKED:
-        raise SceneError("tallies", name, f"must be one of {', '.join(ASKED)}")
-    return ASKED[name](**settings)
+    tallies = []
+    for settings in json.loads(text):
+        name = settings.pop("name", None)
+        if name not in ASKED:
+            raise SceneError("tallies", name, f"must be one of {', '.join(ASKED)}")
+        tallies.append(ASKED[name](**settings))
+    return tuple(tallies)
 
 
-def stored_tally(stored: str, kind: type[AnyTally]) -> AnyTally | None:
+def stored_tally(attributes: Mapping[str, Any], kind: type[AnyTally]) -> AnyTally | None:
     """Return the tally of a kind among the tallies that a trajectory states.
 
     Parameters
     ----------
-    stored : str
-        Attribute `tallies` of the trajectory (JSON).
+    attributes : mapping of str to object
+        Attributes of the trajectory.
     kind : type
         Class of the tally.
 
@@ -530,10 +402,8 @@ def stored_tally(stored: str, kind: type[AnyTally]) -> AnyTally | None:
 
     Raises
     ------
-    SceneError
-        If a name is unknown.
-    TypeError
-        If a setting is unknown.
+    SceneError, TypeError
+        As `tallies_from_json`.
     """
-    tallies = map(tally_from_dict, json.loads(stored))
+    tallies = tallies_from_json(attributes.get("tallies", "[]"))
     return next((tally for tally in tallies if isinstance(tally, kind)), None)

@@ -235,7 +235,7 @@ class State:
         >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).rotational_energy
         0.25
         """
-        if not self.spins.any():  # those of smooth particles, at a fraction of the cost
+        if not self.spins.any():  # the energies of smooth particles, at a fraction of the cost
             return 0.0
         return 0.5 * float((_finite(self.moments_of_inertia) * (self.spins**2).T).sum())
 
@@ -415,7 +415,7 @@ def _cross(state: State) -> np.ndarray:
 # Velocity of the centre of mass of a gas, about which its fluxes are.
 
 
-_ROUNDED = 2.0**-46  # of the rms speed: a mean velocity that is only rounding
+_ROUNDED = 2.0**-46  # mean velocity, in rms speeds, that is only rounding
 
 
 def drift_of(scene: Scene, state: State) -> np.ndarray:

@@ -111,7 +111,7 @@ class MetalSlab:
         self.velocity[which, 1] = thermal * self.rng.standard_normal(which.size)
 
     def _swap(self, which: np.ndarray) -> None:
-        """Exchange the energy along the normal with one mode of the cell each.
+        """Exchange the energy along the normal of each particle with one mode of the cell.
 
         No mode is taken twice.
         """

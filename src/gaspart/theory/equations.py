@@ -1,7 +1,7 @@
-"""Equations of state by name: compressibility factor Z = P / (rho k_B T) against packing fraction.
+"""Equations of state by name: Z = P / (rho k_B T) against packing fraction.
 
-Every function returns Z with the shape of `packing_fraction`, dimensionless, and raises SceneError, a
-ValueError, outside the stated range. `state` defines the reference equation.
+Every function returns the compressibility factor Z with the shape of `packing_fraction`, dimensionless, and
+raises SceneError, a ValueError, outside the stated range. `state` defines the reference equation.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""The trajectory's file format: AMBER NetCDF, https://ambermd.org/netcdf/nctraj.xhtml, version 1.0.
+"""File format of trajectories: AMBER NetCDF, https://ambermd.org/netcdf/nctraj.xhtml, version 1.0.
 
 A netCDF-3 file is a header, which the netCDF library makes, and then `frames` of equal size. A checksum
 (CRC-32) in the header, of the header without the number of frames, detects damage; other readers ignore it.
@@ -21,6 +21,7 @@ from gaspart.state.optional_tallies import OptionalTally, tallied_fields
 from gaspart.state.tally import Tally
 from gaspart.system import read_at, write_at
 from gaspart.trajectory.correlator import meaning_of
+from gaspart.trajectory.run_options import KEPT
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -30,15 +31,13 @@ NOTE = (
     "Reduced units: lengths and times are in the scene's own units, masses relative to the reference "
     "species, k_B = 1. Picosecond and angstrom stand for these, because readers of AMBER files insist on it."
 )
-KEPT = {"positions": "coordinates", "velocities": "velocities"}
-"""What a frame may keep of each particle alone (`keep`), and its variable."""
 _ALONG = {field.name: field.metadata.get("along", ()) for field in fields(Tally)}
 MAGIC = b"CDF\x02"
-"""The first bytes of a netCDF-3 file of 64-bit offsets."""
+"""First bytes of a netCDF-3 file of 64-bit offsets."""
 FRAME_COUNT_AT = 4
-"""Where a netCDF-3 header keeps the number of frames, as a big-endian uint32."""
+"""Offset of the number of frames in a netCDF-3 header, a big-endian uint32."""
 WORD = 4
-"""Bytes of a checksum, and of all that a netCDF-3 header counts."""
+"""Bytes of a checksum, and of all numbers that count in a netCDF-3 header."""
 _HEAD = 1024  # bytes from the start of a file within which the attributes of `BOOKKEEPING` lie
 _VECTORS = ("atom", "spatial")
 _ORIGIN = "cell_origin"
@@ -53,30 +52,34 @@ _EXTRA: dict[str, tuple[str, tuple[str, ...], dict[str, str]]] = {
     "pair_collisions": (">f8", ("pair",), {"long_name": "collisions of each pair of species so far"}),
     "piston": (">f8", ("motion",), {"long_name": "place along its axis, and velocity, of the piston"}),
 }
-"""The variables that only some files have, as in `Layout`, in their order."""
+"""Variables that only some files have, as in `Layout`, in their order."""
 INITIAL: tuple[str, ...] = tuple(
     f"initial_{name}" for name in ("positions", "velocities", "spins", "piston", "displaced", "vibrations")
 )
-"""The variables of a run whose initial state was given, of all particles of the scene: parts of a State."""
+"""Variables of a run with a given initial state, of all particles of the scene: parts of a State."""
 _OF_INITIAL = ("particle", "component")
 BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
 """Attributes by which a file is checked: sizes of the header and of a frame, and the header's checksum."""
 MOST_FRAMES = 2**31 - 1
 _UNFINISHED = bytes(2 * WORD) + struct.pack(">I", 10)
-"""How a file begins before its first word is written: with that, no frames, and the tag of dimensions."""
+"""First bytes of a file before its first word is written: no frames, and the tag of dimensions."""
 _FIRST_NAME = struct.pack(">I", 5) + b"frame"
-"""The name of the first dimension, which follows the number of dimensions."""
+"""Name of the first dimension, which follows the number of dimensions."""
 
 
 def counters(engine: Engine, tallies: Iterable[OptionalTally] = ()) -> tuple[str, ...]:
-    """Sums since time 0 that a file of this engine has, one variable each; those of other engines alone would
-    be zero. tallies: the optional ones that the run has."""
+    """Return the names of the sums since time 0 that a file of this engine has.
+
+    Each sum is a variable. Sums that only other engines make are left out: they would be zero.
+
+    tallies : optional tallies of the run
+    """
     absent = {name for kind in ENGINES.values() for name in kind.counters} - set(engine.counters)
     return tuple(name for name in tallied_fields(tallies) if name not in {"time", *absent})
 
 
 def cell(scene: Scene, lengths: np.ndarray, piston: np.ndarray | None) -> dict[str, np.ndarray]:
-    """The variables of the cell of a frame: what the container has for particles now, up to a piston.
+    """Return the variables of the cell of a frame, which may end at a piston.
 
     In two dimensions the cell is as high as its longest side. Readers take it for periodic along z as well,
     and some refuse to look farther than half of the smallest side.
@@ -94,17 +97,21 @@ def cell(scene: Scene, lengths: np.ndarray, piston: np.ndarray | None) -> dict[s
 
 
 def face_names(dimension: int, walls: int = 0) -> list[str]:
-    """(2d + walls,) names of faces and interior walls, in the order of the counters."""
+    """Return the names (2d + walls,) of faces and interior walls, in the counters' order."""
     faces = [f"{axis} {end}" for axis in "xyz"[:dimension] for end in ("low", "high")]
     return faces + [f"wall {n}" for n in range(walls)]
 
 
 class Layout:
-    """The variables of one frame, in their order in the file: name -> (type, dimensions, attributes).
+    """Variables of a frame, in their order in the file: name -> (type, dimensions, attributes).
 
-    count: particles in the file; extra: which variables of `_EXTRA` the file has; walls: the number of
-    interior walls; counters: names of those that the file has; sums: of the correlations; axes: the lengths
-    of the axes that not every file has, those of optional tallies, `lag` and `pair`; keep: of `KEPT`.
+    count : number of particles in the file
+    extra : names of the variables of `_EXTRA` that the file has
+    walls : number of interior walls
+    counters : names of the counters of the file
+    sums : names of the sums of the correlations
+    axes : lengths of the axes that not every file has, which are axes of optional tallies, `lag` and `pair`
+    keep : key of `KEPT`
     """
 
     def __init__(
@@ -153,12 +160,12 @@ class Layout:
         self.variables["checksum"] = (">i4", (), {"long_name": meaning})
 
     def shape(self, name: str) -> tuple[int, ...]:
-        """The shape of a variable in one frame."""
+        """Return the shape of a variable in one frame."""
         return tuple(self.sizes[dimension] for dimension in self.variables[name][1])
 
     @property
     def frame(self) -> np.dtype:
-        """One frame as it is in the file; every variable fills complete words, so there is no padding."""
+        """Type of a frame in the file; every variable fills complete words, without padding."""
         return np.dtype([(name, kind, self.shape(name)) for name, (kind, _, _) in self.variables.items()])
 
     def header(
@@ -167,8 +174,11 @@ class Layout:
         particles: Mapping[str, np.ndarray],
         initial: Mapping[str, np.ndarray] | None = None,
     ) -> bytes:
-        """A file of no frames. Its first attributes are those of `BOOKKEEPING`. particles: the radius, mass
-        and type of each; initial: what the particles were given at time 0, in double precision."""
+        """Return a file without frames, whose first attributes are `BOOKKEEPING`.
+
+        particles : radius, mass and type of each particle
+        initial : given properties of the particles at time 0, in double precision
+        """
         bookkeeping = dict(
             zip(BOOKKEEPING, (np.int32(0), np.int32(0), np.float64(self.frame.itemsize)), strict=True)
         )
@@ -212,26 +222,32 @@ class Layout:
 
 
 def _initial_axes(name: str, values: np.ndarray) -> tuple[str, ...]:
-    """The axes of a variable of `INITIAL`."""
+    """Return the axes of a variable of `INITIAL`."""
     return ("motion",) if name == "initial_piston" else _OF_INITIAL[: values.ndim]
 
 
 def _frames_begin(header: bytes) -> int:
-    """Offset of the first variable of a frame, time: the last value before the name of the next one."""
+    """Return the offset of the first variable of a frame, time.
+
+    It is the last value before the name of the next variable.
+    """
     after = b"cell_lengths"
     (begin,) = struct.unpack_from(">Q", header, header.index(struct.pack(">I", len(after)) + after) - 8)
     return int(begin)
 
 
 def _value_at(header: bytes | bytearray, name: str) -> int:
-    """Offset of the value of a numerical attribute: after its name, padded to words, its type and count."""
+    """Return the offset of the value of a numerical attribute.
+
+    The value follows its name, padded to words, its type and count.
+    """
     return header.index(name.encode()) + -(-len(name) // WORD) * WORD + 2 * WORD
 
 
 def stored_header(file: BinaryIO) -> bytes:
-    """The header of a file, with the number of frames set to 0, as `Layout.header` made it.
+    """Return the header of a file with 0 frames, as `Layout.header` made it.
 
-    Raises ValueError, with the rule that is broken, for a damaged file and for one of another program.
+    Raises ValueError, with the violated rule, for a damaged file and for a file of another program.
     """
     file.seek(0)
     head = file.read(_HEAD)
@@ -256,13 +272,13 @@ def stored_header(file: BinaryIO) -> bytes:
 
 
 def frame_bytes(header: bytes) -> int:
-    """The size of a frame."""
+    """Return the size of a frame."""
     (size,) = struct.unpack_from(">d", header, _value_at(header, "frame_bytes"))
     return int(size)
 
 
 def same_header(file: BinaryIO, header: bytes) -> bool:
-    """Whether a file begins with this header, however many frames it counts."""
+    """Return True if a file begins with this header, for any number of frames."""
     after = FRAME_COUNT_AT + WORD
     file.seek(0)
     stored = file.read(len(header))
@@ -270,8 +286,11 @@ def same_header(file: BinaryIO, header: bytes) -> bool:
 
 
 def is_blank(file: BinaryIO) -> bool:
-    """Whether a file is empty, or its header was never finished: the first word is written last. What
-    follows is compared too, since a file of zeros may be anybody's."""
+    """Return True if a file is empty, or its header was never finished.
+
+    The first word of a header is written last. The following bytes are compared too, since a file of zeros
+    may belong to any program.
+    """
     file.seek(0)
     start = file.read(len(_UNFINISHED) + WORD + len(_FIRST_NAME))
     return _UNFINISHED.startswith(start[: len(_UNFINISHED)]) and _FIRST_NAME.startswith(
@@ -279,32 +298,35 @@ def is_blank(file: BinaryIO) -> bool:
     )
 
 
-# The frames of a trajectory file, behind its header.
+# Frames of a trajectory file, behind its header.
 #
-# They are appended as they come, and the number of frames in the header is raised when a frame is
-# complete, so that a file cut short at any moment is a readable one. A checksum (CRC-32) at the end of
-# each frame, which depends on the header and on the frame's place too, detects damage.
+# They are appended during the run, and the number of frames in the header is raised when a frame is complete,
+# so that a file cut short at any moment is readable. A checksum (CRC-32) at the end of each frame, which
+# depends on the header and on the frame's position too, detects damage.
 
 
 _CHUNK = 1 << 24  # bytes that are read at once
 
 
 def frame_count(file: BinaryIO) -> int:
-    """The number of complete frames that a file's header states."""
+    """Return the number of complete frames that a file's header states."""
     file.seek(FRAME_COUNT_AT)
     return struct.unpack(">I", file.read(WORD))[0]
 
 
 def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int) -> bytes:
-    """The last word of a frame: the checksum of what comes before it."""
+    """Return the last word of a frame: the checksum of the bytes before it."""
     start = zlib.crc32(struct.pack(">I", number), header_checksum)
     return struct.pack(">I", zlib.crc32(frame[:-WORD], start))
 
 
 def damaged_frame(file: int, header: bytes, numbers: range) -> int | None:
-    """The first of some frames that is damaged or cut short, None if all are correct; `file`: a descriptor.
+    """Return the first frame that is damaged or cut short; None if all are correct.
 
-    It reads them: a CRC-32 takes about as long as copying them from memory.
+    The frames are read: a CRC-32 takes about as long as copying them from memory.
+
+    file : descriptor
+    numbers : frames to test
     """
     size, header_checksum = frame_bytes(header), zlib.crc32(header)
     at_once = max(1, _CHUNK // size)
@@ -319,14 +341,14 @@ def damaged_frame(file: int, header: bytes, numbers: range) -> int | None:
 
 
 def frames_of(file: BinaryIO, header: bytes, count: int) -> Iterator[memoryview]:
-    """The first frames of an open file, as they are in it."""
+    """Yield the bytes of the first frames of an open file."""
     size = frame_bytes(header)
     for n in range(count):
         yield memoryview(bytearray(read_at(file.fileno(), size, len(header) + n * size)))
 
 
 class CheckedFrames:
-    """Which frames of an open trajectory are known to be undamaged: each is checked once, before use."""
+    """Record of the undamaged frames of an open trajectory: each is checked once, before use."""
 
     def __init__(self, file: BinaryIO, header: bytes, frames: int) -> None:
         self._header, self._checked = header, np.zeros(frames, dtype=bool)
@@ -334,7 +356,7 @@ class CheckedFrames:
         self.close = weakref.finalize(self, os.close, self._file)
 
     def damaged(self, numbers: np.ndarray) -> int | None:
-        """The first of these frames that is damaged; None if there is none. May raise OSError."""
+        """Return the first of these frames that is damaged, or None. May raise OSError."""
         new = np.zeros_like(self._checked)
         new[numbers] = True
         edges = np.flatnonzero(np.diff((new & ~self._checked).astype(np.int8), prepend=0, append=0))
@@ -347,7 +369,7 @@ class CheckedFrames:
 
 
 class Frames:
-    """The frames of an unbuffered open file, of which the first `kept` are kept and the others removed.
+    """Frames of an unbuffered open file; frames after the first `kept` are removed.
 
     With `kept` = 0 the header is written too. Every method may raise OSError.
     """
@@ -375,7 +397,10 @@ class Frames:
         write_at(self._file.fileno(), header[: len(MAGIC)], 0)
 
     def append(self, values: dict[str, np.ndarray | float]) -> None:
-        """Write one frame: a value for every variable of the layout, vectors of 2 or 3 components."""
+        """Write one frame: a value for every variable of the layout.
+
+        Vectors have 2 or 3 components.
+        """
         for name in self._frame.dtype.names[:-1]:
             given = np.asarray(values[name])
             there = self._frame[name]
@@ -384,7 +409,7 @@ class Frames:
         self.append_bytes(self._frame.reshape(1).view(np.uint8).data)
 
     def append_bytes(self, data: memoryview) -> None:
-        """Write one frame as it is in a file, with the checksum that belongs to its header and place."""
+        """Write one frame of a file, with the checksum for its header and position."""
         data[-WORD:] = _frame_checksum(data, self.count, self._header_checksum)
         self._write(data)
         self.count += 1

@@ -1,4 +1,4 @@
-"""A trajectory for xarray, whose frames are checked against their sums before values of them are returned."""
+"""Trajectory for xarray, whose frames are checked against checksums before values are returned."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _EVEN = 1e-9
 
 
 class CheckedStore(NetCDF4DataStore):
-    """The variables of a trajectory. Those of frames are read through the frames' checksums.
+    """Variables of a trajectory; variables of frames are read through the frames' checksums.
 
-    The times are read at once, and only those that are not multiples of `interval` through the checksums:
+    The times are read at once, and only times that are not multiples of `interval` through the checksums:
     otherwise opening a file would read all of it.
     """
 
@@ -41,7 +41,7 @@ class CheckedStore(NetCDF4DataStore):
             raise SceneError("file", str(self._path), damage(damaged))
 
     def open_store_variable(self, name: str, var: netCDF4.Variable) -> xr.Variable:
-        """A variable that is read as it is used."""
+        """Return a variable that is read as it is used."""
         variable = super().open_store_variable(name, var)
         if variable.dims[:1] != ("frame",) or name == "time":
             return variable
@@ -51,7 +51,7 @@ class CheckedStore(NetCDF4DataStore):
 
 
 class _CheckedArray(BackendArray):
-    """A variable of frames, of which any part can be read."""
+    """Variable of frames, of which any part can be read."""
 
     def __init__(self, variable: netCDF4.Variable, store: CheckedStore) -> None:
         self._variable, self._store = variable, store

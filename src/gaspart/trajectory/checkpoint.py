@@ -1,4 +1,4 @@
-"""The float64 state of an unfinished run, in a file that is written completely or not at all."""
+"""File of the float64 state of an unfinished run, written completely or not at all."""
 
 from __future__ import annotations
 
@@ -26,19 +26,25 @@ _COMMENT_LENGTH, _CHECKSUM = struct.Struct("<H"), struct.Struct("<I")  # the end
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """frames: how many frames of the trajectory were complete; arrays: for `Simulation.restore`."""
+    """State of an unfinished run.
+
+    Attributes
+    ----------
+    frames : number of complete frames of the trajectory
+    arrays : arrays for `Simulation.restore`
+    """
 
     frames: int
     arrays: dict[str, np.ndarray]
 
 
 def checkpoint_path(path: Path) -> Path:
-    """Where the float64 state of an unfinished trajectory is."""
+    """Return the path of the float64 state of an unfinished trajectory."""
     return path.with_name(path.name + ".checkpoint.npz")
 
 
 def _is_checkpoint(path: Path) -> bool:
-    """Whether a file was written by `write_checkpoint`, even if it was damaged since."""
+    """Return True if a file was written by `write_checkpoint`, even if it was damaged since."""
     with open_regular(path) as file:
         start = file.read(_NEAR)
         size = file.seek(0, os.SEEK_END)
@@ -57,15 +63,15 @@ def _digest(header: bytes) -> str:
 
 
 def remove_checkpoint(path: Path) -> None:
-    """Remove a checkpoint that is not needed any more, and the rest of an unfinished one; no other file."""
+    """Remove a needless checkpoint, and the rest of an unfinished one; no other file."""
     remove_own(path, CHECKPOINT)
 
 
 def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, Any]) -> None:
     """Write the checkpoint of a run, identified by the header of its trajectory.
 
-    It is a zip file of arrays (.npz) whose comment, at the end, is a checksum of all before it. May raise
-    OSError, and SceneError for a file at `path` that is no checkpoint, which is never replaced.
+    It is a zip file of arrays (.npz) whose comment, at the end, is a checksum of all bytes before it. May
+    raise OSError, and SceneError for a file at `path` that is no checkpoint, which is never replaced.
     """
     with scratch_beside(path) as new:
         with new.open("r+b") as file:
@@ -80,7 +86,7 @@ def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, A
 
 
 def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
-    """The checkpoint of the run with this header, or None if there is none, or one that cannot be used."""
+    """Return the checkpoint of the run with this header; None if it is missing or unusable."""
     try:
         return _checkpoint(path, header)
     except SceneError:
@@ -88,10 +94,12 @@ def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
 
 
 def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
-    """The checkpoint that was kept beside a trajectory of this header; None if there is none.
+    """Return the checkpoint kept with a trajectory of this header, or None.
 
-    Raises SceneError for one that cannot be used: nothing less exact may silently stand for it. otherwise:
-    what is possible without it, for the message.
+    Raises SceneError for a checkpoint that cannot be used: it must not be replaced silently by less exact
+    data.
+
+    otherwise : what is possible without it, for the message
     """
     try:
         return _checkpoint(checkpoint_path(path), header)
@@ -100,7 +108,10 @@ def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
 
 
 def _checkpoint(path: Path, header: bytes) -> Checkpoint | None:
-    """As `read_checkpoint`, but SceneError for a damaged one, one of another run, and another file."""
+    """Read a checkpoint like `read_checkpoint`, but raise SceneError for an unusable one.
+
+    It is unusable if it is damaged, of another run, or another file.
+    """
     try:
         with open_regular(path) as file:
             if not _is_intact(file):  # checked here, because zipfile and numpy raise many kinds of errors
@@ -132,7 +143,10 @@ def _is_intact(file: BinaryIO) -> bool:
 
 
 def _checksum(file: BinaryIO, size: int | None = None) -> int:
-    """The checksum of a file, or of its first `size` bytes; what is read next comes after these."""
+    """Compute the checksum of a file, or of its first `size` bytes.
+
+    The next read of the file continues after these bytes.
+    """
     remaining = file.seek(0, os.SEEK_END) if size is None else size
     file.seek(0)
     value = 0

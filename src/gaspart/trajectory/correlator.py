@@ -1,7 +1,7 @@
-"""Time correlations, accumulated during a run, so that its frames need not be kept for them.
+"""Time correlations, accumulated during a run, which need no stored frames.
 
-Exact: every pair of samples up to a largest lag counts, in double precision. For the largest lag L of K
-velocity components the memory is that of L + 1 samples, and a sample costs about L K additions.
+They are exact: every pair of samples up to a largest lag counts, in double precision. For the largest lag L
+of K velocity components the memory holds L + 1 samples, and a sample costs about L K additions.
 """
 
 from __future__ import annotations
@@ -28,17 +28,20 @@ SUMS = {
 }
 """Sums over pairs of samples, by lag, of means over particles."""
 STRESS = {"shear": ACTION, "rotational": ACTION, "collisional": ACTION, "bulk": ACTION, "heat": HEAT}
-"""What is correlated of the stress tensor and the heat flux, with the units of its time integral G: means
-over the components of the symmetric part that shear, over those of the antisymmetric part, and over those
-that shear of what collisions add; a d-th of the trace; the mean over the components of the heat flux."""
+"""Correlated fluxes of the stress tensor and the heat flux, with the units of their time integrals G.
+
+These are means over the shear components of the symmetric part, over the components of the antisymmetric
+part, and over the shear components of the collisional part; 1/d of the trace; the mean over the components of
+the heat flux.
+"""
 CORRELATED = {
     "product": "J(0) J(t), J = dG/dt over an interval",
     "square": "(G(t) - G(0))^2",
     "ends": "(J(0) + J(t)) / 2, J = dG/dt over an interval",
     "change": "G(t) - G(0)",
 }
-"""Summands of each over pairs of samples; the last two of `bulk` only, whose mean is not zero."""
-_PREFIX = "correlator "  # of its arrays in a checkpoint
+"""Summands over pairs of samples; the last two only for `bulk`, whose mean is not zero."""
+_PREFIX = "correlator "  # prefix of its arrays in a checkpoint
 
 
 @dataclass(frozen=True)
@@ -167,7 +170,7 @@ def sums_of(displacements: bool) -> list[str]:
 
 
 def stress_sums() -> list[str]:
-    """Return the names of the sums of a run that correlates the stress tensor and the heat flux."""
+    """Return the names of the sums of a run that correlates stress and heat flux."""
     means = [f"bulk_{kind}_sum" for kind in ("ends", "change")]
     return [f"{name}_{kind}_sum" for name in STRESS for kind in ("product", "square")] + means
 
@@ -316,7 +319,10 @@ class Correlator(_Correlator):
         self._add(now, products, self._moving.sum())
 
     def _relative(self, values: np.ndarray) -> np.ndarray:
-        """Return values (N, d) of the moving particles relative to the centre of mass, shape (M d,)."""
+        """Return values (N, d) of the moving particles relative to the centre of mass.
+
+        The result has the shape (M d,).
+        """
         values = values[self._moving]
         centre = (values * self._weights).sum(axis=0)
         return (self._scale * (values - np.where(self._conserved, centre, 0.0))).ravel()
@@ -328,7 +334,10 @@ class Correlator(_Correlator):
 
 
 def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
-    """Return factors (M, d) of components relative to the centre of mass; weights (M, 1) are m / M."""
+    """Return factors (M, d) of components relative to the centre of mass.
+
+    weights : (M, 1), m / M
+    """
     count = len(weights)
     if count < 2 or not conserved.any():
         return np.ones((count, len(conserved)))
@@ -347,7 +356,7 @@ class StressCorrelator(_Correlator):
     def __init__(self, settings: Correlations, dimension: int) -> None:
         shear = dimension * (dimension + 1) // 2 - 1
         turning = dimension * (dimension - 1) // 2
-        number = [shear, turning, shear, 1, dimension]  # of components, as in STRESS
+        number = [shear, turning, shear, 1, dimension]  # numbers of components, as in STRESS
         self._groups = np.repeat(np.arange(len(STRESS)), number)
         self._terms = np.array(number, dtype=float)[:, None, None]
         self._dimension, self._latest, self._begun = dimension, np.zeros(len(self._groups)), False

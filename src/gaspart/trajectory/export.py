@@ -1,6 +1,6 @@
 """Export of frames to the formats of other programs: GSD (HOOMD), extended XYZ and LAMMPS data.
 
-Positions and velocities are those of the trajectory's frames, in single precision: particles that touched may
+Positions and velocities come from the trajectory's frames, in single precision: particles that touched may
 overlap by 1e-7 of a diameter. Walls, faces and gravity are not part of these formats.
 """
 
@@ -24,7 +24,7 @@ from gaspart.trajectory.opening import check_frames, opened, run_path
 from gaspart.trajectory.recipe import read_recipe
 
 ALL = "all"
-"""The word for all frames of a trajectory."""
+"""Word for all frames of a trajectory."""
 
 
 def _is_xyz(path: Path) -> bool:
@@ -63,7 +63,7 @@ _SYMBOLS = (
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A frame of a trajectory, with N particles.
+    """Frame of a trajectory, with N particles.
 
     Attributes
     ----------
@@ -144,7 +144,10 @@ def export(trajectory: str | Path, path: str | Path, frame: int | str = -1, over
 
 
 def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
-    """Return one frame, or all, read one after the other; frames that cannot be exported raise at once."""
+    """Return one frame, or all, read one after the other.
+
+    Frames that cannot be exported raise at once.
+    """
     recipe = read_recipe(path)
     recipe.require_all(path)
     with opened(path) as file:
@@ -168,7 +171,7 @@ def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
         masses = np.resize(per_particle(scene, "mass"), scene.capacity)[: len(types)].astype(float)
         for n in numbers:
             places = np.asarray(file["coordinates"][n], dtype=float)
-            inside = np.isfinite(places).all(axis=1)  # of particles that come and go
+            inside = np.isfinite(places).all(axis=1)  # False for absent numbers in scenes with open faces
             piston = np.asarray(file["piston"][n]) if scene.has_piston else None
             # not read: files of early versions have the whole container, and discs in cells of their diameter
             cell = amber.cell(scene, np.array(scene.container.lengths), piston)
@@ -189,7 +192,10 @@ def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
 
 
 def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Write frames of HOOMD's schema; `log/time` has the time, and the step is the number of the frame."""
+    """Write frames of HOOMD's schema.
+
+    `log/time` has the time, and the step is the number of the frame.
+    """
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with path.open("rb") as scratch, hoomd.open(descriptor_path(scratch), "w") as file:
         for snapshot in snapshots:
@@ -197,7 +203,10 @@ def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
-    """Fill a frame with its origin in the middle of the box; the box of discs has no thickness."""
+    """Fill a frame with its origin in the middle of the box.
+
+    The box of discs has no thickness.
+    """
     sides = np.where([False, False, snapshot.dimension == 2], 0.0, snapshot.lengths)
     frame.configuration.dimensions = snapshot.dimension
     frame.configuration.step = snapshot.frame
@@ -245,7 +254,7 @@ def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
 def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
     """Write LAMMPS data of atom_style sphere.
 
-    The density is that of a ball of the particle's mass and diameter.
+    The density is the density of a ball of the particle's mass and diameter.
     """
     (snapshot,) = snapshots
     count = len(snapshot.positions)

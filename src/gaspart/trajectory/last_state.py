@@ -1,4 +1,4 @@
-"""State at the end of a trajectory: the exact one of a kept checkpoint, or the last frame."""
+"""State at the end of a trajectory: exact from a kept checkpoint, or the last frame."""
 
 from __future__ import annotations
 

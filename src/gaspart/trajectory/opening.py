@@ -1,4 +1,4 @@
-"""The file of a trajectory while it is being written: its name, what it is, and its lock."""
+"""File of a trajectory: its name while it is written, kind, lock, and opening."""
 
 from __future__ import annotations
 
@@ -20,18 +20,21 @@ if TYPE_CHECKING:
 
 
 PARTIAL = ".partial"
-"""The suffix of a trajectory that is being written."""
+"""Suffix of a trajectory that is being written."""
 
 
 def partial_path(path: Path) -> Path:
-    """Where a trajectory is while it is being written. Raises SceneError for a path without a name."""
+    """Return the path of a trajectory while it is written.
+
+    Raises SceneError for a path without a name.
+    """
     if not path.name:
         raise SceneError("path", str(path), "must be the name of a file")
     return path.with_name(path.name + PARTIAL)
 
 
 def is_blank(path: Path) -> bool:
-    """Whether nothing was written to the file yet."""
+    """Return True if nothing was written to the file yet."""
     with open_regular(path) as file:
         return amber.is_blank(file)
 
@@ -58,11 +61,11 @@ def writing(path: Path) -> Iterator[None]:
 
 @contextmanager
 def locked(partial: Path) -> Iterator[BinaryIO]:
-    """The partial file, open to read and write, without a buffer, locked by this process. It may be closed
-    within the block, as before it is renamed; the lock stays.
+    """Open the partial file to read and write, without a buffer, locked by this process.
 
-    Raises SceneError for a file that gaspart did not write, for a link, and for a file with a second name:
-    what is written to it would change what the user has under that name.
+    It may be closed within the block, as before it is renamed; the lock stays. Raises SceneError for a file
+    that gaspart did not write, for a link, and for a file with a second name: writing to it would change the
+    user's file of that name.
     """
     with suppress(FileNotFoundError):  # another process has finished it just now
         may_replace(partial, UNFINISHED, overwrite=True)
@@ -82,7 +85,7 @@ def locked(partial: Path) -> Iterator[BinaryIO]:
 
 @contextmanager
 def _alone(partial: Path) -> Iterator[None]:
-    """Hold the lock of a partial file. Raises SceneError if another process does."""
+    """Hold the lock of a partial file. Raises SceneError if another process holds it."""
     try:
         with only_process(partial):
             yield
@@ -91,27 +94,30 @@ def _alone(partial: Path) -> Iterator[None]:
 
 
 def _open_or_create(path: str, flags: int) -> int:
-    """The opener of a file that may not exist yet, and is no link."""
+    """Open a file that may not exist yet, and is no link."""
     return os.open(path, flags | os.O_CREAT | NO_LINK, 0o666)
 
 
 def replica_path(path: Path, number: int) -> Path:
-    """Return the file of a replica of the run at a path: `run-1.nc`, `run-2.nc` ... of `run.nc`."""
+    """Return the file of a replica of the run at a path.
+
+    The replicas of `run.nc` are `run-1.nc`, `run-2.nc` ...
+    """
     return path.with_name(f"{path.stem}-{number}{path.suffix}")
 
 
-# Opening the file of a trajectory, with its header and its number of frames checked against its size.
+# Opening the file of a trajectory; its header and its number of frames are checked against its size.
 
 
 def run_path(given: object) -> Path:
-    """The path of a trajectory that a user gives. Raises SceneError for other things."""
+    """Return the path of a trajectory that a user gives. Raises SceneError for other values."""
     if isinstance(given, str | os.PathLike):
         return Path(given)
     raise no_run(given)
 
 
 def no_run(given: object) -> SceneError:
-    """The error of what is no trajectory."""
+    """Return the error for a value that is no trajectory."""
     rule = "must be the path of a trajectory, which gaspart.run writes"
     if isinstance(given, Scene):
         rule = "this is a scene: run it first, gaspart.run(scene, duration=..., path=...)"
@@ -120,9 +126,10 @@ def no_run(given: object) -> SceneError:
 
 @contextmanager
 def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
-    """A trajectory of gaspart: the file, its header and its number of frames, which are checked against it.
+    """Open a trajectory: the file, its header and its number of frames.
 
-    Raises SceneError for a file of another kind, truncated, or damaged in its header.
+    These are checked against the file. Raises SceneError for a file of another kind, truncated, or damaged in
+    its header.
     """
     try:
         with open_regular(path) as file:
@@ -134,7 +141,7 @@ def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
             if status.st_size < needed:
                 rule = f"is truncated: {status.st_size} bytes, where {frames} frames need {needed}"
                 raise ValueError(rule)
-            if status.st_size > needed and path.suffix != PARTIAL:  # that one may end within a frame
+            if status.st_size > needed and path.suffix != PARTIAL:  # a partial file may end within a frame
                 rule = f"is damaged: {status.st_size} bytes, where {frames} frames need {needed}"
                 raise ValueError(rule)
             yield file, header, frames
@@ -153,7 +160,7 @@ def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
 
 
 def open_netcdf(path: Path) -> netCDF4.Dataset:
-    """A trajectory of gaspart as a netCDF4.Dataset, to be closed by the caller.
+    """Open a trajectory of gaspart as a netCDF4.Dataset, which the caller closes.
 
     Raises SceneError for a file of another kind, truncated, or damaged in its header.
     """
@@ -161,14 +168,16 @@ def open_netcdf(path: Path) -> netCDF4.Dataset:
 
 
 def open_checked(path: Path) -> tuple[netCDF4.Dataset, CheckedFrames]:
-    """A trajectory as `open_netcdf` opens it, and the record of which of its frames were checked; the caller
-    closes both."""
+    """Open a trajectory like `open_netcdf`, with the record of its checked frames.
+
+    The caller closes both.
+    """
     with checked(path) as (file, header, frames):
         return open_descriptor(file), CheckedFrames(file, header, frames)
 
 
 def open_descriptor(file: BinaryIO) -> netCDF4.Dataset:
-    """An open file as a netCDF4.Dataset."""
+    """Return an open file as a netCDF4.Dataset."""
     import netCDF4
 
     return netCDF4.Dataset(descriptor_path(file))
@@ -176,13 +185,13 @@ def open_descriptor(file: BinaryIO) -> netCDF4.Dataset:
 
 @contextmanager
 def opened(path: Path) -> Iterator[netCDF4.Dataset]:
-    """A trajectory as `open_netcdf` opens it, closed after the block."""
+    """Open a trajectory like `open_netcdf`, and close it after the block."""
     with open_netcdf(path) as file:
         yield file
 
 
 def check_frames(path: Path, numbers: range | None = None) -> None:
-    """Read some frames of a trajectory, or all. SceneError if one is damaged."""
+    """Read some frames of a trajectory, or all. Raises SceneError if one is damaged."""
     with checked(path) as (file, header, frames):
         wanted = range(frames) if numbers is None else range(numbers.start, min(numbers.stop, frames))
         damaged = damaged_frame(file.fileno(), header, wanted)
@@ -191,5 +200,5 @@ def check_frames(path: Path, numbers: range | None = None) -> None:
 
 
 def damage(frame: int) -> str:
-    """The message about a frame whose checksum is wrong."""
+    """Return the message about a frame whose checksum is wrong."""
     return f"frame {frame} is damaged: its checksum does not match"

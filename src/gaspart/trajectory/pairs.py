@@ -10,11 +10,14 @@ from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 
-_NAME = "pair collisions"  # of the array in a checkpoint
+_NAME = "pair collisions"  # name of the array in a checkpoint
 
 
 def pairs_of(scene: Scene) -> list[tuple[int, int]]:
-    """The pairs of species by their numbers, the lower one first. Raises SceneError for single particles."""
+    """Return the pairs of species by their numbers, the lower one first.
+
+    Raises SceneError for single particles.
+    """
     if scene.particles:
         raise SceneError(
             "particles", len(scene.particles), "pairs are those of species: there are single particles"
@@ -23,14 +26,14 @@ def pairs_of(scene: Scene) -> list[tuple[int, int]]:
 
 
 def pair_names(scene: Scene) -> list[str]:
-    """Their names, such as "0-1"."""
+    """Return the names of the pairs of species, such as "0-1"."""
     return [f"{first}-{second}" for first, second in pairs_of(scene)]
 
 
 class PairCounter:
-    """The collisions of each pair of species since time 0, of a simulation whose events it has recorded.
+    """Collisions of each pair of species since time 0, in a simulation that records its events.
 
-    counts (pairs,), as in `pairs_of`.
+    counts : (pairs,), as in `pairs_of`
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -53,7 +56,7 @@ class PairCounter:
         self._simulation.record_events = True  # a new, empty list
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        """Arrays from which `restore` continues."""
+        """Return arrays from which `restore` continues."""
         return {_NAME: self.counts}
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:

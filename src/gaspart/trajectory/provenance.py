@@ -16,13 +16,12 @@ _PACKAGES = ("numpy", "numba", "netCDF4")
 
 
 def _git(*arguments: str) -> str | None:
-    """Output of git about the folder of this package; None if git is missing or fails.
+    """Return the output of git about the folder of this package, or None.
 
-    Git takes no optional locks: one that is killed would leave `.git/index.lock`, which blocks later commits.
-    For `git describe --dirty` a lock is not optional.
-
-    Raises OSError if git could not be started for lack of file descriptors or memory: the contents of a
-    trajectory must not depend on that.
+    None means that git is missing or fails. Git takes no optional locks: a killed git would leave
+    `.git/index.lock`, which blocks later commits. For `git describe --dirty` a lock is not optional. Raises
+    OSError if git could not be started for lack of file descriptors or memory: the contents of a trajectory
+    must not depend on that.
     """
     command = ["git", "-C", str(Path(__file__).parent), *arguments]
     environment = {**os.environ, "LC_ALL": "C", "GIT_OPTIONAL_LOCKS": "0"}
@@ -40,9 +39,10 @@ def _git(*arguments: str) -> str | None:
 
 @cache
 def git_revision() -> str:
-    """The commit of the checkout that the package runs from, `-modified` if edited since; "" outside of one.
+    """Return the commit of the checkout that the package runs from; "" outside of one.
 
-    A package that is installed inside a repository but not tracked by it has none.
+    `-modified` is appended if files were edited since. A package that is installed inside a repository but
+    not tracked by it has no commit.
     """
     if _git("ls-files", "--error-unmatch", Path(__file__).with_name("__init__.py").name) is None:
         return ""
@@ -54,7 +54,10 @@ def git_revision() -> str:
 
 @cache
 def versions() -> dict[str, str]:
-    """Versions of gaspart, Python, and the packages that results depend on. May raise OSError."""
+    """Return the versions of gaspart, Python, and the packages that results depend on.
+
+    May raise OSError.
+    """
     attributes = {"gaspart_version": __version__, "python_version": platform.python_version()}
     for package in _PACKAGES:
         try:

@@ -26,8 +26,10 @@ _REDUCED = {
     "1/picosecond": "1/time",
 }
 _UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum", *amber.INITIAL]
-"""Variables of a file that `open_trajectory` does not read: names of axes, what detects damage, and what
-belongs to its recipe."""
+"""Variables of a file that `open_trajectory` does not read.
+
+These are names of axes, checksums, and variables that belong to the recipe.
+"""
 GIVEN_START = "given_start"
 """Attribute of an open trajectory that starts from a given state."""
 _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "units" in field.metadata} | {
@@ -120,7 +122,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     for key, variable in data.variables.items():
         name = str(key)
         unit = variable.attrs.get("units", "1")
-        if variable.dtype.kind in "fi":  # what is no length, time or energy is a number of things, or a ratio
+        if variable.dtype.kind in "fi":  # values other than lengths, times and energies are counts or ratios
             variable.attrs["units"] = _UNITS.get(name, _REDUCED.get(unit, unit))
     data.attrs = {key: value for key, value in attributes.items() if key not in amber.BOOKKEEPING}
 

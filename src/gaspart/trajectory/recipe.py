@@ -1,44 +1,63 @@
-"""The recipe of a trajectory: everything that determines it, and its form in the file."""
+"""Recipe of a trajectory: everything that determines it, and its form in the file."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.keys.values import count_of, number, one_of
+from gaspart.keys.values import number
 from gaspart.scene.face_checks import check_piston_end
 from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.state.given import state_at_time_zero, state_from_arrays
 from gaspart.state.insertion import per_particle
-from gaspart.state.optional_tallies import OptionalTally, tallies_of, tally_from_dict, tally_to_dict
+from gaspart.state.optional_tallies import (
+    OptionalTally,
+    tallies_from_json,
+    tallies_of,
+    tallies_to_json,
+)
 from gaspart.state.random import stream
 from gaspart.state.state import State
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.correlator import Correlations, sum_names
 from gaspart.trajectory.opening import opened
 from gaspart.trajectory.pairs import pair_names, pairs_of
+from gaspart.trajectory.run_options import OPTIONS
 from gaspart.trajectory.until import Until
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:
     import netCDF4
 
+_FORMS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
+    "displacements": (np.int32, bool),
+    "follow": (np.int32, int),
+    "keep": (str, str),
+    "correlations": (Correlations.to_json, Correlations.from_json),
+    "pairs": (np.int32, bool),
+    "tallies": (tallies_to_json, tallies_from_json),
+}
+"""Fields of a recipe that the file states unless they are at their default: to the attribute, and back."""
 MOST_REPLICAS = 10_000
 ROUNDING = 1e-9
 """Relative deviation from an integer multiple that is attributed to rounding."""
 
 
 def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
-    """`value` / `unit`, which must be an integer of at least 1 up to rounding. Raises SceneError."""
+    """Return the ratio of `value` to `unit`, an integer of at least 1 up to rounding.
+
+    Raises SceneError for any other ratio.
+    """
     ratio = round(value / unit) if value / unit < 2**53 else 0
     if ratio < 1 or abs(value - ratio * unit) > ROUNDING * value:
         raise SceneError(key, value, f"must be a whole multiple of {unit_key}, {unit:g}")
@@ -47,16 +66,22 @@ def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
 
 @dataclass(frozen=True)
 class Recipe:
-    """Everything that determines a trajectory. Raises SceneError for settings that cannot be run.
+    """Everything that determines a trajectory; making it raises SceneError for invalid settings.
 
-    duration and sample_interval are in the scene's time; duration is an integer multiple of sample_interval,
-    and that, for the time-stepped engine, of time_step. follow: how many particles, from the first on, are in
-    the file; None: all. correlations: sample_interval is an integer multiple of their interval. until: what
-    ends the run in place of a duration, which is then None. pairs: count the collisions of each pair of
-    species. initial: the state at time 0, if it is not that of the scene and the seed; the file holds it.
-    tallies: the optional tallies that frames have, beside those that the correlations need. replica: its
-    number, from 1, and that of all replicas of the run, if there are several. keep: all that frames hold of
-    each particle, "positions" or "velocities", beside displacements; None: both, and spins.
+    Attributes
+    ----------
+    duration, sample_interval : in the scene's time; duration is an integer multiple of sample_interval, which
+        for the time-stepped engine is an integer multiple of time_step
+    displacements : whether frames have displacements
+    follow : number of particles, from the first on, in the file; None for all
+    correlations : sample_interval is an integer multiple of their interval
+    until : criterion that ends the run in place of a duration, which is then None
+    pairs : whether to count the collisions of each pair of species
+    initial : state at time 0, if it does not follow from scene and seed; the file holds it
+    tallies : optional tallies of the frames, in addition to the tallies that the correlations need
+    replica : its number, from 1, and the number of all replicas of the run, if there are several
+    keep : only property of each particle in the frames in addition to displacements, "positions" or
+        "velocities"; None for both, and spins
     """
 
     scene: Scene
@@ -83,13 +108,13 @@ class Recipe:
             raise SceneError("replica", self.replica, "must be one of several, with its number in its seed")
         if self.scene.count == 0:
             raise SceneError("scene", "no particles", "a run needs at least one particle")
-        if self.follow is not None:
-            if count_of("follow", self.follow, least=1) > self.scene.count:
-                raise SceneError("follow", self.follow, f"there are {self.scene.count} particles")
-        if self.keep is not None:
-            one_of("keep", self.keep, tuple(amber.KEPT))
-            if self.until:
-                raise SceneError("keep", self.keep, "has no meaning with until, which measures what is there")
+        for key, kind in OPTIONS.items():
+            if (value := getattr(self, key, None)) is not None:
+                object.__setattr__(self, key, kind.check(key, value))
+        if self.follow is not None and self.follow > self.scene.count:
+            raise SceneError("follow", self.follow, f"there are {self.scene.count} particles")
+        if self.keep and self.until:
+            raise SceneError("keep", self.keep, "has no meaning with until, which measures what is there")
         for key in ("follow", "correlations", "displacements", "pairs"):
             if getattr(self, key):
                 refuse_open(self.scene, f"excludes {key}: the particles change")
@@ -115,7 +140,7 @@ class Recipe:
                 raise SceneError("pairs", True, 'collisions of pairs are counted by the "event" engine')
 
     def _check_correlations(self, asked: Correlations) -> None:
-        """Refuse correlations that this run cannot have, with SceneError."""
+        """Raise SceneError for correlations that this run cannot have."""
         if not asked.stress:
             refuse_sheared(self.scene, "carries particles along: correlations need stress")
         interval = "correlations.interval", asked.interval
@@ -130,7 +155,7 @@ class Recipe:
 
     @property
     def samples_per_frame(self) -> int:
-        """Samples in an interval of frames: 1, the frame, unless those of the correlations are closer."""
+        """Number of samples in an interval of frames: 1, unless samples for correlations are closer."""
         if self.correlations is None:
             return 1
         return multiple(
@@ -139,8 +164,10 @@ class Recipe:
 
     @property
     def frames(self) -> int:
-        """Frames of the complete trajectory, including the one at time 0; of a run until it is accurate, of
-        the longest."""
+        """Number of frames of the complete trajectory, including the frame at time 0.
+
+        For a run until it is accurate it is the maximum number.
+        """
         if self.until:
             return self.until.most_frames(self.sample_interval) or amber.MOST_FRAMES
         assert self.duration is not None
@@ -148,7 +175,7 @@ class Recipe:
 
     @property
     def longest(self) -> float:
-        """The duration, of a run until it is accurate the largest."""
+        """Duration of the run; for a run until it is accurate, the maximum duration."""
         return (self.frames - 1) * self.sample_interval if self.duration is None else self.duration
 
     @property
@@ -158,19 +185,19 @@ class Recipe:
 
     @property
     def asked(self) -> tuple[OptionalTally, ...]:
-        """The optional tallies that its simulation is asked for."""
+        """Optional tallies that its simulation must make."""
         needed = self.correlations.tallies if self.correlations else ()
         return tuple(dict.fromkeys((*self.tallies, *needed)))
 
     @property
     def tallied(self) -> tuple[OptionalTally, ...]:
-        """All optional tallies that its frames have: with these those of its scene."""
+        """All optional tallies of its frames, including the tallies of its scene."""
         made = (tally for tally in tallies_of(self.scene) if tally.name in self.engine.tallies)
         return (*made, *self.asked)
 
     @property
     def layout(self) -> amber.Layout:
-        """The variables of a frame."""
+        """Variables of a frame."""
         scene, walls = self.scene, len(self.scene.walls)
         names = {
             "spins": scene.rough and not self.keep,
@@ -194,12 +221,12 @@ class Recipe:
         return amber.Layout(count, dimension, extra, walls, counters, sums, axes, self.keep)
 
     def require_all(self, path: Path) -> None:
-        """Raise SceneError if its trajectory, at `path`, does not hold both positions and velocities."""
+        """Raise SceneError if its trajectory, at `path`, lacks positions or velocities."""
         if self.keep is not None:
             raise SceneError("keep", self.keep, f"{path} holds nothing else of its particles")
 
     def attributes(self) -> dict:
-        """The recipe as the file's attributes, from which `read_recipe` restores it."""
+        """Return the recipe as attributes of the file, from which `read_recipe` restores it."""
         seed = [int(part) for part in self.seed] if isinstance(self.seed, (tuple, list)) else int(self.seed)
         return {
             "scene": dump_yaml(self.scene.to_dict()),
@@ -208,24 +235,20 @@ class Recipe:
             **{f"predicted_{key}": value for key, value in self.engine.predictions(self.scene).items()},
             **self._length(),
             "sample_interval": self.sample_interval,
-            "displacements": np.int32(self.displacements),
-            **({} if self.follow is None else {"follow": np.int32(self.follow)}),
-            **({} if self.keep is None else {"keep": self.keep}),
-            **({} if self.correlations is None else {"correlations": self.correlations.to_json()}),
-            **({"pairs": np.int32(1)} if self.pairs else {}),
-            **({"tallies": json.dumps([*map(tally_to_dict, self.tallies)])} if self.tallies else {}),
+            "displacements": np.int32(self.displacements),  # also if False
+            **{name: store(value) for name, (store, _) in _FORMS.items() if (value := getattr(self, name))},
             **dict(zip(("replica", "replicas"), map(np.int32, self.replica or ()), strict=False)),
         }
 
     def _length(self) -> dict:
-        """The attributes that state when the run ends."""
+        """Return the attributes that state when the run ends."""
         if self.until is None:
             return {"duration": self.duration}
         longest = self.until.at_most
         return {"until": self.until.to_json()} | ({} if longest is None else {"at_most": longest})
 
     def _initial(self) -> dict[str, np.ndarray]:
-        """The variables of the given initial state, if there is one."""
+        """Return the variables of the given initial state, if there is one."""
         if self.initial is None:
             return {}
         absent = set() if self.scene.rough else {"initial_spins"}
@@ -233,14 +256,17 @@ class Recipe:
         return {name: np.array(part) for name, part in parts.items() if part is not None}
 
     def header(self, revision: str) -> bytes:
-        """The file before its first frame, as made by the present program at a git revision ("": none)."""
+        """Return the file before its first frame, as made by the present program.
+
+        revision : git revision of the program, "" without one
+        """
         from gaspart.kernels.compile.policy import source_digest
 
         scene, versions = self.scene, provenance.versions()
         groups = [len(scene.species)] * len(scene.particles) + list(range(len(scene.species)))
         counts = [1] * len(scene.particles) + [kind.count for kind in scene.species]
         each = {name: per_particle(scene, name) for name in ("radius", "mass")}
-        particles = {  # of particles that may come as well, which are all alike
+        particles = {  # includes particles that may enter later, which are all alike
             name: np.resize(values, scene.capacity)[: self.stored_count]
             for name, values in {**each, "type": np.repeat(groups, counts)}.items()
         }
@@ -267,14 +293,17 @@ def _is_numbered(seed: int | tuple[int, ...], replica: int, replicas: int) -> bo
 
 
 def read_recipe(path: str | Path) -> Recipe:
-    """The recipe of a trajectory, finished or not. Raises SceneError if the file has none."""
+    """Read the recipe of a trajectory, finished or not. Raises SceneError if it has no recipe."""
     path = Path(path)
     with opened(path) as file:
         return stored_recipe(file, path)
 
 
 def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
-    """The recipe of an open trajectory, whose path messages name. Raises SceneError if the file has none."""
+    """Return the recipe of an open trajectory. Raises SceneError if it has no recipe.
+
+    path : path of the trajectory, for messages
+    """
     stored = file.__dict__
     try:
         scene = Scene.from_dict(parse_yaml(stored["scene"], f"{path}, attribute scene"), str(path))
@@ -285,24 +314,19 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
             seed=tuple(seed) if isinstance(seed, list) else seed,
             duration=None if "until" in stored else float(stored["duration"]),
             sample_interval=float(stored["sample_interval"]),
-            displacements=bool(stored["displacements"]),
-            follow=int(stored["follow"]) if "follow" in stored else None,
-            correlations=Correlations.from_json(stored["correlations"]) if "correlations" in stored else None,
             until=Until.from_json(stored["until"], stored.get("at_most")) if "until" in stored else None,
-            pairs=bool(stored.get("pairs", False)),
             initial=_stored_initial(file, scene),
-            tallies=tuple(tally_from_dict(tally) for tally in json.loads(stored.get("tallies", "[]"))),
             replica=(int(stored["replica"]), int(stored["replicas"])) if "replica" in stored else None,
-            keep=stored.get("keep"),
+            **{name: restore(stored[name]) for name, (_, restore) in _FORMS.items() if name in stored},
         )
     except SceneError:
         raise
-    except (KeyError, TypeError, ValueError) as error:  # of a header that was forged
+    except (KeyError, TypeError, ValueError) as error:  # for a forged header
         raise SceneError("file", str(path), f"has an attribute that cannot be used: {error}") from None
 
 
 def _stored_initial(file: netCDF4.Dataset, scene: Scene) -> State | None:
-    """The initial state of an open trajectory to which it was given."""
+    """Return the given initial state of an open trajectory, or None."""
     if amber.INITIAL[0] not in file.variables:
         return None
     parts = {_part(name): np.array(file[name][:]) for name in amber.INITIAL if name in file.variables}
@@ -310,18 +334,18 @@ def _stored_initial(file: netCDF4.Dataset, scene: Scene) -> State | None:
 
 
 def _part(name: str) -> str:
-    """The part of a State that a variable of `amber.INITIAL` is."""
+    """Return the name of the part of a State for a variable of `amber.INITIAL`."""
     return name.removeprefix("initial_")
 
 
 def stored_revision(path: Path) -> str:
-    """The git revision at which a trajectory was begun; "" if it was not in a checkout."""
+    """Return the git revision at which a trajectory was begun; "" outside of a checkout."""
     with opened(path) as file:
         return getattr(file, "git_revision", "")
 
 
 def begun_as(path: Path, wanted: Recipe) -> bool:
-    """Whether a file was begun with this recipe by this program (at whatever git revision)."""
+    """Return True if this program began a file with this recipe, at any git revision."""
     try:
         header = wanted.header(stored_revision(path))
     except SceneError:

@@ -1,4 +1,4 @@
-"""The loop of a run: advance to the time of a frame, write it, and a checkpoint now and then."""
+"""Loop of a run: advance to the time of a frame, write it, and checkpoint."""
 
 from __future__ import annotations
 
@@ -24,11 +24,15 @@ from gaspart.trajectory.recipe import Recipe, multiple
 from gaspart.trajectory.until import examined_before, examined_from, is_examined
 
 Progress = Callable[[float, float, int], None]
-"""Called with the time reached, the duration, and the collisions so far. Of a run until it is accurate the
-duration is the present estimate."""
+"""Callback with the time reached, the duration, and the collisions so far.
+
+For a run until it is accurate the duration is the present estimate.
+"""
 Examine = Callable[[int], float | None]
-"""Called with a number of frames; returns the error after these frames over the required one, or inf; None
-while another replica does not have so many."""
+"""Function of a number of frames that returns the error after these frames divided by the required error.
+
+The result is infinite if unknown, and None while another replica does not have this number of frames.
+"""
 
 _SEGMENT = 0.1  # seconds of work between two looks at the clock and at signals, to within a factor of 2
 _PROGRESS = 0.5  # seconds between two reports of progress
@@ -36,10 +40,12 @@ _LOOK = 0.05  # seconds between two looks at other replicas
 
 
 class Recording:
-    """A simulation under way to its duration, the file of its frames, and the finished trajectory's path.
+    """Simulation in progress, the file of its frames, and the finished trajectory's path.
 
-    every: seconds between checkpoints; examine: of a run that ends when it is accurate. Observing changes
-    nothing: neither checkpoints nor the division into segments changes a bit of the result.
+    Neither checkpoints nor the division into segments changes a bit of the result.
+
+    every : time between checkpoints, in seconds
+    examine : for a run that ends when it is accurate
     """
 
     def __init__(
@@ -74,11 +80,10 @@ class Recording:
             self._note()
 
     def finish(self, keep: bool = False) -> None:
-        """Write all frames that are missing, and then, to `keep`, a checkpoint. Raises SimulationError if an
-        invariant breaks, and OSError.
+        """Write all missing frames, and then, with `keep`, a checkpoint.
 
-        In the first case the state is kept next to the trajectory, in `.failed.npz`. A signal takes effect
-        after a checkpoint was written.
+        Raises SimulationError if an invariant is violated, and OSError. In the first case the state is kept
+        next to the trajectory, in `.failed.npz`. A signal takes effect after a checkpoint was written.
         """
         try:
             with deferred() as signals:
@@ -93,7 +98,10 @@ class Recording:
         set_note("")
 
     def _keep_failed(self) -> str:
-        """Keep the state of a run that has failed, unless a file of another kind is in its place."""
+        """Store the state of a failed run, unless another file is at its path.
+
+        Returns the message about it.
+        """
         failed = self._path.with_name(self._path.name + ".failed.npz")
         try:
             write_checkpoint(failed, self._frames.header, self._frames.count, self._arrays())
@@ -102,8 +110,10 @@ class Recording:
         return f"its state is kept in {failed}"
 
     def _is_complete(self, signals: Deferral) -> bool:
-        """Whether the file has all frames. That depends on the frames alone, so that a run that was cut short
-        ends at the same one. Waits for other replicas."""
+        """Return True if the file has all frames. Waits for other replicas.
+
+        The result depends on the frames alone, so that a run that was cut short ends at the same frame.
+        """
         count = self._frames.count
         if count >= self._recipe.frames:
             return True
@@ -116,21 +126,28 @@ class Recording:
         return excess <= 1.0
 
     def _estimate(self, frames: int, excess: float) -> float:
-        """The time at which a run is expected to be accurate, if its error is now `excess` times the required
-        one: errors fall as 1 / sqrt(time), and examinations are at certain frames only."""
+        """Return the time at which a run is expected to be accurate.
+
+        Errors decrease as 1 / sqrt(time), and examinations are at certain frames only.
+
+        excess : present error divided by the required error
+        """
         needed = frames * excess**2 if math.isfinite(excess) else 0.0
         expected = examined_from(min(max(needed, frames + 1.0), self._recipe.frames))
         return min((expected - 1) * self._recipe.sample_interval, self._recipe.longest)
 
     def _estimate_again(self) -> None:
-        """Estimate the duration of a continued run, to report it; the result of the run does not change."""
+        """Estimate the duration of a continued run, to report it.
+
+        The result of the run does not change.
+        """
         before = examined_before(self._frames.count)
         if self._progress and self._examine and before is not None:
             if (excess := self._examine(before)) is not None:
                 self._duration = self._estimate(before, excess)
 
     def _finish_frame(self, signals: Deferral) -> None:
-        """Take the samples until the next frame that are missing, and write the frame."""
+        """Take the missing samples until the next frame, and write the frame."""
         frame, correlator = self._frames.count, self._correlator
         last = frame * self._recipe.samples_per_frame
         while correlator and correlator.next < last:
@@ -151,7 +168,7 @@ class Recording:
             self._between_segments(signals)
 
     def _between_segments(self, signals: Deferral) -> None:
-        """Report progress, write a checkpoint and let a signal take effect, if one of these is due."""
+        """Report progress, write a checkpoint and deliver a signal, if one of these is due."""
         now = time.monotonic()
         if self._progress and now - self._reported >= _PROGRESS:
             collisions = self._simulation.tally.collisions
@@ -172,7 +189,7 @@ class Recording:
         self._saved = time.monotonic()
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        """The arrays of a checkpoint."""
+        """Return the arrays of a checkpoint."""
         correlations = self._correlator.checkpoint() if self._correlator else {}
         pairs = self._pairs.checkpoint() if self._pairs else {}
         return {**self._simulation.checkpoint(), **correlations, **pairs}
@@ -201,7 +218,10 @@ class Recording:
             self._pairs.take()
 
     def _advance(self, goal: float, **limits: Any) -> None:
-        """One segment towards the time `goal`; the next one is fitted to take about `_SEGMENT` seconds."""
+        """Advance by one segment towards the time `goal`, and adapt the length of the next one.
+
+        The next segment is to take about `_SEGMENT` seconds.
+        """
         begun = time.monotonic()
         self._simulation.advance(**limits)
         if self._pairs:
@@ -213,7 +233,7 @@ class Recording:
             self._segment *= 2
 
     def _frame(self, state: State) -> dict[str, np.ndarray | float]:
-        """The present state and counters, as the variables of a frame."""
+        """Return the present state and counters as the variables of a frame."""
         counted = amber.counters(self._recipe.engine, self._recipe.tallied)
         tally, followed = self._simulation.tally, slice(self._recipe.stored_count)
         inner: dict[str, np.ndarray] = {}

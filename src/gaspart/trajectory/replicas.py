@@ -60,14 +60,16 @@ def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
 
 
 def differ(scene: Scene, engine: Engine, given: bool = False) -> bool:
-    """Return True if runs of other seeds are other runs: random numbers are drawn, for the first state unless
-    it is given, or later."""
+    """Return True if runs with other seeds are other runs.
+
+    Random numbers are then drawn for the first state, unless it is given, or later.
+    """
     drawn = not given and (scene.vibrates or any(kind.count for kind in scene.species))
     return drawn or engine.draws(scene)
 
 
 def _seed(recipe: Recipe, number: int) -> tuple[int, ...]:
-    """The seed of one of the replicas of a run."""
+    """Return the seed of one of the replicas of a run."""
     given = recipe.seed if isinstance(recipe.seed, tuple | list) else (recipe.seed,)
     return (*given, number)
 
@@ -225,20 +227,20 @@ def _places(path: Path) -> tuple[Path, Path]:
 
 
 def reached(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Path] | None:
-    """Return the files of all replicas of a run with this number of frames, finished or not.
+    """Return the files of all replicas of a run with at least a number of frames.
 
     Parameters
     ----------
     files : sequence of tuple of Path and Recipe
-        Paths and recipes of the replicas, as of `beside`.
+        Paths and recipes of the replicas.
     frames : int
         Required number of frames.
 
     Returns
     -------
     list of Path or None
-        The files; None if a replica has fewer frames, or was not begun with its recipe. A single run is at
-        its path.
+        The files, finished or not; None if a replica has fewer frames, or was not begun with its recipe. A
+        single run is at its path.
     """
     if len(files) == 1:
         return [files[0][0]]

@@ -1,8 +1,8 @@
 """Trajectories: written during the run, continued after a kill, readable by common tools.
 
 A run writes `path.partial`, and regularly `path.checkpoint.npz`, from which it can continue to the same bits.
-When it is complete, the file is renamed to `path`. Nothing in it depends on when or where it was made.
-A checkpoint that is kept is then the state at the end, from which a longer run continues (`extension`).
+When it is complete, the file is renamed to `path`. Its content does not depend on when or where it was made.
+If the checkpoint is kept, it is then the state at the end, from which a longer run continues (`extend`).
 """
 
 from __future__ import annotations
@@ -51,19 +51,19 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# A finished run that goes on: the same recipe with a longer duration.
+# Extension of a finished run: the same recipe with a longer duration.
 #
-# The frames of the shorter run are the first ones of the longer, and the state at its end, if its
-# checkpoint was kept, is that from which the longer one continues. Both get the header of the longer run:
-# its duration is part of it, and the checksums of all frames depend on it. The shorter file is not touched
-# until the longer one is complete, so that a kill at any moment loses neither.
+# The frames of the shorter run are the first frames of the longer one, and the state at its end, if its
+# checkpoint was kept, is the state from which the longer one continues. Both get the header of the longer
+# run: its duration is part of it, and the checksums of all frames depend on it. The shorter file is not
+# touched until the longer one is complete, so that a kill at any moment loses neither.
 
 
 def longer(path: Path, duration: float) -> Recipe:
-    """The recipe of a trajectory with a longer duration than it has.
+    """Return the recipe of a trajectory with a longer duration.
 
     Raises SceneError for a file that is no undamaged trajectory of this version of the program, and for a
-    duration that is no longer, or that the recipe refuses.
+    duration that is not longer, or that the recipe rejects.
     """
     recipe = read_recipe(path)
     if not begun_as(path, recipe):
@@ -81,23 +81,26 @@ def longer(path: Path, duration: float) -> Recipe:
 
 
 def is_beginning(path: Path, wanted: Recipe) -> bool:
-    """Whether the file at `path` is of a run that differs from the wanted one in being shorter only."""
+    """Return True if the file at `path` is the beginning of a wanted run.
+
+    The two runs then differ only by the shorter duration of the file.
+    """
     try:
         recipe, revision = read_recipe(path), stored_revision(path)
         with checked(path) as (_, _, frames):
             shorter = frames < wanted.frames
         same = replace(recipe, duration=wanted.duration, until=wanted.until)
-    except SceneError:  # as for a duration that is no multiple of its interval
+    except SceneError:  # for example, a duration that is no multiple of its interval
         return False
     return shorter and begun_as(path, recipe) and same.header(revision) == wanted.header(revision)
 
 
 def take_over(path: Path, wanted: Recipe, frames: Frames) -> Checkpoint | None:
-    """Give the frames and the last state of the shorter run at `path` to the longer one that is begun in
-    `frames`. None, with nothing changed, if there is no such run, or its last state was not kept.
+    """Copy the frames and the last state of a shorter run to the longer one.
 
-    The checkpoint of the shorter run is replaced last: after a kill before that, all this is done again.
-    Raises SceneError for a damaged file, and OSError.
+    The shorter run is at `path`, the longer one is begun in `frames`. Returns None, with nothing changed, if
+    there is no such run, or its last state was not kept. The checkpoint of the shorter run is replaced last:
+    after a kill before that, the copy is repeated. Raises SceneError for a damaged file, and OSError.
     """
     if not (path.exists() and is_beginning(path, wanted)):
         return None
@@ -113,17 +116,19 @@ def take_over(path: Path, wanted: Recipe, frames: Frames) -> Checkpoint | None:
     return Checkpoint(count, kept.arrays)
 
 
-# How far a run has come, by what lies at its path and beside it: a table states what is done then.
+# State of a run, from the files at its path, and the action that follows.
 
 
 Examiner: TypeAlias = "Callable[[Sequence[xr.Dataset], Until, int], float]"
-"""Examines the first frames of a run, or of all its replicas: the largest error over the required one, inf if
-unknown, 0 to give up."""
+"""Function that examines the first frames of a run, or of all its replicas.
+
+It returns the largest error divided by the required error, inf if unknown, 0 to give up.
+"""
 _LOOK = 0.05  # seconds between two looks at other replicas
 
 
 class Content(Enum):
-    """The content of a file, compared with a run that is wanted."""
+    """Content of a file, compared with a run that is wanted."""
 
     NOTHING = "there is no file, or an empty one"
     BEGUN = "this run, unfinished"
@@ -133,7 +138,7 @@ class Content(Enum):
 
 
 class Action(Enum):
-    """The next step of a run."""
+    """Next step of a run."""
 
     NONE = "the run is finished"
     WRITE = "begin or continue in the partial file"
@@ -154,11 +159,14 @@ _ACTIONS: dict[Content, Action | dict[Content, Action]] = {
     Content.COMPLETE: Action.NONE,
     Content.OTHER: Action.REPLACE,
 }
-"""By what is at the path, and where that does not decide, by the partial file beside it."""
+"""Action by the content at the path, and where that does not decide, by the content of the partial file."""
 
 
 def is_finished(wanted: Recipe, path: Path, examiner: Examiner | None, overwrite: bool) -> bool:
-    """Whether a run is complete at `path`. Raises SceneError if it may not be begun or continued."""
+    """Return True if a run is complete at `path`.
+
+    Raises SceneError if it may not be begun or continued.
+    """
     partial, content = partial_path(path), _content(path, wanted, examiner)
     action = _ACTIONS[content]
     if isinstance(action, dict):
@@ -170,7 +178,10 @@ def is_finished(wanted: Recipe, path: Path, examiner: Examiner | None, overwrite
 
 
 def _content(path: Path, wanted: Recipe, examiner: Examiner | None) -> Content:
-    """The content at the path of a run. Raises SceneError for a file of another kind."""
+    """Return the content at the path of a run.
+
+    Raises SceneError for a file of another kind.
+    """
     if not may_replace(path, TRAJECTORY, overwrite=True):
         return Content.NOTHING
     if begun_as(path, wanted):
@@ -182,7 +193,10 @@ def _content(path: Path, wanted: Recipe, examiner: Examiner | None) -> Content:
 
 
 def _partial_content(partial: Path, wanted: Recipe) -> Content:
-    """The content of the partial file of a run. Raises SceneError for a file of another kind."""
+    """Return the content of the partial file of a run.
+
+    Raises SceneError for a file of another kind.
+    """
     with suppress(FileNotFoundError):  # another process has finished it just now
         if may_replace(partial, UNFINISHED, overwrite=True) and not is_blank(partial):
             if begun_as(partial, wanted):
@@ -192,7 +206,10 @@ def _partial_content(partial: Path, wanted: Recipe) -> Content:
 
 
 def is_complete(wanted: Recipe, path: Path, frames: int, examiner: Examiner | None) -> bool:
-    """Whether the complete trajectory of a run has so many frames. Waits for other replicas."""
+    """Return True if a trajectory with this number of frames is complete.
+
+    Waits for other replicas.
+    """
     examine = examination(wanted, path, examiner)
     if frames == wanted.frames or examine is None or not is_examined(frames):
         return frames == wanted.frames
@@ -202,8 +219,10 @@ def is_complete(wanted: Recipe, path: Path, frames: int, examiner: Examiner | No
 
 
 def examination(wanted: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
-    """The examination of the first frames of a run that ends when it is accurate; None for other runs. One
-    of several replicas is examined with the others."""
+    """Return the examination of the first frames of a run until it is accurate.
+
+    Returns None for other runs. A run of several replicas is examined with the others.
+    """
     until = wanted.until
     if until is None:
         return None
@@ -228,11 +247,17 @@ def examination(wanted: Recipe, path: Path, examiner: Examiner | None) -> Examin
 
 @dataclass(frozen=True)
 class WriteOptions:
-    """How a trajectory is written: nothing in it depends on these options.
+    """Options of writing a trajectory, on which its content does not depend.
 
-    checkpoint_seconds: between checkpoints; overwrite: whether another run's file may be replaced; examiner:
-    for a recipe that ends when it is accurate; keep_checkpoint: whether the last one stays beside the file.
-    Raises SceneError for a negative time.
+    Making it raises SceneError for a negative time.
+
+    Attributes
+    ----------
+    checkpoint_seconds : time between checkpoints
+    progress : callback about the progress of the run
+    overwrite : whether another run's file may be replaced
+    examiner : for a recipe that ends when it is accurate
+    keep_checkpoint : whether the last checkpoint is kept with the file
     """
 
     checkpoint_seconds: float = 30.0
@@ -246,9 +271,9 @@ class WriteOptions:
 
 
 def record(wanted: Recipe, path: str | Path, options: WriteOptions) -> Path:
-    """Make the trajectory of a recipe at `path`; returns `path`.
+    """Make the trajectory of a recipe at `path`; return `path`.
 
-    What is raised is that of `gaspart.run` (`gaspart.runs`).
+    The exceptions are explained in `gaspart.run` (`gaspart.runs`).
     """
     path = output_path(path)
     if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` knows the format by it
@@ -257,7 +282,7 @@ def record(wanted: Recipe, path: str | Path, options: WriteOptions) -> Path:
 
 
 def resume(path: str | Path, options: WriteOptions) -> Path:
-    """Finish the run that left `path.partial`, from its files only; returns `path`.
+    """Finish the run that left `path.partial`, from its files only; return `path`.
 
     Raises SceneError if there is nothing to resume, if another version of the program began it, and for a
     file at `path` that is no complete trajectory of gaspart.
@@ -284,7 +309,10 @@ def resume(path: str | Path, options: WriteOptions) -> Path:
 
 
 def begun(partial: Path) -> Recipe:
-    """The recipe of an unfinished trajectory. Raises SceneError if another version began it."""
+    """Return the recipe of an unfinished trajectory.
+
+    Raises SceneError if another version began it.
+    """
     wanted = read_recipe(partial)
     if not begun_as(partial, wanted):
         rule = "was begun by another version of gaspart, Python or a package: start it anew"
@@ -293,12 +321,13 @@ def begun(partial: Path) -> Recipe:
 
 
 def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
-    """Continue the complete run at `path` to a longer duration; returns `path`.
+    """Continue the complete run at `path` to a longer duration; return `path`.
 
-    The file has then the bytes of a run of that duration in one go. Without the checkpoint of its end, which
-    `keep_checkpoint` leaves beside it, it is run again from its start; one that had it keeps the next one.
-    An extension that was cut short is continued, by this or by `resume`. Raises SceneError as `longer`, for
-    another run that is unfinished beside the file, and for a checkpoint that is damaged or of another run.
+    The file then has the bytes of an uninterrupted run of that duration. Without the checkpoint of its end,
+    which `keep_checkpoint` stores with it, it is run again from its start; a run that had a checkpoint keeps
+    the next one. An extension that was cut short is continued, by this or by `resume`. Raises SceneError like
+    `longer`, for another run that is unfinished at the path, and for a checkpoint that is damaged or of
+    another run.
     """
     path = Path(path)
     partial, checkpoint = partial_path(path), checkpoint_path(path)
@@ -321,7 +350,7 @@ def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
 
 
 def simulation_of(recipe: Recipe) -> Simulation:
-    """The simulation of a recipe, at its start."""
+    """Return the simulation of a recipe, at its start."""
     return Simulation(recipe.scene, recipe.engine, recipe.seed, initial=recipe.initial, tallies=recipe.asked)
 
 
@@ -349,7 +378,10 @@ def _carry_out(wanted: Recipe, path: Path, options: WriteOptions) -> Path:
 
 
 def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
-    """Whether the first frames are undamaged. Raises SceneError if not, unless they may be replaced."""
+    """Return True if the first frames are undamaged.
+
+    Raises SceneError if not, unless they may be replaced.
+    """
     try:
         check_frames(partial, range(frames))
     except SceneError as error:

@@ -1,4 +1,4 @@
-"""Runs that end when accurate: what is asked of them, and the numbers of frames at which it is examined."""
+"""Runs that end when accurate: their required accuracies, and the numbers of frames at the tests."""
 
 from __future__ import annotations
 
@@ -14,14 +14,16 @@ from gaspart.scene.faces import wall_of
 
 _ACCURACIES = 1e-8, 1.0
 _FIRST = 64, 96
-"""Frames at the first two examinations; each further one has twice as many as the one before its
-predecessor, so that the ratios are 3/2 and 4/3."""
+"""Numbers of frames at the first two examinations; each later one has twice those of two before.
+
+The ratios of successive numbers are 3/2 and 4/3.
+"""
 _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Requirement:
-    """An accuracy as a file states it; see `gaspart.Accuracy`, which knows the observables."""
+    """Accuracy in the form of a file; see `gaspart.Accuracy`, which knows the observables."""
 
     observable: str
     accuracy: float
@@ -46,13 +48,13 @@ class Requirement:
 
     @property
     def name(self) -> str:
-        """The observable, with its face if one is stated, as on the command line."""
+        """Observable, with its face if one is prescribed, as on the command line."""
         return self.observable if self.face is None else f"{self.observable}:{self.face}"
 
 
 @dataclass(frozen=True)
 class Until:
-    """Accuracies that a run is to reach, all of them, and its longest duration, None for none."""
+    """Accuracies that a run must all reach, and its maximum duration, or None."""
 
     accuracies: tuple[Requirement, ...]
     at_most: float | None = None
@@ -69,8 +71,10 @@ class Until:
             object.__setattr__(self, "at_most", longest)
 
     def most_frames(self, sample_interval: float) -> int | None:
-        """Frames of the longest run, including the one at time 0; None if it is not limited. Raises
-        SceneError for a longest duration without a frame after that."""
+        """Return the number of frames of the longest run, including time 0; None without a limit.
+
+        Raises SceneError for a longest duration without a frame after time 0.
+        """
         if self.at_most is None:
             return None
         intervals = math.floor(min(self.at_most / sample_interval, 2.0**53) * (1.0 + _ROUNDING))
@@ -80,7 +84,7 @@ class Until:
         return intervals + 1
 
     def to_json(self) -> str:
-        """The accuracies in the attributes of a file."""
+        """Return the accuracies for the attributes of a file."""
         asked = [
             {key: value for key, value in asdict(one).items() if value is not None} for one in self.accuracies
         ]
@@ -88,17 +92,20 @@ class Until:
 
     @classmethod
     def from_dict(cls, values: dict) -> Until:
-        """The inverse of `dataclasses.asdict`. Raises SceneError."""
+        """Convert a mapping, the inverse of `dataclasses.asdict`. Raises SceneError."""
         return cls(tuple(Requirement(**one) for one in values["accuracies"]), values["at_most"])
 
     @classmethod
     def from_json(cls, text: str, at_most: float | None) -> Until:
-        """The inverse of `to_json`. Raises SceneError, and TypeError or ValueError for another text."""
+        """Convert a text, the inverse of `to_json`.
+
+        Raises SceneError, and TypeError or ValueError for another text.
+        """
         return cls(tuple(Requirement(**one) for one in json.loads(text)), at_most)
 
 
 def examined_frames() -> Iterator[int]:
-    """The numbers of frames at which a run is examined, without end: 64, 96, 128, 192 ..."""
+    """Yield the numbers of frames at which a run is examined: 64, 96, 128, 192 ..."""
     first, second = _FIRST
     while True:
         yield first
@@ -107,16 +114,16 @@ def examined_frames() -> Iterator[int]:
 
 
 def is_examined(frames: int) -> bool:
-    """Whether a run is examined when it has so many frames."""
+    """Return True if a run is examined at this number of frames."""
     return next(count for count in examined_frames() if count >= frames) == frames
 
 
 def examined_before(frames: int) -> int | None:
-    """The number of frames of the last examination before that at so many; None if there is none."""
+    """Return the number of frames of the last examination before `frames`, or None."""
     earlier = list(takewhile(lambda count: count < frames, examined_frames()))
     return earlier[-1] if earlier else None
 
 
 def examined_from(frames: float) -> int:
-    """The number of frames of the first examination with at least so many."""
+    """Return the number of frames of the first examination with at least `frames` frames."""
     return next(count for count in examined_frames() if count >= frames)

@@ -1,1 +1,1 @@
-"""What theory expects of a run, by the equation that its engine solves, for its number of particles."""
+"""Theory for a run, by the equation that its engine solves, for its number of particles."""

@@ -36,29 +36,32 @@ LEAST_OF_MIXTURE = 10
 """Least number of particles of several sizes for which a theory is stated: terms of second order in 1/N are
 not known."""
 SOURCES = {EXACT: "Enskog", BOLTZMANN: "Boltzmann equation", ENSKOG: "Enskog equation"}
-"""Of what kinetic theory states of each equation; of particles that touch it is an approximation."""
+"""Names of the kinetic theory of each equation; for particles that touch it is an approximation."""
 
 
 def engine_of(run: Run) -> Engine | None:
-    """The engine that made a run; None if the frames do not state it."""
+    """Return the engine that made a run; None if the frames do not state it."""
     text = run.data.attrs.get("engine")
     return engine_from_dict(json.loads(text)) if text else None
 
 
 def equation_of(run: Run) -> str:
-    """The equation that the engine of a run solves, `EXACT` if the frames do not state an engine."""
+    """Return the equation that the engine of a run solves; `EXACT` without an engine."""
     engine = engine_of(run)
     return engine.equation if engine else EXACT
 
 
 def bias_of(run: Run, kind: str) -> float:
-    """The relative error that the engine states of its cells and steps."""
+    """Return the relative error due to cells and steps, as the engine states it."""
     engine = engine_of(run)
     return engine.bias(run.scene, kind) if engine else 0.0
 
 
 def partners(run: Run) -> float:
-    """A particle has N - 1 others about it where the equation of state has N."""
+    """Return the fraction (N - 1) / N of partners.
+
+    A particle has N - 1 others where the equation of state has N.
+    """
     return 1.0 - 1.0 / run.count
 
 
@@ -78,9 +81,10 @@ def contact_of_number(run: Run, packing_fraction: float, dimension: int) -> tupl
 
 
 def scale_of_number(run: Run, mixture: Mixture) -> float | None:
-    """Return the contact value of N particles divided by that of infinitely many, as of equal ones.
+    """Return the contact value of N particles divided by the value of infinitely many.
 
-    None for fewer than `LEAST_OF_MIXTURE` particles, and where it is not known for equal ones.
+    The ratio is taken from equal particles. None for fewer than `LEAST_OF_MIXTURE` particles, and where it is
+    not known for equal ones.
     """
     eta, d = mixture.packing_fraction, mixture.dimension
     if run.count < LEAST_OF_MIXTURE or (found := contact_of_number(run, eta, d)) is None:
@@ -92,8 +96,10 @@ _SANTOS = "Santos, Yuste and Lopez de Haro 2002, an approximation"
 
 
 def compressibility_factor(run: Run) -> Expected | None:
-    """Z at fixed energy: of the Boltzmann equation 1, of the Enskog equation that of its N (N - 1) / 2
-    pairs, exactly."""
+    """Compute the expected Z at fixed energy.
+
+    It is 1 by the Boltzmann equation; by the Enskog equation it is exact for its N (N - 1) / 2 pairs.
+    """
     equation = equation_of(run)
     if equation == BOLTZMANN:
         return 1.0, 0.0, "Boltzmann equation: particles without extent"
@@ -118,7 +124,7 @@ def compressibility_factor(run: Run) -> Expected | None:
 
 
 def _enskog_contacts(mixture: Mixture) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Numbers (S,), distances at contact (S, S) and contact values (S, S) of the Enskog model."""
+    """Return numbers (S,), contact distances (S, S) and contact values (S, S) of the Enskog model."""
     numbers, diameters = (np.array(each, dtype=float) for each in (mixture.counts, mixture.diameters))
     filled = float((numbers * theory.particle_volume(mixture.dimension) * diameters**mixture.dimension).sum())
     densities = numbers * mixture.packing_fraction / filled
@@ -127,8 +133,11 @@ def _enskog_contacts(mixture: Mixture) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def _pairs_of_enskog(mixture: Mixture) -> float:
-    """Z - 1 = (S / 2 d N V) sum over pairs N_i (N_j - delta_ij) sigma_ij^d g_ij, S the surface of a unit
-    sphere."""
+    """Compute Z - 1 of the Enskog model.
+
+    Z - 1 = (S / 2 d N V) sum over pairs N_i (N_j - delta_ij) sigma_ij^d g_ij, with S the surface of a unit
+    sphere.
+    """
     d, (numbers, distances, contacts) = mixture.dimension, _enskog_contacts(mixture)
     diameters = np.diag(distances)
     volume = float((numbers * theory.particle_volume(d) * diameters**d).sum()) / mixture.packing_fraction
@@ -138,7 +147,7 @@ def _pairs_of_enskog(mixture: Mixture) -> float:
 
 
 def collision_rate(run: Run) -> Expected | None:
-    """At fixed energy; exact but for the contact value."""
+    """Compute the expected collision rate at fixed energy; exact but for the contact value."""
     gas, equation = run.moving_fluid, equation_of(run)
     if gas is None:
         return None
@@ -153,7 +162,7 @@ def collision_rate(run: Run) -> Expected | None:
 
 
 def contact_values(run: Run) -> Expected | None:
-    """g_ij of N particles, of N_i (N_j - delta_ij) pairs."""
+    """Compute the expected g_ij of N particles, with N_i (N_j - delta_ij) pairs."""
     mixture = _mixture_of_species(run)
     if mixture is None or (scale := scale_of_number(run, mixture)) is None:
         return None
@@ -162,7 +171,10 @@ def contact_values(run: Run) -> Expected | None:
 
 
 def pair_rates(run: Run) -> Expected | None:
-    """Collisions of a particle of the first species of a pair, which has N_j - delta_ij partners."""
+    """Compute the expected collisions of a particle of the first species of each pair.
+
+    It has N_j - delta_ij partners.
+    """
     mixture = None if run.is_subset else _mixture_of_species(run)
     if mixture is None or (scale := scale_of_number(run, mixture)) is None:
         return None
@@ -173,7 +185,7 @@ def pair_rates(run: Run) -> Expected | None:
 
 
 def _mixture_of_species(run: Run) -> Mixture | None:
-    """The mixture, if each species is of one size and differs from the others."""
+    """Return the mixture, if each species is of one size and differs from the others."""
     mixture = run.mixture
     if mixture is None or len(mixture.counts) != len(run.scene.species) or equation_of(run) != EXACT:
         return None
@@ -181,8 +193,11 @@ def _mixture_of_species(run: Run) -> Mixture | None:
 
 
 def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
-    """On walls of one distance: of the fluid between hard walls; of points N k_B T over the volume that
-    centres can reach. touched (d,): its sides."""
+    """Compute the expected pressure on walls of one distance.
+
+    It is the pressure of the fluid between hard walls; for points N k_B T divided by the volume that centres
+    can reach. `touched` (d,) are the sides of this volume.
+    """
     walled, lengths = ~run.periodic, np.array(run.scene.container.lengths)
     gas, equation = run.scene.gas, equation_of(run)
     if gas is None or equation == ENSKOG:
@@ -204,7 +219,7 @@ def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
 
 
 def wall_force(run: Run) -> Expected | None:
-    """The pressure times the area of each face."""
+    """Compute the expected pressure times the area of each face."""
     touched = np.subtract(*run.scene.reach(run.scene.largest_moving_radius)[::-1])
     found = wall_pressure(run, touched)
     if found is None:
@@ -214,8 +229,11 @@ def wall_force(run: Run) -> Expected | None:
 
 
 def pressure_tensor(run: Run, temperature: float) -> Expected | None:
-    """n k_B T [(1 - 1/N) + Z_N - 1] on the diagonal: N - 1 particles' worth of flight about the centre of
-    mass."""
+    """Compute the expected pressure tensor.
+
+    The diagonal is n k_B T [(1 - 1/N) + Z_N - 1], where the first term is the flight of N - 1 particles about
+    the centre of mass.
+    """
     gas, equation = run.fluid, equation_of(run)
     if gas is None:
         return None
@@ -232,8 +250,10 @@ def pressure_tensor(run: Run, temperature: float) -> Expected | None:
 
 
 def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expected | None:
-    """(bins,) Maxwell's density between edges, of particles of one mass; None for others. fixed: whether the
-    kinetic energy does not change, so that the law of this number of particles is exact."""
+    """Compute Maxwell's density (bins,) between edges, for particles of one mass; None for others.
+
+    If `fixed`, the kinetic energy does not change, and the law of this number of particles is exact.
+    """
     if mass is None:
         return None
     law = theory.maxwell_cdf(edges, run.dimension, run.temperature, mass, int(run.freedom) if fixed else None)
@@ -245,8 +265,11 @@ def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expe
 
 
 def described(name: str, run: Run, *places: Any, **given: Any) -> dict[str, Any]:
-    """Units and label of an observable and, where there is a theory for a run, its values with their
-    uncertainties, and the source. places, given: what its function of theory takes beside the run."""
+    """Return units and label of an observable, and its theory for a run.
+
+    The theory, if there is one, has values, their uncertainties, and a source. `places` and `given` are the
+    arguments of its function of theory in addition to the run.
+    """
     about: dict[str, Any] = dict(observables.about(name, run.dimension))
     stated = observables.OBSERVABLES[name].theory
     if not stated or run.about != FLOW:  # theory is about the flow

@@ -1,5 +1,6 @@
-"""The mean velocity of a gas along an axis: at rest, sheared, and between plates that slide or that a force
-drives it along.
+"""Mean velocity of a gas along an axis, and fluxes to its walls, in steady states.
+
+The gas is at rest, sheared, between plates that slide, or driven along plates by a force.
 """
 
 from __future__ import annotations
@@ -26,10 +27,13 @@ from gaspart.theory.heat import INTERPOLATED, TEMPERATURE_JUMP
 FREE, FLUID = 100.0, 0.1
 """The Knudsen number from which on particles fly freely, and up to which the gas is a fluid."""
 _FIRST = 0.3
-"""Relative change of a flux of free flight by collisions, times the Knudsen number: 0.27 of the heat flux of
-spheres, 0.18 of that of discs, 0.50 of a stress, by addition of the resistances of both limits."""
+"""Relative change of a flux of free flight by collisions, times the Knudsen number.
+
+It is 0.27 for the heat flux of spheres, 0.18 for the heat flux of discs, 0.50 for a stress, by addition of
+the resistances of both limits.
+"""
 _DILUTE = 0.02
-"""Packing fraction up to which Enskog's coefficients and the equation of state are those of the gas."""
+"""Packing fraction up to which Enskog's coefficients and the equation of state apply to the gas."""
 _POINTS = 1e-4
 """Scale of the diameter at which the free path stays and the packing fraction vanishes."""
 _EQUAL = 1e-12
@@ -41,10 +45,14 @@ _PLAIN = {"thermal", "sliding", "accommodation", "centres_to_walls"}
 class Plates:
     """Equal smooth and elastic particles between two thermal plates, with a force along these at most.
 
-    axis: across them; length: of the gap, where centres can be; density: the mean number density there;
-    temperatures: of the low and the high plate; slide (d,): the velocity of the high one relative to the low
-    one; components: that they draw; accommodation: of the low and the high one; knudsen: the mean free path
-    over the gap.
+    axis : axis across the plates.
+    length : length of the gap in which centres can be.
+    density : mean number density there.
+    temperatures : temperatures of the low and the high plate.
+    slide : (d,), velocity of the high plate relative to the low one.
+    components : components of velocities that the plates draw.
+    accommodation : accommodation of the low and the high plate.
+    knudsen : mean free path divided by the gap.
     """
 
     axis: int
@@ -61,18 +69,20 @@ class Plates:
 
     @property
     def accommodating(self) -> bool:
-        """Whether both draw velocities after every hit, as theory of a fluid has it."""
+        """True if both plates draw velocities after every hit, as theory of a fluid assumes."""
         return min(self.accommodation) == 1.0
 
     @property
     def freedom(self) -> float:
-        """The mean free path over the way that a particle flies between two hits after which its velocity is
-        drawn, at the plate that does so more rarely: the Knudsen number where both always do."""
+        """Mean free path divided by the length of flight between two hits that draw the velocity.
+
+        The plate that draws velocities more rarely counts: it is the Knudsen number if both always do.
+        """
         return self.knudsen * min(self.accommodation)
 
     @property
     def equal(self) -> bool:
-        """Whether both have one temperature."""
+        """True if both plates have one temperature."""
         low, high = self.temperatures
         return abs(low - high) <= _EQUAL * high
 
@@ -83,7 +93,10 @@ class Plates:
 
 
 def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
-    """(face,) heat that these faces, by their numbers, take per area and time in a steady state."""
+    """Compute the heat (face,) that these faces take per area and time in a steady state.
+
+    Faces are given by their numbers.
+    """
     if _in_equilibrium(run):
         return np.zeros(len(faces)), 0.0, "equilibrium"
     plates = plates_of(run)
@@ -100,8 +113,10 @@ def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
 
 
 def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
-    """(face, component) momentum along these axes that these faces are given per area and time in a steady
-    state."""
+    """Compute the momentum (face, component) that faces take per area and time.
+
+    The components are along these axes; the state is steady.
+    """
     if found := _driven(run, faces, axes):
         return found
     plates = plates_of(run)
@@ -117,7 +132,10 @@ def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None
 
 
 def plates_of(run: Run, driven: bool = False) -> Plates | None:
-    """The plates of a run, None for any other scene. driven: of one whose gas a force drives along them."""
+    """Return the plates of a run, None for any other scene.
+
+    If `driven`, the plates of a gas that a force drives along them.
+    """
     scene, thermal = run.scene, run.scene.faces_of(Thermal)
     numbers = [number for number, _ in thermal]
     if not scene.alike or scene.features - _PLAIN - {"gravity"} or not run.moving.all():
@@ -150,7 +168,10 @@ def plates_of(run: Run, driven: bool = False) -> Plates | None:
 
 
 def _free_path(density: float, diameter: float, run: Run) -> float:
-    """Of spheres that touch as often as the equation of the run states; without end where theory ends."""
+    """Return the mean free path of spheres by the equation of the run.
+
+    It is 0 above the range of the theory.
+    """
     if equation_of(run) == BOLTZMANN:
         scaled = density / _POINTS ** (run.dimension - 1)
         filled = theory.packing_fraction(scaled, run.dimension, diameter * _POINTS)
@@ -162,7 +183,7 @@ def _free_path(density: float, diameter: float, run: Run) -> float:
 
 
 def _in_equilibrium(run: Run) -> bool:
-    """Whether all that exchanges energy with the gas has one temperature and is at rest."""
+    """Return True if everything that exchanges energy has one temperature and is at rest."""
     scene = run.scene
     faces = [face for _, face in scene.faces_of(Thermal)]
     still = len(faces) == len(scene.faces) and not any(face.slides for face in faces)
@@ -174,7 +195,7 @@ def _in_equilibrium(run: Run) -> bool:
 
 
 def _conducted(plates: Plates, points: bool) -> tuple[float, float, str] | None:
-    """The heat flux from the hot to the cold plate."""
+    """Compute the heat flux from the hot to the cold plate."""
     hot, cold = max(plates.temperatures), min(plates.temperatures)
     fractions = plates.accommodation if plates.temperatures[0] == hot else plates.accommodation[::-1]
     free = theory.free_molecular_flux(
@@ -201,7 +222,7 @@ def _conducted(plates: Plates, points: bool) -> tuple[float, float, str] | None:
 
 
 def _sheared(plates: Plates, run: Run) -> tuple[float, float, str] | None:
-    """The shear stress on plates of one temperature that slide."""
+    """Compute the shear stress on plates of one temperature that slide."""
     speed, temperature = float(np.hypot.reduce(plates.slide)), plates.temperatures[0]
     gas = plates.density, speed, temperature, plates.mass, plates.accommodation
     free = float(theory.free_molecular_stress(*gas))
@@ -221,13 +242,15 @@ def _sheared(plates: Plates, run: Run) -> tuple[float, float, str] | None:
 
 
 def dilute(plates: Plates, run: Run) -> bool:
-    """Whether the coefficients of a dilute gas are those of the run."""
+    """Return True if the coefficients of a dilute gas apply to the run."""
     return equation_of(run) == BOLTZMANN or plates.filled < _DILUTE
 
 
 def heating_of(plates: Plates) -> float:
-    """By how much friction warms spheres in the middle between sliding plates, over the temperature: 2/15 m
-    u^2 in units of k_B T, u half the speed."""
+    """Compute the rise of temperature by friction in the middle between sliding plates, divided by T.
+
+    For spheres it is 2/15 m u^2 in units of k_B T, with u half the speed.
+    """
     square = float((plates.slide**2).sum())
     return plates.mass * square / (30.0 * max(plates.temperatures))
 
@@ -238,7 +261,7 @@ def _between(what: str) -> str:
 
 
 def _friction(plates: Plates, run: Run) -> Expected | None:
-    """Each of two equal plates takes half the work of the stress."""
+    """Compute the heat of friction, half the work of the stress for each plate."""
     if not plates.equal or (stress := _sheared(plates, run)) is None:
         return None
     value, error, source = stress
@@ -247,7 +270,7 @@ def _friction(plates: Plates, run: Run) -> Expected | None:
 
 
 def _driven(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
-    """The weight of the gas along the faces, half on each of two equal ones, exactly."""
+    """Compute the exact weight of the gas along the faces, half on each of two."""
     scene, driven = run.scene, run.scene.driven_axes
     equal = len(faces) == 2 and faces[0] // 2 == faces[1] // 2 and len(scene.faces) == 2
     if not driven or not equal or scene.walls or not run.moving.all():
@@ -263,11 +286,11 @@ def _driven(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
 
 
 _ROUNDING = 1e-6
-"""Of the largest velocity: a drift below it is the rounding of frames."""
+"""Relative drift that rounding of the frames can cause: a fraction of the largest velocity."""
 
 
 def velocity(run: Run, axis: int, places: np.ndarray) -> Expected | None:
-    """(component, position) at places (P,) along an axis, in a steady state."""
+    """Compute the velocity (component, position) at positions (P,) along an axis, in a steady state."""
     scene = run.scene
     if scene.shear_rate is not None:
         middle = np.tile(0.5 * np.array(scene.container.lengths), (len(places), 1))
@@ -285,8 +308,10 @@ def velocity(run: Run, axis: int, places: np.ndarray) -> Expected | None:
 
 
 def _drift(run: Run) -> np.ndarray:
-    """(d, 1) the velocity of the centre of mass, about the flow of sheared images, along axes on which it is
-    conserved, 0 along others."""
+    """Compute the velocity (d, 1) of the centre of mass, about the flow of sheared images.
+
+    It is 0 along axes on which it is not conserved.
+    """
     velocities = run.velocities
     if run.scene.shear_rate is not None:
         velocities = velocities - flow(run.scene, run.positions)
@@ -297,7 +322,7 @@ def _drift(run: Run) -> np.ndarray:
 
 
 def _between_plates(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expected | None:
-    """Between plates of one temperature, or that do not slide."""
+    """Compute the velocity between plates of one temperature, or that do not slide."""
     velocities = dict(run.scene.sliding_faces)
     ends = [velocities.get(2 * plates.axis + side) for side in (0, 1)]
     rest = (0.0,) * run.dimension
@@ -325,11 +350,11 @@ def _between_plates(plates: Plates, run: Run, axis: int, places: np.ndarray) -> 
 
 
 def _pushed(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expected | None:
-    """Along plates of one temperature at rest, by a force.
+    """Compute the velocity that a force drives along plates of one temperature at rest.
 
-    Uncertain by the next order of the slip, by the packing fraction, and by half of what friction warms the
-    gas: in units of k_B T, with the greatest velocity u, 4/45 m u^2 in the middle, and at the plates 32/45 m
-    u^2 times the coefficient of the temperature jump times the Knudsen number.
+    The uncertainty is the next order of the slip, the packing fraction, and half of the heating of the gas by
+    friction: in units of k_B T, with the greatest velocity u, 4/45 m u^2 in the middle, and at the plates
+    32/45 m u^2 times the coefficient of the temperature jump times the Knudsen number.
     """
     slow = not plates.slide.any() and plates.equal and axis == plates.axis
     if not slow or plates.dimension == 2 or not 0.0 < plates.knudsen <= FLUID or not dilute(plates, run):
@@ -350,8 +375,11 @@ def _pushed(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expected
 
 
 def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndarray) -> Expected | None:
-    """(component,) particles that pass the plane across an axis per time; members (n,): those that count;
-    beyond (T,): how many of them are beyond the plane."""
+    """Compute the number of particles (component,) that pass the plane across an axis per time.
+
+    members : (n,), the particles that count.
+    beyond : (T,), number of these beyond the plane.
+    """
     scene = run.scene
     if not scene.walls:
         return _closed(run)
@@ -374,8 +402,10 @@ def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndar
 
 
 def _closed(run: Run) -> Expected | None:
-    """Return the flux 0 of a steady state; None for a start in a region, and beside a piston, which moves
-    what it compresses."""
+    """Return the flux 0 of a steady state.
+
+    None for a start in a region, and in a container with a piston, which moves what it compresses.
+    """
     scene = run.scene
     if scene.is_open or scene.has_piston or any(kind.region is not None for kind in scene.species):
         return None
@@ -383,7 +413,7 @@ def _closed(run: Run) -> Expected | None:
 
 
 def _path(run: Run) -> float:
-    """The mean free path of the largest particles in the whole container."""
+    """Compute the mean free path of the largest particles in the whole container."""
     lower, upper = run.scene.reach(run.scene.largest_radius)
     density = run.count / float(np.subtract(upper, lower).prod())
     filled = theory.packing_fraction(density, run.dimension, 2.0 * run.scene.largest_radius)
@@ -393,8 +423,10 @@ def _path(run: Run) -> float:
 
 
 def opening(scene: Scene, axis: int, place: float, radius: float) -> float | None:
-    """The area of the plane across an axis, in two dimensions its length, that interior walls in it leave to
-    centres of particles of a radius. None if no wall lies in it, or if a plate is not along the axes."""
+    """Compute the area of a plane that interior walls in it leave to particle centres.
+
+    In two dimensions it is a length. None if no wall lies in the plane, or if a plate is not along the axes.
+    """
     across = [k for k in range(scene.dimension) if k != axis]
     near, length = 1e-9 * scene.container.lengths[axis], scene.container.lengths[axis]
     shadows = []
@@ -412,7 +444,7 @@ def opening(scene: Scene, axis: int, place: float, radius: float) -> float | Non
 
 
 def _uncovered(shadows: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> float:
-    """The measure of a box from lower to upper (k,) that boxes (W, 2, k) leave."""
+    """Compute the measure of a box, from lower to upper, that boxes (W, 2, k) leave."""
     edges = [
         np.unique(np.clip(np.append(shadows[:, :, k], [lower[k], upper[k]]), lower[k], upper[k]))
         for k in range(len(lower))

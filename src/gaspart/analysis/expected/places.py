@@ -19,8 +19,10 @@ fraction of 0.3, 16 % for three and 3 % for four, and below 1 % for 16 at 0.65, 
 
 
 def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expected | None:
-    """(distance,) of spheres that touch the value at contact, at the first places beyond the diameter, in
-    bins of a width; of points 1."""
+    """Compute the expected g(r) (distance,): for spheres that touch the contact value, for points 1.
+
+    The contact value is given at the first distances beyond the diameter, in bins of a width.
+    """
     equation, gas = equation_of(run), run.fluid
     if equation == BOLTZMANN:
         return _of_points(run, np.ones(len(distance)))
@@ -34,14 +36,17 @@ def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expecte
 
 
 def _of_points(run: Run, values: Any) -> Expected | None:
-    """What independent places give, of smooth and elastic particles without a field."""
+    """Return values for independent positions of smooth and elastic particles without a field."""
     if run.mixture is None and run.scene.gas is None:
         return None
     return values, 0.0, "Boltzmann equation: independent places"
 
 
 def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
-    """(wave_number,) of equal spheres Verlet and Weis's, an approximation; of points 1."""
+    """Compute the expected S(k) (wave_number,).
+
+    For equal spheres it is Verlet and Weis's, an approximation; for points 1.
+    """
     equation, gas = equation_of(run), run.fluid
     if equation == BOLTZMANN:
         return _of_points(run, np.ones(len(wave_number)))
@@ -52,7 +57,10 @@ def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
 
 
 def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | None:
-    """(pair, wave_number) of spheres of one size in each species; of points 1 of equal species, and 0."""
+    """Compute the expected partial structure factors (pair, wave_number).
+
+    They hold for spheres of one size in each species; for points they are 1 of equal species, otherwise 0.
+    """
     equation, mixture, species = equation_of(run), run.mixture, run.scene.species
     pairs = pairs_of(run.scene)
     same = np.array([[float(a == b)] for a, b in pairs]) + 0.0 * wave_number
@@ -74,9 +82,12 @@ def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | N
 
 
 def chemical_potential(run: Run) -> Expected | None:
-    """By insertion into a number of particles: by the equation of state, or, exactly, into points, none of
-    which may be nearer than the sum of the radii to the place. A scalar of equal particles, otherwise
-    (species,)."""
+    """Compute the expected chemical potential by insertion into a finite number of particles.
+
+    It follows from the equation of state, or, exactly, from insertion into points, none of which may be
+    nearer to the position than the sum of the radii. It is a scalar for equal particles, otherwise
+    (species,).
+    """
     equation, mixture = equation_of(run), run.mixture
     if equation == ENSKOG or mixture is None:
         return None
@@ -100,7 +111,7 @@ def chemical_potential(run: Run) -> Expected | None:
 
 
 def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | None:
-    """That of independent places, in a container in which no image counts twice."""
+    """Compute the chemical potential of independent positions, if no image counts twice."""
     between = 0.5 * np.add.outer(diameters, diameters)
     covered = np.array([theory.particle_volume(run.dimension, 2.0 * one) for one in between.ravel()])
     chance = 1.0 - covered.reshape(between.shape) / run.scene.container.volume
@@ -111,7 +122,7 @@ def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | N
 
 
 def temperature(run: Run) -> Expected | None:
-    """The same everywhere in equilibrium."""
+    """Return the temperature of equilibrium, the same everywhere."""
     scene = run.scene
     if scene.faces or scene.face_temperatures or run.dissipates or scene.thermostat or scene.moving_wall:
         return None
@@ -119,8 +130,10 @@ def temperature(run: Run) -> Expected | None:
 
 
 def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expected | None:
-    """(bins,) of all equal particles, the same everywhere, or under gravity along the axis: by hydrostatics,
-    of points by the barometric law."""
+    """Compute the expected density (bins,) of all equal particles.
+
+    It is uniform, or under gravity along the axis hydrostatic, for points by the barometric law.
+    """
     scene, kinds = run.scene, run.scene.kinds
     field = 0.0 if scene.gravity is None else scene.gravity[axis]
     across = scene.gravity is not None and any(g for n, g in enumerate(scene.gravity) if n != axis)
@@ -137,7 +150,7 @@ def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expe
 
 
 def _stratified(run: Run, axis: int, edges: np.ndarray, field: float) -> Expected | None:
-    """(bins,) the density of equal particles under gravity along an axis."""
+    """Compute the density (bins,) of equal particles under gravity along an axis."""
     scene, kind = run.scene, run.scene.kinds[0]
     lower, upper = scene.reach(kind.radius)
     z = np.linspace(lower[axis], upper[axis], 2001)

@@ -31,7 +31,10 @@ _WINDOW = 12.0, 24.0
 
 
 def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) -> Expected | None:
-    """(lag,) by the linear Boltzmann equation; axes: along each of them."""
+    """Compute the expected displacement (lag,) by the linear Boltzmann equation.
+
+    If `axes`, it is along each axis.
+    """
     gas = None if run.is_subset else run.moving_fluid
     if gas is None:
         return None
@@ -43,7 +46,7 @@ def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) ->
 
 
 def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
-    """(lag,) with the exact decay at the start."""
+    """Compute the expected autocorrelation (lag,) with the exact decay at the start."""
     gas = None if run.is_subset else run.moving_fluid
     if gas is None:
         return None
@@ -56,9 +59,11 @@ def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
 def diffusion(
     run: Run, ends: np.ndarray | None = None, window: np.ndarray | tuple[float, float] = _WINDOW
 ) -> Expected | None:
-    """D of spheres in a periodic cube; see `diffusion_in_cube`. ends (2,): lags between which it is half of
-    the slope of the mean-squared displacement along an axis; window (2,): collisions of a particle between
-    which the slope is that of D."""
+    """Compute D of spheres in a periodic cube; see `diffusion_in_cube`.
+
+    ends : (2,), lags between which D is half of the slope of the mean-squared displacement along an axis.
+    window : (2,), collisions of a particle between which the slope is taken as D.
+    """
     if ends is not None:
         found = mean_squared_displacement(run, ends, axes=True)
         return found and (0.5 * float(np.diff(found[0])[0] / np.diff(ends)[0]), *found[1:])
@@ -75,13 +80,13 @@ def diffusion_in_cube(
     scene: Scene | None,
     window: np.ndarray | tuple[float, float] = _WINDOW,
 ) -> Expected | None:
-    """D of spheres in a periodic cube, by the engine that moves them in a scene, by default an exact one.
+    """Compute D of spheres in a periodic cube for the engine of a scene.
 
-    Of spheres that touch it is Erpenbeck and Wood's, less the shift of Yeh and Hummer, and less what modes of
-    the container add after the slope was taken, of which a half is uncertain. Of a kinetic equation
-    it is that of this equation, and what the flow in the container adds, which its cells resolve. Half of
-    shift and addition, and the bias of the engine, are its uncertainty. None for discs, and spheres denser
-    than the fluid.
+    The default engine is an exact one. For spheres that touch, D is Erpenbeck and Wood's, less the shift of
+    Yeh and Hummer, and less what modes of the container add after the slope was taken, half of which is
+    uncertain. By a kinetic equation it is D of this equation, and the contribution of the flow in the
+    container, which its cells resolve. Half of shift and addition, and the bias of the engine, are its
+    uncertainty. None for discs, and for spheres denser than the fluid.
     """
     if gas.dimension == 2 or gas.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
         return None
@@ -103,8 +108,11 @@ def diffusion_in_cube(
 
 
 def _after_window(gas: Gas, window: np.ndarray | tuple[float, float]) -> float:
-    """What D(t) at the collisions of a particle between which its slope is taken lacks of its limit, by the
-    hydrodynamic modes of the container (`theory.diffusion_modes`)."""
+    """Compute the difference between the limit of D(t) and its value in a window.
+
+    The slope is taken in the window, in collisions of a particle; the difference is due to the hydrodynamic
+    modes of the container (`theory.diffusion_modes`).
+    """
     unit = gas.diameter / gas.thermal_speed
     times = np.linspace(float(window[0]), float(window[1]), 9) / bulk.collision_rate(gas, EXACT) / unit
     lacking = theory.diffusion_modes(times, gas.packing_fraction, 3, gas.count) - times / gas.count
@@ -112,7 +120,10 @@ def _after_window(gas: Gas, window: np.ndarray | tuple[float, float]) -> float:
 
 
 def mutual_diffusion(run: Run) -> Expected | None:
-    """Enskog's in the first approximation, with the contact values of the equation."""
+    """Compute Enskog's mutual diffusion in the first approximation.
+
+    The contact values follow from the equation.
+    """
     kinds, eta, d = run.scene.species, run.scene.packing_fraction, run.dimension
     if not all(kind.alike for kind in kinds) or eta > theory.HIGHEST_PACKING_FRACTION[d]:
         return None
@@ -134,10 +145,10 @@ def mutual_diffusion(run: Run) -> Expected | None:
 def _transport(
     run: Run, temperature: float, coefficient: Callable[[Gas, str], float], kind: str = ""
 ) -> Expected | None:
-    """A transport coefficient by fluctuations of N particles at fixed energy.
+    """Compute a transport coefficient by fluctuations of N particles at fixed energy.
 
-    Those of a dilute gas, of a kind that `theory.transport_finite_size_factor` knows, are lower than of an
-    infinite one by this factor.
+    The coefficients of a dilute gas, of a kind that `theory.transport_finite_size_factor` knows, are lower
+    than in an infinite gas by this factor.
     """
     gas, equation = run.fluid, equation_of(run)
     if gas is None or not temperature > 0.0:
@@ -155,12 +166,15 @@ def _transport(
 
 
 def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
-    """By fluctuations."""
+    """Compute the expected bulk viscosity by fluctuations."""
     return _transport(run, temperature, bulk.bulk_viscosity)
 
 
 def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
-    """By fluctuations; of points of several masses or sizes Chapman and Enskog's."""
+    """Compute the expected thermal conductivity by fluctuations.
+
+    For points of several masses or sizes it is Chapman and Enskog's.
+    """
     mixture = run.mixture
     if run.scene.alike or mixture is None or not temperature > 0.0:
         return _transport(run, temperature, bulk.thermal_conductivity, "conductivity")
@@ -173,7 +187,10 @@ def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
 
 
 def shear_viscosity(run: Run, temperature: float) -> Expected | None:
-    """By fluctuations; of a sheared gas by its response to a small rate."""
+    """Compute the expected shear viscosity by fluctuations.
+
+    For a sheared gas it is the response to a small rate.
+    """
     if run.scene.shear_rate is None:
         return _transport(run, temperature, bulk.shear_viscosity, "viscosity")
     gas, equation = replace(run.scene, faces={}).gas, equation_of(run)

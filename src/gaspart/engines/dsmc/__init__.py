@@ -1,1 +1,1 @@
-"""The DSMC engine: collision partners are sampled among the particles of a cell (Bird 1994)."""
+"""DSMC engine: collision partners are sampled among the particles of a cell (Bird 1994)."""

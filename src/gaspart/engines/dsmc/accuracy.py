@@ -1,9 +1,9 @@
 """Bounds on the errors of the DSMC engine in a steady scene, from its local conditions.
 
-The Boltzmann model lacks the excluded volume: in the contact value, in the virial, and in contacts, which
-have no extent. The Enskog model is given the contact value of the local density; what it does not have is the
-memory of collisions, that of a pair among few particles, and the layers of particles at a wall. Cells average
-over what changes within them.
+The Boltzmann model lacks the excluded volume: in the contact value, in the virial, and in collisions, which
+have no extent. The Enskog model has the contact value of the local density; it lacks the memory of
+collisions, the contact value of a finite number of particles, and the layers of particles at a wall. Cells
+average over variations within them.
 """
 
 from __future__ import annotations
@@ -13,29 +13,38 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.engine import Asked, Candidate, Local
+from gaspart.engines.engine import Asked, Candidate
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
+    from gaspart.engines.conditions import Layers
     from gaspart.engines.dsmc.settings import DSMC
 
 DENSEST = 0.4
-"""Packing fraction up to which the Enskog model is known."""
+"""Packing fraction up to which the errors of the Enskog model are known."""
 _STATIC = 3e-3
-"""Bound on its error in Z, the collision rate and pressures of an even gas (figure `dsmc_convergence`)."""
+"""Bound on its error in Z, collision rate and pressures of a homogeneous gas (`dsmc_convergence`)."""
 _NORMAL = {2: 2.0 / math.pi, 3: 0.5}
 """Mean of |e_z| of a contact, by dimension."""
 _AT_WALLS = 2.5
-"""Error of the Enskog model's collision rate over the packing fraction and the diameter over the distance of
-two walls: 2.1 at most in slits of 4, 8 and 16 diameters, at packing fractions of 0.05 to 0.3."""
+"""Error of the Enskog model's collision rate between two walls, in units of the product below.
+
+The product is the packing fraction times the diameter divided by the distance of the walls. The measured
+value is 2.1 at most in slits of 4, 8 and 16 diameters, at packing fractions of 0.05 to 0.3.
+"""
 _ON_PROFILES = 2.0
-"""What cells change in the collision rate of the Enskog model over that of the Boltzmann model, at most: the
-contact value too is that of the mean density."""
+"""Maximum ratio of the effects of cells on the collision rates of the Enskog and the Boltzmann model.
+
+In the Enskog model the contact value too is taken at the mean density of a cell.
+"""
 
 
 def candidate(engine: DSMC, asked: Asked) -> Candidate:
-    """The engine with the cells and the step that it chooses. Raises SceneError where these are too coarse
-    for the local conditions, and for a gas that is too dense for the Enskog model."""
+    """Choose cells and step of the engine, and bound its errors.
+
+    Raises SceneError if the cells or the step are too coarse for the local conditions, and if the gas is too
+    dense for the Enskog model.
+    """
     conditions, dense = asked.conditions, engine.model == "enskog"
     filled = float(conditions.filled.max())
     if dense and filled > DENSEST:
@@ -48,17 +57,15 @@ def candidate(engine: DSMC, asked: Asked) -> Candidate:
 
 
 def boltzmann_error(asked: Asked) -> float:
-    """Bound on the relative error of the Boltzmann equation: pairs in a cell collide as if they were
-    points."""
+    """Bound the relative error of the Boltzmann equation, in which particles are points."""
     conditions, scene = asked.conditions, asked.scene
-    error = (conditions.memory if asked.transported else 0.0) + _layers(asked)
+    error = (asked.memory if asked.transported else 0.0) + _layers(asked)
     if asked.observable != "pressure":
         lost = _NORMAL[scene.dimension] * conditions.surfaces
         error += lost / (1.0 - lost) if lost < 1.0 else math.inf
     few = float((conditions.contact_of_few / conditions.contact).max()) - 1.0
-    differing = conditions.of_points(asked.observable, asked.face)
-    if differing is not None:
-        return float(error + few + differing)
+    if asked.points is not None:
+        return float(error + few + asked.points)
     virial = float(conditions.virial.max())
     if math.isinf(virial):
         return math.inf
@@ -67,12 +74,16 @@ def boltzmann_error(asked: Asked) -> float:
 
 
 def enskog_error(asked: Asked, cells: tuple[int, ...] | None = None) -> float:
-    """Bound on the relative error of the Enskog equation: pairs collide a diameter apart, with the contact
-    value of their density; cells: along each axis, by default narrow ones."""
+    """Bound the relative error of the Enskog equation.
+
+    Pairs collide a diameter apart, with the contact value of their density.
+
+    cells : number of cells along each axis; by default narrow cells
+    """
     conditions = asked.conditions
     error = _STATIC + _layers(asked)
     if asked.transported:
-        error += conditions.memory
+        error += asked.memory
     error += float((conditions.contact_of_few / conditions.contact).max()) - 1.0
     error += _AT_WALLS * float(conditions.filled.max()) * conditions.surfaces
     if asked.observable == "pressure" and cells is not None:
@@ -84,9 +95,12 @@ def enskog_error(asked: Asked, cells: tuple[int, ...] | None = None) -> float:
 
 
 def cell_error(engine: DSMC, asked: Asked) -> float:
-    """Bound on what cells and steps change: in the viscosity, and in what depends on it, by the shortest free
-    path; in a rate by the mean over a cell, of a density that changes by e over the scale; in the Enskog
-    model by the collisions that are lost among few in a cell."""
+    """Bound the relative error due to cells and steps.
+
+    The error is in the viscosity, and in observables that depend on it, by the shortest free path; in a rate
+    by the mean over a cell, of a density that changes by e over the scale; in the Enskog model by the
+    collisions that are lost among few particles in a cell.
+    """
     conditions, error = asked.conditions, 0.0
     if asked.transported:
         error += engine.predictions(asked.scene)["viscosity_error"] * conditions.contrast**2
@@ -98,9 +112,12 @@ def cell_error(engine: DSMC, asked: Asked) -> float:
     return float(error + (_lost(engine, conditions) if dense else 0.0))
 
 
-def require_resolved(engine: DSMC, conditions: Local) -> None:
-    """Raise SceneError for cells or steps that are longer than a length or a time over which an uneven gas
-    changes, or than its shortest free path or time. What an even gas is like does not depend on them."""
+def require_resolved(engine: DSMC, conditions: Layers) -> None:
+    """Raise SceneError for cells or steps that do not resolve an inhomogeneous gas.
+
+    They must not be longer than the length or time over which the gas changes, nor than its shortest free
+    path or time. The state of a homogeneous gas does not depend on them.
+    """
     if conditions.axis is None:
         return
     widths = cell_widths(engine, conditions)
@@ -120,8 +137,11 @@ def require_resolved(engine: DSMC, conditions: Local) -> None:
             raise SceneError(key, value, f"{what} {size:.2g}, more than {limit:.2g}, {name}")
 
 
-def cell_widths(engine: DSMC, conditions: Local) -> np.ndarray:
-    """(d,) the sides of a cell, 0 along an axis that has one cell between periodic faces and no profile."""
+def cell_widths(engine: DSMC, conditions: Layers) -> np.ndarray:
+    """Return the sides (d,) of a cell, 0 along an axis without profile and cells.
+
+    Such an axis has one cell between periodic faces and no profile.
+    """
     cells = np.array(cells_of(engine, conditions))
     around = np.array(conditions.scene.container.periodic)
     flat = (cells == 1) & around
@@ -130,14 +150,16 @@ def cell_widths(engine: DSMC, conditions: Local) -> np.ndarray:
     return np.where(flat, 0.0, conditions.free / cells)
 
 
-def cells_of(engine: DSMC, conditions: Local) -> tuple[int, ...]:
-    """(d,) the cells along each axis, 1 where none are stated."""
+def cells_of(engine: DSMC, conditions: Layers) -> tuple[int, ...]:
+    """Return the number of cells along each axis (d,), by default 1."""
     return tuple(np.broadcast_to(np.array(engine.cells_per_side or 1), conditions.free.shape).tolist())
 
 
 def _layers(asked: Asked) -> float:
-    """What the layers of particles at walls are of a density: they have Z times the density of the middle, in
-    about a diameter."""
+    """Return the relative error of a density due to the layers of particles at walls.
+
+    In these layers the density is Z times the density of the middle, over about a diameter.
+    """
     conditions, scene = asked.conditions, asked.scene
     if asked.observable != "density" or scene.container.periodic[-1]:
         return 0.0
@@ -146,9 +168,11 @@ def _layers(asked: Asked) -> float:
     return float(conditions.virial.max()) * math.sqrt(sigma / max(length, sigma))
 
 
-def _lost(engine: DSMC, conditions: Local) -> float:
-    """The collisions that the engine loses where fewer particles are in a cell than in the mean, weighted by
-    collisions."""
+def _lost(engine: DSMC, conditions: Layers) -> float:
+    """Return the fraction of collisions that the engine loses, weighted by collisions.
+
+    Collisions are lost in cells with fewer particles than the mean.
+    """
     weights = conditions.share * conditions.contact
     fewer = float(weights.sum() / (weights * conditions.crowding).sum())
     return engine.bias(conditions.scene, "rates") * fewer

@@ -31,14 +31,14 @@ MOST_KINDS = 2**16
 
 
 def empty_particles(state: State) -> Particles:
-    """Room for the particles."""
+    """Return empty arrays for the particles."""
     d, n = state.dimension, state.count
     rows = np.append(np.arange(2 * d + 1), 0)
     return Particles(np.empty((2 * d + 1, n)), rows, np.zeros((2, n), np.uint32), np.zeros((d, n), np.int32))
 
 
 def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -> Grid:
-    """So many cells along each axis, where centres may be."""
+    """Return the grid with a number of cells along each axis, where centres may be."""
     lower, upper = accessible(scene)
     per_side = np.array(cells, dtype=np.int64)
     strides = np.append(np.cumprod(per_side[:0:-1])[::-1], 1)
@@ -57,8 +57,11 @@ def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -
 
 
 def kinds_of(state: State) -> tuple[np.ndarray, np.ndarray]:
-    """(K, 3) radius, mass and moment of inertia of the kinds of particles; and the kind (N,) of each, or (0,)
-    if all are alike."""
+    """Return the kinds of particles, and the kind (N,) of each particle.
+
+    A kind has radius, mass and moment of inertia (K, 3). The kinds of the particles are (0,) if all particles
+    are alike.
+    """
     properties = np.stack([state.radii, state.masses, state.moments_of_inertia], axis=1)
     if not len(properties) or (properties == properties[0]).all():
         return properties[:1], np.zeros(0, np.uint16)
@@ -71,7 +74,7 @@ def kinds_of(state: State) -> tuple[np.ndarray, np.ndarray]:
 def workspace_for(
     engine: DSMC, scene: Scene, state: State, step: float, seed: int | tuple[int, ...]
 ) -> Workspace:
-    """The workspace of a step, with the tally at zero."""
+    """Return the workspace of a step, with the tally at zero."""
     kinds, which = kinds_of(state)
     threads, faces, d = engine.threads, 2 * scene.dimension, scene.dimension
     radius, mass, inertia = (np.ascontiguousarray(column) for column in kinds.T)
@@ -106,11 +109,11 @@ def workspace_for(
 
 
 TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")
-"""The arrays of `Workspace` that count; by thread."""
+"""Arrays of `Workspace` with counts, by thread."""
 
 
 def faces_for(scene: Scene, threads: int) -> Faces | None:
-    """The kinds of the container's faces, if any is thermal."""
+    """Return the kinds of the container's faces, or None if no face is thermal."""
     if not scene.faces:
         return None
     velocities = sliding_velocities(scene)
@@ -119,5 +122,5 @@ def faces_for(scene: Scene, threads: int) -> Faces | None:
 
 
 def law_for(law: ContactLaw | None) -> Law | None:
-    """The law of contacts as this engine's kernels take it, or None if all are elastic and smooth."""
+    """Convert the collision law for this engine's kernels; None if collisions are elastic and smooth."""
     return None if law is None else Law(law.normal, law.tangential, law.spins, law.viscous)

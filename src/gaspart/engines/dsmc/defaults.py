@@ -1,6 +1,7 @@
-"""How often particles collide, what the engine's settings follow from, and with what error.
+"""Collision rates of a gas, the default settings of the engine, and their errors.
 
-Mean values of a gas that fills its container evenly, with Maxwellian velocities of each kind's mean square.
+The rates are mean values of a gas that fills its container homogeneously, with Maxwellian velocities of each
+kind's mean square.
 """
 
 from __future__ import annotations
@@ -32,30 +33,36 @@ _HIGHEST = 0.7  # packing fraction up to which contact values are evaluated
 
 @dataclass(frozen=True)
 class Rates:
-    """frequency: collisions of a particle per time; speed: the mean speed; path: the mean free path with all
-    kinds of particles at one temperature, infinite if nothing collides."""
+    """Mean collision rate, speed and free path of a gas.
+
+    Attributes
+    ----------
+    frequency : number of collisions of a particle per time
+    speed : mean speed
+    path : mean free path with all kinds of particles at one temperature, infinite if nothing collides
+    """
 
     frequency: float
     speed: float
     path: float
 
     def crowded(self, times: float) -> Rates:
-        """The rates where the density is so many times as high."""
+        """Return the rates at a density multiplied by `times`."""
         return Rates(times * self.frequency, self.speed, self.path / times)
 
 
 def accessible(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """(d,), (d,): the lowest and highest coordinates of centres of the smallest particles."""
+    """Return the lowest and highest coordinates (d,) of centres of the smallest particles."""
     lower, upper = scene.reach(scene.smallest_radius)
     return np.array(lower), np.array(upper)
 
 
 def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: int) -> np.ndarray:
-    """(K, K) pair distributions at contact of a mixture.
+    """Compute the contact values (K, K) of the pair distributions of a mixture.
 
-    Boublik, J. Chem. Phys. 53, 471 (1970), and Mansoori et al., J. Chem. Phys. 54, 1523 (1971), for spheres,
-    which for one species is Carnahan & Starling's; Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987), for
-    discs, which is Henderson's.
+    Spheres: Boublik, J. Chem. Phys. 53, 471 (1970), and Mansoori et al., J. Chem. Phys. 54, 1523 (1971); for
+    one species this is Carnahan & Starling's value. Discs: Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987);
+    for one species this is Henderson's value.
     """
     filled = ball_volume(dimension) * float((number_densities * radii**dimension).sum())
     free = 1.0 - min(filled, _HIGHEST)
@@ -68,8 +75,13 @@ Kinds: TypeAlias = Sequence[Species | Particle]
 
 
 def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
-    """The rates of a scene at its start, or as hot as its faces; dense: with contact values of a dense gas;
-    instead: fewer kinds of particles that stand for those of the scene, each pair of which is evaluated."""
+    """Compute the rates of a scene at its start.
+
+    The temperature of the faces is used instead of the particles' if it is higher.
+
+    dense : True for the contact values of a dense gas
+    instead : fewer kinds of particles that represent the kinds of the scene; each pair of them is evaluated
+    """
     d, kinds = scene.dimension, scene.moving_kinds if instead is None else instead
     heat = max(scene.face_temperatures, default=0.0)
     if not kinds:
@@ -80,8 +92,10 @@ def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
 
 
 def highest_speed(scene: Scene) -> float:
-    """The highest mean speed that particles can come to have with the energy of the start, all of it shared
-    so that each has the same momentum."""
+    """Return the highest mean speed that particles can reach with the energy of the start.
+
+    It is reached if the energy is divided so that each particle has the same momentum.
+    """
     kinds = scene.moving_kinds
     energy = sum(
         0.5 * kind.count * kind.mass * scene.dimension * square_of(kind, scene.dimension) for kind in kinds
@@ -91,7 +105,7 @@ def highest_speed(scene: Scene) -> float:
 
 
 def _rates(scene: Scene, kinds: Kinds, dense: bool, squares: list[float]) -> tuple[float, float]:
-    """Frequency and speed of kinds with these mean squares of a velocity component."""
+    """Return frequency and speed of kinds with these mean squares of a velocity component."""
     d, square = scene.dimension, np.array(squares)
     radius = np.array([kind.radius for kind in kinds])
     number = np.array([float(kind.count) for kind in kinds])
@@ -99,7 +113,7 @@ def _rates(scene: Scene, kinds: Kinds, dense: bool, squares: list[float]) -> tup
     density = number / float((upper - lower).prod())
     sigma = radius[:, None] + radius
     section = math.pi * sigma**2 if d == 3 else 2.0 * sigma
-    mean = 8.0 / math.pi if d == 3 else math.pi / 2.0  # of <v>^2 / (kT/m)
+    mean = 8.0 / math.pi if d == 3 else math.pi / 2.0  # <v>^2 / (kT/m)
     relative = np.sqrt(mean * (square[:, None] + square))
     pairs = density[:, None] * (number - np.eye(len(number)))
     contact = contact_values(density, radius, d) if dense else 1.0
@@ -108,7 +122,7 @@ def _rates(scene: Scene, kinds: Kinds, dense: bool, squares: list[float]) -> tup
 
 
 def square_of(kind: Species | Particle, dimension: int) -> float:
-    """The mean square of a velocity component at the start."""
+    """Return the mean square of a velocity component at the start."""
     if isinstance(kind, Particle):
         return sum(v * v for v in kind.velocity) / dimension
     return (
@@ -116,43 +130,59 @@ def square_of(kind: Species | Particle, dimension: int) -> float:
     )
 
 
-# The lengths of a step that fit a scene, whatever speeds its particles come to.
+# Lengths of a step that fit a scene, for any speeds that its particles reach.
 #
 # A step is short enough if a particle of the mean speed flies at most 0.2 mean free paths and half of the
-# container in it, and no faster by what gravity and kicks give it in the step. Where speeds can rise, an
-# own step is divided into 2^level parts, as many as the present speeds require to within a factor sqrt 2.
-# The level is found again before each part; it follows from the state, and so do all bits. A step that was
-# given is never divided: the run stops before one in which particles would meet more than `MOST` others.
+# container in it, and if gravity and kicks do not make it faster than that in the step. Where speeds can
+# rise, a default step is divided into 2^level parts, as many as the present speeds require to within a factor
+# sqrt 2. The level is found again before each part; it follows from the state, and so do all bits. A
+# prescribed step is never divided: the run stops before a step in which particles would collide with more
+# than `MOST` others.
 
 
 LONGEST = 0.2
-"""The longest step that is recommended, in mean free times."""
+"""Longest recommended step, in mean free times."""
 CROSSED = 0.5
-"""Of the time that a particle takes to cross the container: the longest step in a gas without collisions."""
+"""Longest step in a gas without collisions, as a fraction of the time in which a particle crosses the
+container.
+"""
 FALLEN = 0.125
-"""Of the container's length along the way that particles fall: the longest way in a step."""
+"""Maximum fall per step, as a fraction of the container's length along gravity."""
 MOST = 1024.0
-"""Mean free paths, or crossings between walls, that a particle of the mean speed may make in a step."""
+"""Mean free paths, or crossings between walls, that a particle of the mean speed may fly in a step."""
 FINEST = 40
-"""The highest level."""
+"""Highest level."""
 ROOM = math.sqrt(2.0)
-"""By so much a step may be longer than recommended before it is divided."""
+"""Ratio of step to recommended step above which the step is divided."""
 _HOTTER = 2.0
-"""By so much a given state may be faster than the scene's own: steps are then too long by as much, which
-changes coefficients by 1 %."""
+"""Ratio of the speeds of a given state to the scene's own speeds up to which steps do not follow the speeds.
+
+Steps are then too long by this factor, which changes coefficients by 1 %.
+"""
 _KICKED = 0.09
-"""Of the mean speed: the width of the kicks of a step, unless a step has one kick at most. They come at its
-end, and the energy there is above its mean over time by half of what they give, 0.35 % at most."""
+"""Width of the kicks of a step divided by the mean speed, unless a step has one kick at most.
+
+Kicks come at the end of a step, and the energy there exceeds its mean over time by half of the energy that
+they give, 0.35 % at most.
+"""
 _FIRST = 20
-"""The level of parts that are as short as a start from rest needs, however many kicks are due in one."""
+"""Level of the parts that a start from rest needs, for any number of kicks due in a part."""
 
 
 @dataclass(frozen=True)
 class Reach:
-    """Bounds of the way of a particle in a step. path: the mean free path; across: the shortest side;
-    fall: that between walls along which particles fall; walled: the shortest side between walls; pull: the
-    acceleration towards walls; push: the mean width of kicks over the square root of time; interval: between
-    kicks."""
+    """Bounds of the path of a particle in a step.
+
+    Attributes
+    ----------
+    path : mean free path
+    across : shortest side
+    fall : side between walls along which particles fall
+    walled : shortest side between walls
+    pull : acceleration towards walls
+    push : mean width of kicks divided by the square root of time
+    interval : time between kicks
+    """
 
     path: float
     across: float
@@ -164,29 +194,29 @@ class Reach:
 
     @property
     def recommended(self) -> float:
-        """The longest way that is."""
+        """Longest recommended path in a step."""
         return min(LONGEST * self.path, CROSSED * self.across, FALLEN * self.fall)
 
     @property
     def most(self) -> float:
-        """The longest way that is possible."""
+        """Longest possible path in a step."""
         return MOST * min(self.path, self.walled)
 
     def steady(self) -> bool:
-        """Whether nothing accelerates the particles."""
+        """Return True if nothing accelerates the particles."""
         return self.pull == 0.0 and self.push == 0.0
 
     def way(self, speed: float, step: float) -> float:
-        """How far a particle flies in a step."""
+        """Return the distance that a particle flies in a step."""
         return (speed + self.pull * step + self.push * math.sqrt(step)) * step
 
     def speed(self, way: float, step: float) -> float:
-        """The speed at which it flies that far."""
+        """Return the speed at which a particle flies a distance in a step."""
         return way / step - self.pull * step - self.push * math.sqrt(step)
 
     def longest(self, speed: float, way: float) -> float:
-        """The longest step in which it flies no farther."""
-        low, high = -300.0, 300.0  # of the logarithm to base 2; the way grows with the step
+        """Return the longest step in which a particle flies at most a distance."""
+        low, high = -300.0, 300.0  # logarithm to base 2 of the step; the path grows with the step
         for _ in range(60):
             middle = 0.5 * (low + high)
             low, high = (middle, high) if self.way(speed, 2.0**middle) <= way else (low, middle)
@@ -194,7 +224,7 @@ class Reach:
 
 
 def reach_of(scene: Scene, path: float) -> Reach:
-    """The bounds of a scene, for a mean free path."""
+    """Return the bounds of a scene for a mean free path."""
     lengths, periodic = scene.container.lengths, scene.container.periodic
     walled = [length for length, around in zip(lengths, periodic, strict=True) if not around]
     pull = [g for g, around in zip(scene.gravity or (), periodic, strict=False) if not around]
@@ -208,22 +238,24 @@ def reach_of(scene: Scene, path: float) -> Reach:
 
 
 def falling_axis(scene: Scene) -> int | None:
-    """The axis between walls along which gravity is strongest, if any."""
+    """Return the axis between walls along which gravity is strongest, or None."""
     periodic = scene.container.periodic
     pulls = [0.0 if around else abs(g) for g, around in zip(scene.gravity or (), periodic, strict=False)]
     return pulls.index(max(pulls)) if any(pulls) else None
 
 
 def may_speed_up(scene: Scene) -> bool:
-    """Whether the mean speed can come to be so much above that of the start that steps must follow it."""
+    """Return True if the mean speed can rise so much that steps must follow it."""
     if scene.gravity is not None or scene.thermostat is not None or scene.faces or scene.rough:
         return True
     return highest_speed(scene) > ROOM * rates(scene, False).speed
 
 
 def is_hotter(state: State, found: Rates) -> bool:
-    """Whether a state that was given is so much faster than the scene's own, about its mean velocity, that
-    steps must follow its speeds."""
+    """Return True if a given state is so fast that steps must follow its speeds.
+
+    Its speeds relative to its mean velocity are compared with the speeds of the scene's own state.
+    """
     velocities = state.velocities[np.isfinite(state.masses)]
     if not len(velocities):
         return False
@@ -232,8 +264,10 @@ def is_hotter(state: State, found: Rates) -> bool:
 
 
 def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.ndarray]:
-    """The lowest and the highest mean speed (levels,) that fit each level of a step; only one level if it is
-    not divided."""
+    """Return the lowest and the highest mean speed (levels,) for each level of a step.
+
+    There is only one level if the step is not divided.
+    """
     if not divided:
         return np.zeros(1), np.array([reach.speed(reach.most, step)])
     steps = [math.ldexp(step, -level) for level in range(FINEST + 1)]
@@ -245,7 +279,7 @@ def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.nda
 
 
 def pace_for(scene: Scene, reach: Reach, step: float, divided: bool) -> Pace:
-    """The kernels' form of it."""
+    """Return the levels of a step in the form for the kernels."""
     from gaspart.kernels.dsmc import model as pace
 
     pulls = scene.gravity or (0.0,) * scene.dimension
@@ -257,15 +291,18 @@ _TOO_LONG = f"lets particles fly more than {MOST:g} mean free paths, or {MOST:g}
 
 
 def check_step(reach: Reach, step: float, found: Rates) -> None:
-    """Raise SceneError for a step in which particles would meet more than `MOST` others, or cross the
-    container more often between walls."""
+    """Raise SceneError for a step in which particles fly too far.
+
+    This is so if they would collide with more than `MOST` others, or cross the container between walls more
+    often.
+    """
     if reach.way(found.speed, step) > reach.most:
         fit = reach.longest(found.speed, reach.most)
         raise SceneError("time_step", step, f"{_TOO_LONG}: {fit:.2g} at most")
 
 
 def too_fast(time: float, step: float, reach: Reach, pace: Pace) -> SimulationError:
-    """The error for particles that have become so fast that no level fits."""
+    """Return the error for particles that have become so fast that no level fits."""
     if len(pace.low) > 1:
         rule = f"at time {time:g} the speeds have risen so much that a step needs more than 2^{FINEST} parts"
         return SimulationError(f"{rule}: give a shorter time_step")
@@ -273,31 +310,37 @@ def too_fast(time: float, step: float, reach: Reach, pace: Pace) -> SimulationEr
     return SimulationError(f"at time {time:g} time_step = {step:g} {_TOO_LONG}: {fit:.2g} would do")
 
 
-# The cells and the time step of a scene, and the error that they bring.
+# Cells and time step of a scene, and their errors.
 
 
 WIDEST = 1.0 / 3.0
-"""The widest cell that is recommended, in mean free paths."""
+"""Widest recommended cell, in mean free paths."""
 FEWEST = {"boltzmann": 8.0, "enskog": 64.0}
-"""Particles that must be in a cell, even if it is wider then. Pairs that have met in a dense gas part, and
-with few others in a cell those that approach become rare: with 8 in each a gas at a packing fraction of 0.4
-has 6 % too few collisions."""
+"""Minimum number of particles in a cell, even if the cell is wider then.
+
+Pairs that have collided in a dense gas separate, and among few others in a cell approaching pairs become
+rare: with 8 in each cell a gas at a packing fraction of 0.4 has 6 % too few collisions.
+"""
 USUAL = 16.0
-"""Particles in a cell that are enough: it is narrower than recommended rather than with more."""
+"""Sufficient number of particles in a cell: a cell is narrower than recommended rather than fuller."""
 LAYERS = 8
-"""Cells along the way that particles fall between walls, at least: their speeds depend on the height."""
-_DIGITS = 2.0**10  # a step is rounded to so many parts, so that it does not depend on how sums are rounded
+"""Minimum number of cells along the fall of particles between walls: their speeds depend on the height."""
+_DIGITS = 2.0**10  # parts to which a step is rounded, so that it does not depend on the rounding of sums
 _VISCOSITY = {2: math.pi / 24.0, 3: 16.0 / (45.0 * math.pi)}
 _VISCOSITY_IN_TIME, _DIFFUSION_IN_TIME = 16.0 / (75.0 * math.pi), 4.0 / (27.0 * math.pi)
 CELL_LOSS = 0.5
-"""Part of its collisions that the Enskog model loses at most, times the particles in a cell: those that have
-met part, and among few others those that approach become rare (docs/dsmc.md: 8 in a cell lose 3 % at a
-packing fraction of 0.1, 6 % at 0.4)."""
+"""Maximum fraction of its collisions that the Enskog model loses, multiplied by the particles in a cell.
+
+Particles that have collided separate, and among few others approaching pairs become rare (docs/dsmc.md: 8 in
+a cell lose 3 % at a packing fraction of 0.1, 6 % at 0.4).
+"""
 
 
 def cells_for(engine: DSMC, scene: Scene, found: Rates, crowding: float = 1.0) -> tuple[int, ...]:
-    """(d,) the cells along each axis: the engine's, or the recommended ones of a gas that is so many times as
-    dense where its particles are as on average."""
+    """Return the number of cells along each axis (d,): the engine's, or the recommended ones.
+
+    crowding : ratio of the density around the particles to the mean density
+    """
     given, d = engine.cells_per_side, scene.dimension
     if given is not None and not (engine.adapts_cells and crowding > 1.0):
         sides = tuple(given) if isinstance(given, (tuple, list)) else (given,) * d
@@ -308,8 +351,11 @@ def cells_for(engine: DSMC, scene: Scene, found: Rates, crowding: float = 1.0) -
 
 
 def recommended_cells(model: str, scene: Scene, found: Rates, number: float) -> tuple[int, ...]:
-    """(d,) those of a model for so many particles in the container. Where particles fall there are `LAYERS`
-    along the way, if the particles are enough, and what is left of them is shared by the other axes."""
+    """Return the recommended number of cells along each axis (d,), for a number of particles.
+
+    Where particles fall there are `LAYERS` cells along the fall, if there are enough particles; the remaining
+    cells are divided among the other axes.
+    """
     lower, upper = accessible(scene)
     lengths = tuple(float(length) for length in upper - lower)
     fit, axis = _fitting(lengths, found, number, model), falling_axis(scene)
@@ -321,14 +367,17 @@ def recommended_cells(model: str, scene: Scene, found: Rates, number: float) -> 
 
 
 def _fitting(lengths: tuple[float, ...], found: Rates, number: float, model: str) -> tuple[int, ...]:
-    """Cells along axes of these lengths that share so many particles."""
+    """Return the cells along axes of these lengths for a number of particles."""
     width = min(WIDEST * found.path, cube_side(lengths, number / USUAL))
     width = max(width, cube_side(lengths, number / FEWEST[model]))
     return tuple(max(1, math.floor(length / width + 1e-9)) for length in lengths)
 
 
 def step_for(engine: DSMC, scene: Scene, found: Rates) -> float:
-    """The length of a step: the engine's, or the recommended one. Raises SceneError where nothing moves."""
+    """Return the length of a step: the engine's, or the recommended one.
+
+    Raises SceneError if nothing moves.
+    """
     if engine.time_step is not None:
         return engine.time_step
     reach = reach_of(scene, found.path)
@@ -345,19 +394,19 @@ def step_for(engine: DSMC, scene: Scene, found: Rates) -> float:
 
 
 def widths_of(cells: tuple[int, ...], scene: Scene) -> np.ndarray:
-    """(d,) the sides of a cell."""
+    """Return the sides (d,) of a cell."""
     lower, upper = accessible(scene)
     return (upper - lower) / np.array(cells)
 
 
 def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, found: Rates) -> float:
-    """By how much, relatively, cells and step make the shear viscosity too high.
+    """Return the relative error of the shear viscosity due to cells and step.
 
-    16/(45 pi) (w/l)^2 + 16/(75 pi) (c dt/l)^2 for spheres, w the side of a cell, l the mean free path and
-    c = sqrt(2 kT/m): Alexander, Garcia & Alder, Phys. Fluids 10, 1540 (1998); Hadjiconstantinou, Phys. Fluids
-    12, 2634 (2000); Garcia & Wagner, Phys. Fluids 12, 2621 (2000). Of discs the first is pi/24 (w/l)^2, by
-    the same argument, and the second that of spheres, an estimate. An axis with one cell between periodic
-    faces has no profile to spoil.
+    The viscosity is too high. For spheres the error is 16/(45 pi) (w/l)^2 + 16/(75 pi) (c dt/l)^2, with w the
+    side of a cell, l the mean free path and c = sqrt(2 kT/m): Alexander, Garcia & Alder, Phys. Fluids 10,
+    1540 (1998); Hadjiconstantinou, Phys. Fluids 12, 2634 (2000); Garcia & Wagner, Phys. Fluids 12, 2621
+    (2000). For discs the first term is pi/24 (w/l)^2, by the same argument, and the second equals the term
+    for spheres, an estimate. An axis with one cell between periodic faces has no profile to distort.
     """
     if not found.path < math.inf:
         return 0.0
@@ -368,19 +417,22 @@ def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, found: Ra
 
 
 def diffusion_error(step: float, scene: Scene, found: Rates) -> float:
-    """By how much, relatively, a step makes the diffusion coefficient too high: 4/(27 pi) (c dt/l)^2 for
-    spheres (as of `predicted_error`); of discs the same, an estimate. Cells have no effect."""
+    """Return the relative error of the diffusion coefficient due to a step; it is too high.
+
+    For spheres it is 4/(27 pi) (c dt/l)^2, see `predicted_error`; for discs the same, an estimate. Cells have
+    no effect.
+    """
     return _DIFFUSION_IN_TIME * _moved(step, scene.dimension, found) ** 2 if found.path < math.inf else 0.0
 
 
 def lost_collisions(engine: DSMC, cells: tuple[int, ...], scene: Scene) -> float:
-    """Bound on the part of its collisions that the Enskog model loses; none in a single cell."""
+    """Bound the fraction of its collisions that the Enskog model loses; 0 in a single cell."""
     number = math.prod(cells)
     return CELL_LOSS * number / scene.count if engine.model == "enskog" and number > 1 else 0.0
 
 
 def _moved(step: float, dimension: int, found: Rates) -> float:
-    """c dt / l."""
+    """Return c dt / l."""
     mean = math.sqrt(8.0 / math.pi) if dimension == 3 else math.sqrt(math.pi / 2.0)
     return math.sqrt(2.0) * found.speed / mean * step / found.path
 
@@ -388,8 +440,13 @@ def _moved(step: float, dimension: int, found: Rates) -> float:
 def coarse(
     engine: DSMC, cells: tuple[int, ...], step: float, scene: Scene, found: Rates, crowding: float = 1.0
 ) -> dict[str, str]:
-    """Warnings, by setting: cells and steps that were given and are coarser than recommended, with
-    those that are not. found: the rates at present; crowding: see `cells_for`."""
+    """Return warnings, by setting, about prescribed cells and steps coarser than recommended.
+
+    Each warning names a value that is not too coarse.
+
+    found : present rates
+    crowding : see `cells_for`
+    """
     texts = {}
     fit = recommended_cells(engine.model, scene, found, crowding * scene.count)
     effect = f"makes the viscosity {100.0 * predicted_error(cells, step, scene, found):.2g} % too high"

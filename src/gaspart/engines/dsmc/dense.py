@@ -15,28 +15,28 @@ from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
 _SAMPLES = 4000.0
-"""Particles that are averaged over in the density of a cell: more steps where fewer are in it."""
+"""Number of particles for the average of the density of a cell; fewer in a cell need more steps."""
 MOST_KINDS = 16
-"""Of particles in a dense gas: a trial draws the partner's kind, of which each but one is in vain."""
+"""Maximum number of kinds of particles in a dense gas: a trial draws the partner's kind, mostly in vain."""
 
 _FEWEST_CELLS = 64
-"""Cells that threads share, at least: of fewer the slabs are one, and cell follows cell."""
+"""Minimum number of cells that threads share: fewer cells are in a single slab, one after another."""
 
 
 def is_uniform(scene: Scene) -> bool:
-    """Whether the density is the same everywhere and stays so: it is known then."""
+    """Return True if the density is the same everywhere and stays so, and hence is known."""
     return scene.is_periodic and spreads(scene)
 
 
 def spreads(scene: Scene) -> bool:
-    """Whether nothing in a scene brings particles together."""
+    """Return True if nothing in a scene brings particles together."""
     spread = all(kind.arrangement != "slab" and kind.region is None for kind in scene.species)
     elastic = scene.restitution is None or not scene.restitution.dissipative
     return spread and elastic
 
 
 def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:
-    """(2, cells) the fields of one grid on another: those of the cells in which its centres are."""
+    """Return the fields (2, cells) of one grid on another, by the cells at its centres."""
     per_side = tuple(after.per_side)
     centres = np.stack(np.unravel_index(np.arange(len(after.starts) - 1), per_side)) + 0.5
     ratio = (before.per_side / after.per_side)[:, None]
@@ -45,8 +45,11 @@ def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:
 
 
 def slabs_of(per_side: np.ndarray, reach: np.ndarray) -> tuple[int, np.ndarray]:
-    """The axis along which cells are in slabs, and where each slab begins and the last one ends: an even
-    number of slabs, each two reaches wide at least, or one."""
+    """Return the axis along which cells are in slabs, and the first cell of each slab.
+
+    The end of the last slab is included. There is an even number of slabs, each at least two reaches wide, or
+    one slab.
+    """
     numbers = 2 * (per_side // (4 * reach))
     axis = int(numbers.argmax())
     number = int(numbers[axis]) if per_side.prod() >= _FEWEST_CELLS and numbers[axis] > 2 else 1
@@ -54,8 +57,10 @@ def slabs_of(per_side: np.ndarray, reach: np.ndarray) -> tuple[int, np.ndarray]:
 
 
 def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
-    """The arrays of a state, for so many kinds of particles. Raises SceneError for a scene that the model
-    is not made for."""
+    """Return the arrays of a state, for a number of kinds of particles.
+
+    Raises SceneError for a scene for which the model is not made.
+    """
     d, cells, sigma = scene.dimension, len(grid.starts) - 1, 2.0 * scene.largest_radius
     if kinds > MOST_KINDS:
         rule = (

@@ -1,4 +1,4 @@
-"""A scene under the DSMC engine."""
+"""Dynamics of a scene under the DSMC engine."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
 
 
-# The scenes that the DSMC engine can model.
+# Limits of the scenes that the DSMC engine can model.
 
 
 MOST_PARTICLES = 2**32 - 1
@@ -44,7 +44,7 @@ _OVERSIZED = (
 
 
 def check_scene(scene: Scene, state: State) -> None:
-    """Raise SceneError for particles, or so many of them, that this engine does not model."""
+    """Raise SceneError for particles that this engine does not model, or too many of them."""
     if oversized_particles(state).any():
         raise SceneError("radius", scene.largest_radius, _OVERSIZED)
     if state.count > MOST_PARTICLES:
@@ -52,7 +52,10 @@ def check_scene(scene: Scene, state: State) -> None:
 
 
 def check_made(counts: np.ndarray, time: float) -> None:
-    """Raise SimulationError for steps that could not be finished; counts: see `kernels.dsmc.model`."""
+    """Raise SimulationError for steps that could not be finished.
+
+    counts : see `kernels.dsmc.model`
+    """
     from gaspart.kernels.dsmc.model import FAR, UNFINISHED
 
     if counts[:, UNFINISHED].any():
@@ -67,11 +70,11 @@ def check_made(counts: np.ndarray, time: float) -> None:
         )
 
 
-# Tallies of the DSMC engine that not every run has. Threads add to them, exactly.
+# Optional tallies of the DSMC engine. Threads add to them, exactly.
 
 
 class StressPart(TallyPart):
-    """The stress tensor and the heat flux, about the velocity of the centre of mass of a state at time 0."""
+    """Stress tensor and heat flux, relative to the centre of mass at time 0."""
 
     kernel: Stress
 
@@ -83,22 +86,25 @@ class StressPart(TallyPart):
         super().__init__("stress", kernel, {}, {"stress": sums})
 
     def read(self, clock: float) -> np.ndarray:
-        """(2 d^2 + d,) the sums of the stress tensor, of its collisional part and of the heat flux."""
+        """Return the sums (2 d^2 + d,) of stress tensor, its collisional part and heat flux."""
         return exact_parts(self.kernel.sums)[:, 0]
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """The sums, by the fields of `Tally`."""
+        """Return the sums by the fields of `Tally`."""
         return tallied_fluxes(self.read(clock), self.kernel.drift)
 
 
 class WallShearPart(Part):
-    """shear (threads, 2d, d, WIDTH): the momentum that faces were given along themselves."""
+    """Momentum that faces were given along themselves.
+
+    shear : (threads, 2d, d, WIDTH)
+    """
 
     def __init__(self, shear: np.ndarray) -> None:
         super().__init__({}, sums={"shear": shear})
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """The momentum, by the field of `Tally`."""
+        """Return the momentum by the field of `Tally`."""
         return {"wall_shear": exact_parts(self.sums["shear"])[..., 0]}
 
 
@@ -107,19 +113,23 @@ PARTS = {"stress": StressPart}
 
 
 def tally_parts(asked: Iterable[OptionalTally], scene: Scene, state: State, threads: int) -> list[TallyPart]:
-    """The parts of optional tallies. state: that at time 0."""
+    """Return the parts of optional tallies.
+
+    state : state at time 0
+    """
     return [PARTS[tally.name](tally, scene, state, threads) for tally in asked]
 
 
 _WHOLE = 2**FINEST
-"""Parts of a step, in which the place within it is counted."""
+"""Number of parts of a step in which the position within it is counted."""
 
 
 class DsmcDynamics(SteppedDynamics):
-    """A scene under way; its time is a whole number of steps.
+    """Dynamics of a scene; its time is a whole number of steps.
 
-    time_step: what was chosen. A step may be made in parts, and cells may become narrower: see `pace` and
-    `crowding`.
+    A step may be made in parts, and cells may become narrower: see `defaults` and `resolution`.
+
+    time_step : length of a step, prescribed or chosen
     """
 
     numbers = ("steps", "since", "place_in_step", "clock_since")
@@ -157,11 +167,11 @@ class DsmcDynamics(SteppedDynamics):
 
     @property
     def cells_per_side(self) -> tuple[int, ...]:
-        """(d,) the cells along each axis at present."""
+        """Present number of cells along each axis (d,)."""
         return self._resolution.cells
 
     def _look(self) -> None:
-        """Let the cells fit the density that the gas has now."""
+        """Adapt the cells to the present density of the gas."""
         if self._resolution.crowds:
             self._resolution.look(self._positions.T, self.time)
 
@@ -198,7 +208,7 @@ class DsmcDynamics(SteppedDynamics):
         return self._steps + self._place_in_step / _WHOLE
 
     def _advance_to(self, step: int) -> None:
-        """Raises SimulationError if the particles come to be too fast for a step."""
+        """Advance to a step. Raises SimulationError if the particles become too fast for a step."""
         while self._steps < step:
             epoch = self._steps - self._steps % EPOCH + EPOCH
             self._make(min(step, epoch) if self._resolution.crowds else step)
@@ -207,7 +217,7 @@ class DsmcDynamics(SteppedDynamics):
         self._resolution.warn_of_speed(self.time)
 
     def _make(self, stop: int) -> None:
-        """Make all steps up to one."""
+        """Perform all steps up to one."""
         while self._steps < stop:
             level = self._resolution.level(self._particles, self._place_in_step, self.time)
             part, at = _WHOLE >> level, self._steps * _WHOLE + self._place_in_step
@@ -221,7 +231,10 @@ class DsmcDynamics(SteppedDynamics):
             check_made(self._workspace.counts, self.time)
 
     def _run(self, level: int, number: int) -> int:
-        """Let the kernel make so many parts of a step of a level. Returns how many it has made."""
+        """Run the kernel for a number of parts of a step; return the number made.
+
+        level : level of the parts
+        """
         now = self._resolution
         pace = now.pace and now.pace._replace(level=level)
         workspace = self._workspace._replace(dt=math.ldexp(self.time_step, -level))
@@ -254,7 +267,7 @@ class DsmcDynamics(SteppedDynamics):
         return joined(sums) if sums.shape[-1] == WIDTH else super()._joined(sums)
 
     def _counts(self) -> dict[str, Any]:
-        """With the steps that were made in parts."""
+        """Return the counts, with the number of steps that were made in parts."""
         workspace, counts = self._workspace, self._workspace.counts.sum(axis=0)
         return {
             "collisions": int(counts[layout.COLLISIONS]),
@@ -270,13 +283,13 @@ class DsmcDynamics(SteppedDynamics):
         return {**super()._arrays(), "clock": self._workspace.clock}
 
     def _kept(self) -> dict[str, Any]:
-        """The level of density, too, and what a dense gas has of each of its cells."""
+        """Return the data of a checkpoint, with the level of density and a dense gas's fields."""
         dense = self._resolution.dense
         fields = {"fields": dense.fields} if dense else {}
         return {**super()._kept(), "crowded": self._resolution.crowded, **fields}
 
     def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """With the fields of the cells of its level of density."""
+        """Return the data needed from a checkpoint, with fields for its level of density."""
         check_parts(checkpoint, {"crowded": np.array(0)})
         crowded = int(checkpoint["crowded"])
         if not 0 <= crowded <= HIGHEST:
@@ -289,7 +302,7 @@ class DsmcDynamics(SteppedDynamics):
         return needed
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """In cells for the density of the checkpoint."""
+        """Place the particles in cells for the density of the checkpoint."""
         resolution, crowded = self._resolution, int(checkpoint["crowded"])
         if crowded != resolution.crowded:
             resolution.set(crowded)

@@ -1,4 +1,4 @@
-"""The cells and the lengths of steps of a run, which follow its gas."""
+"""Cells and lengths of steps of a run, which adapt to the gas."""
 
 from __future__ import annotations
 
@@ -35,31 +35,33 @@ if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
 
 
-# How much denser a gas is where its particles are than on average, which its cells must fit.
+# Density of a gas around its particles, relative to the mean density, which its cells must fit.
 #
-# It is the mean over particles of the density around them, over the density of the container: the number of
-# pairs in cells over that of a uniform gas. It is found at the start and after every `EPOCH` steps, counted
-# from time 0, so that it does not depend on where a run is split or sampled.
+# It is the mean over particles of the density around them, divided by the density of the container: the
+# number of pairs in cells divided by the number in a uniform gas. It is found at the start and after every
+# `EPOCH` steps, counted from time 0, so that it does not depend on where a run is split or sampled.
 
 
 EPOCH = 64
-"""Steps from one look to the next."""
+"""Number of steps between two measurements of the density."""
 HIGHEST = 6
-"""Of the level of a density, 2^level times the mean: more cells would be too many for the particles."""
+"""Highest level of the density, 2^level times the mean: more cells would be too many for the particles."""
 _CHANGED = 0.75
-"""Of a level: by so much a density is off the present one before it is another."""
+"""Deviation of the density, in levels, from which the level changes."""
 
 
 def may_crowd(scene: Scene) -> bool:
-    """Whether the density can come to be other than uniform."""
+    """Return True if the density can become other than uniform."""
     return scene.count > 1 and (
         bool(scene.gravity and any(scene.gravity)) or bool(scene.faces) or not spreads(scene)
     )
 
 
 def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> float:
-    """The crowding of particles at these positions (N, d), by the pairs in each of some cells; 1 in
-    a uniform gas."""
+    """Return the relative density around particles at these positions (N, d).
+
+    It follows from the pairs in each of some cells, and is 1 in a uniform gas.
+    """
     lower, upper = accessible(scene)
     places = (positions - lower) / (upper - lower) * cells
     at = np.clip(places.astype(np.int64), 0, np.array(cells) - 1)
@@ -69,17 +71,26 @@ def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> flo
 
 
 def next_level(level: int, times: float) -> int:
-    """The level of a gas so many times as dense, which was at a level."""
+    """Return the new level of a gas with a relative density of `times`.
+
+    level : present level
+    """
     exact = math.log2(max(times, 1.0))
     return level if abs(exact - level) <= _CHANGED else min(round(exact), HIGHEST)
 
 
 class Resolution:
-    """step: the length of a step; cells (d,), along each axis. crowded: the gas is 2^crowded times as dense
-    where its particles are as on average; crowds: whether that can change. grid, dense and pace: what the
-    kernels have of it, the second for a dense gas, the third where steps follow the speeds.
+    """Present cells and lengths of steps of a run.
 
-    Raises SceneError for settings that do not fit the scene.
+    Making it raises SceneError for settings that do not fit the scene.
+
+    Attributes
+    ----------
+    step : length of a step
+    cells : (d,), number of cells along each axis
+    crowded : level; the relative density around the particles is 2^crowded
+    crowds : whether that can change
+    grid, dense, pace : forms for the kernels; `dense` for a dense gas, `pace` where steps follow the speeds
     """
 
     def __init__(self, engine: DSMC, scene: Scene, state: State, kinds: int) -> None:
@@ -94,11 +105,11 @@ class Resolution:
         self._warn(self._found, "")
 
     def cells_of(self, crowded: int) -> tuple[int, ...]:
-        """(d,) the cells of a gas so dense."""
+        """Return the number of cells along each axis (d,) for a level of density."""
         return cells_for(self._engine, self._scene, self._found, 2.0**crowded)
 
     def set(self, crowded: int) -> None:
-        """Make the cells, and find the lengths of steps, for a gas so dense."""
+        """Make the cells, and find the lengths of steps, for a level of density."""
         engine, scene, state = self._engine, self._scene, self._state
         self.crowded, self.cells = crowded, self.cells_of(crowded)
         grid = grid_for(scene, state, self.cells, engine.threads)
@@ -114,7 +125,7 @@ class Resolution:
             self.pace = pace_for(scene, self._reach, self.step, engine.adapts_steps)
 
     def look(self, places: np.ndarray, time: float) -> None:
-        """Let the cells fit the density of particles at these places (N, d)."""
+        """Adapt the cells to the density of particles at these positions (N, d)."""
         scene, times = self._scene, 2.0**self.crowded
         cells = recommended_cells(self._engine.model, scene, self._found.crowded(times), times * scene.count)
         crowded = next_level(self.crowded, crowding(places, cells, scene))
@@ -124,9 +135,13 @@ class Resolution:
             self._warn(found, f" where most particles are at time {time:g}")
 
     def level(self, particles: Particles, place: int, time: float) -> int:
-        """The level of the next part of a step: that which fits the particles, or a higher one, of which a
-        whole number have been made. place: in the step, in parts of the finest level. Raises SimulationError
-        if none fits."""
+        """Return the level of the next part of a step.
+
+        It is the level that fits the particles, or a higher one, so that the parts made so far are a whole
+        number of its parts. Raises SimulationError if no level fits.
+
+        place : position in the step, in parts of the finest level
+        """
         if self.pace is None:
             return 0
         level = fitting_level(particles, self.pace)
@@ -135,15 +150,17 @@ class Resolution:
         return max(level, 0 if place == 0 else FINEST + 1 - (place & -place).bit_length())
 
     def warn_of_speed(self, time: float) -> None:
-        """Warn of a step that is too long for the highest mean speed that there was."""
+        """Warn of a step that is too long for the highest mean speed so far."""
         if self.pace is not None:
             speed = float(self.pace.fastest[0])
             found = Rates(speed / self._reach.path, speed, self._reach.path)
             self._warn(found, f" by time {time:g}")
 
     def _warn(self, found: Rates, when: str) -> None:
-        """Warn once of each setting that was given and is coarser than recommended. when: words for the
-        time."""
+        """Warn once of each prescribed setting that is coarser than recommended.
+
+        when : words for the time
+        """
         texts = coarse(self._engine, self.cells, self.step, self._scene, found, 2.0**self.crowded)
         for key, text in texts.items():
             if key not in self._warned:

@@ -1,4 +1,4 @@
-"""The DSMC engine (Bird 1994)."""
+"""DSMC engine (Bird 1994)."""
 
 from __future__ import annotations
 
@@ -24,15 +24,51 @@ ADAPTED = ("nothing", "steps", "cells", "both")
 @register
 @dataclass(frozen=True)
 class DSMC(Engine):
-    """Small steps, in which particles first fly and then collide with partners drawn in their cell.
+    """Direct simulation Monte Carlo engine: collision partners are drawn at random within a cell.
 
-    time_step: in the scene's time unit; cells_per_side: a number of cells or one per axis. By default both
-    follow from the mean free time and path of the scene. model: "boltzmann", a dilute gas; or "enskog", a
-    dense one, in which partners are a diameter apart and meet the more often the denser the gas. adapt: what
-    follows the gas where speeds or densities change: "nothing", "steps", which are divided, "cells" or
-    "both"; by default what is not given. threads: how many share the work.
+    Each step moves all particles freely and then collides pairs of a cell. The result has the same bits for
+    any number of threads.
 
-    The result is the same, bit for bit, for any number of threads. Errors: docs/dsmc.md.
+    Parameters
+    ----------
+    time_step : float, [time], optional
+        Length of a step. Default: at most a fifth of the mean free time of the scene.
+    cells_per_side : int or (d,) sequence of int, optional
+        Number of cells along each axis. Default: cells a third of a mean free path wide.
+    model : {"boltzmann", "enskog"}, default "boltzmann"
+        Collision model: a dilute gas [1]_ [2]_, or a dense gas [3]_, in which partners are a diameter apart
+        and collide more often the denser the gas.
+    adapt : {"nothing", "steps", "cells", "both"}, optional
+        Settings that adapt to the gas where speeds or densities change: steps, which are divided, or cells.
+        Default: every setting that is not given.
+    threads : int, default 1
+        Number of threads that share the work.
+
+    Raises
+    ------
+    SceneError
+        If a setting is invalid.
+
+    See Also
+    --------
+    EventDriven : Exact collisions of hard particles.
+    TimeStepped : Time steps with overlap resolution.
+
+    Notes
+    -----
+    The errors are described in docs/dsmc.md.
+
+    References
+    ----------
+    .. [1] G. A. Bird, Molecular Gas Dynamics and the Direct Simulation of Gas Flows (1994).
+    .. [2] M. S. Ivanov and S. V. Rogasinsky, Sov. J. Numer. Anal. Math. Modelling 3, 453 (1988).
+    .. [3] J. M. Montanero and A. Santos, Phys. Rev. E 54, 438 (1996); Phys. Fluids 9, 2057 (1997).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> gp.DSMC(model="enskog").describe()
+    'dsmc, model enskog'
     """
 
     time_step: float | None = field(
@@ -75,26 +111,80 @@ class DSMC(Engine):
 
     @property
     def equation(self) -> str:
-        """The model."""
+        """Kinetic equation of the model.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.DSMC().equation
+        'boltzmann'
+        """
         return self.model
 
     @property
     def adapts_steps(self) -> bool:
-        """Whether steps are divided where speeds rise."""
+        """True if steps are divided where speeds rise.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.DSMC().adapts_steps, gp.DSMC(time_step=0.5).adapts_steps
+        (True, False)
+        """
         return self.time_step is None if self.adapt is None else self.adapt in ("steps", "both")
 
     @property
     def adapts_cells(self) -> bool:
-        """Whether cells become narrower where particles gather."""
+        """True if cells become narrower where particles gather.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.DSMC().adapts_cells, gp.DSMC(cells_per_side=8).adapts_cells
+        (True, False)
+        """
         return self.cells_per_side is None if self.adapt is None else self.adapt in ("cells", "both")
 
     @property
     def quantum(self) -> float | None:
-        """A step, once it is known."""
+        """Length of a step, once it is known.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.DSMC(time_step=0.5).quantum
+        0.5
+        """
         return self.time_step
 
     def resolved(self, scene: Scene, interval: float | None = None) -> DSMC:
-        """With the cells and the step for a scene, of which an interval has a whole number."""
+        """Return a copy with cells and time step chosen for a scene.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+        interval : float, [time], optional
+            Time that becomes a whole number of steps.
+
+        Returns
+        -------
+        DSMC
+            The engine.
+
+        Raises
+        ------
+        SceneError
+            If nothing moves, or `cells_per_side` does not fit the dimension.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
+        >>> gp.DSMC().resolved(scene, interval=1.0).describe(), gp.DSMC().resolved(scene).cells_per_side
+        ('dsmc, model boltzmann, time_step 0.5', (6, 6, 6))
+        """
         from gaspart.engines.dsmc.defaults import cells_for, rates, step_for
 
         found = rates(scene, self.model == "enskog")
@@ -105,18 +195,62 @@ class DSMC(Engine):
         return self._with(time_step=step, cells_per_side=cells, adapts=(self.adapts_steps, self.adapts_cells))
 
     def with_step(self, step: float) -> DSMC:
-        """With steps of this length, which are not divided."""
+        """Return a copy with this fixed time step, which is not divided.
+
+        Parameters
+        ----------
+        step : float, [time]
+            Length of a step.
+
+        Returns
+        -------
+        DSMC
+            The engine.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.DSMC().with_step(0.5).adapts_steps
+        False
+        """
         return self._with(time_step=step, adapts=(False, self.adapts_cells))
 
     def _with(self, adapts: tuple[bool, bool], **settings: Any) -> DSMC:
-        """With these settings; adapts: whether steps and cells do, which is stated unless it follows."""
+        """Return a copy with these settings.
+
+        adapts : whether steps and cells adapt; `adapt` is set only if this does not follow from the settings
+        """
         plain = replace(self, **settings, adapt=None)
         if adapts == (plain.adapts_steps, plain.adapts_cells):
             return plain
         return replace(plain, adapt=ADAPTED[adapts[0] + 2 * adapts[1]])
 
     def predictions(self, scene: Scene) -> dict[str, float]:
-        """By how much its cells and steps make the shear viscosity too high, relatively."""
+        """Return the relative error of the shear viscosity due to cells and steps.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+
+        Returns
+        -------
+        dict of str to float
+            ``viscosity_error``: the viscosity is too high by this fraction.
+
+        Raises
+        ------
+        SceneError
+            If nothing moves, or `cells_per_side` does not fit the dimension.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
+        >>> round(gp.DSMC().predictions(scene)["viscosity_error"], 3)
+        0.099
+        """
         from gaspart.engines.dsmc.defaults import cells_for, predicted_error, rates, step_for
 
         found = rates(scene, self.model == "enskog")
@@ -124,14 +258,54 @@ class DSMC(Engine):
         return {"viscosity_error": predicted_error(cells, step, scene, found)}
 
     def cells_along(self, scene: Scene) -> int:
-        """The cells along the axis with the most."""
+        """Return the largest number of cells along an axis.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+
+        Returns
+        -------
+        int
+            Number of cells.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> gp.DSMC().cells_along(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)]))
+        6
+        """
         from gaspart.engines.dsmc.defaults import cells_for, rates
 
         return max(cells_for(self, scene, rates(scene, self.model == "enskog")))
 
     def bias(self, scene: Scene, kind: str) -> float:
-        """The bias of its cells and steps, by the literature, and of the collisions that the Enskog model
-        loses."""
+        """Bound the relative error of a quantity due to cells, steps and lost collisions.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+        kind : {"rates", "paths", "fluxes"}
+            What the quantity depends on: rates of collisions, paths of particles, or fluxes of momentum and
+            heat.
+
+        Returns
+        -------
+        float, [1]
+            The bias of cells and steps, by the literature, plus the fraction of collisions that the Enskog
+            model loses.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
+        >>> [round(gp.DSMC().bias(scene, kind), 4) for kind in ("rates", "paths", "fluxes")]
+        [0.0, 0.0015, 0.099]
+        """
         from gaspart.engines.dsmc import defaults
         from gaspart.engines.dsmc.defaults import rates
 
@@ -144,26 +318,114 @@ class DSMC(Engine):
 
     @classmethod
     def offered(cls) -> tuple[DSMC, ...]:
-        """One for each model."""
+        """Return the engines among which advice chooses: one for each model.
+
+        Returns
+        -------
+        tuple of DSMC
+            The engines.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> [engine.model for engine in gp.DSMC.offered()]
+        ['boltzmann', 'enskog']
+        """
         return tuple(cls(model=model) for model in MODELS)
 
     def candidate(self, asked: Asked) -> Candidate:
-        """With its own cells and step."""
+        """Return the engine with its default cells and step, and bounds on its errors.
+
+        Parameters
+        ----------
+        asked : Asked
+            Observable of a steady scene, and its requested accuracy.
+
+        Returns
+        -------
+        Candidate
+            The engine, and bounds on its errors.
+
+        Raises
+        ------
+        SceneError
+            If cells or steps are too coarse for the local conditions, or the gas is too dense for the Enskog
+            model.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.accuracy.conditions import even_conditions
+        >>> from gaspart.engines.engine import Asked
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
+        >>> asked = Asked("collision_rate", 0.01, even_conditions(scene, 1.0))
+        >>> round(gp.DSMC(model="enskog").candidate(asked).bias, 3)
+        0.01
+        """
         from gaspart.engines.dsmc.accuracy import candidate
 
         return candidate(self, asked)
 
     @property
     def timed_as(self) -> str:
-        """With the model, if it is that of a dense gas."""
+        """Name in the table of costs, with the model of a dense gas.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.DSMC().timed_as, gp.DSMC(model="enskog").timed_as
+        ('dsmc', 'dsmc enskog')
+        """
         return self.name if self.model == MODELS[0] else f"{self.name} {self.model}"
 
     def timed_step(self, scene: Scene) -> float:
-        """In its own step."""
+        """Return the time step divided by the default step of the engine.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+
+        Returns
+        -------
+        float, [1]
+            Time step in the unit of the table of costs.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> gp.DSMC().timed_step(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)]))
+        1.0
+        """
         return (self.resolved(scene).time_step or 0.0) / self._own_step(scene)
 
     def at_step(self, scene: Scene, step: float, precision: str) -> DSMC:
-        """In its own step."""
+        """Return a copy with a time step of the table of costs.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+        step : float, [1]
+            Time step divided by the default step of the engine.
+        precision : str
+            Not used: the state is always in float64.
+
+        Returns
+        -------
+        DSMC
+            The engine.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
+        >>> gp.DSMC().at_step(scene, 2.0, "float64").timed_step(scene)
+        2.0
+        """
         return self.resolved(scene).with_step(step * self._own_step(scene))
 
     def _own_step(self, scene: Scene) -> float:
@@ -171,17 +433,60 @@ class DSMC(Engine):
 
     @property
     def limitations(self) -> str:
-        """What its model lacks, and what no model has that draws partners."""
+        """Features that the model lacks, and that every model lacks that draws partners.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.DSMC().limitations
+        'excluded volume, positions of pairs'
+        """
         lacks = {"boltzmann": "excluded volume", "enskog": "correlated collisions"}
         return f"{lacks[self.model]}, positions of pairs"
 
     def describe(self) -> str:
-        """With its model, and its step once it is known."""
+        """Return its name with its model, and its step once it is known.
+
+        Returns
+        -------
+        str
+            The description.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.DSMC(time_step=0.5).describe()
+        'dsmc, model boltzmann, time_step 0.5'
+        """
         step = "" if self.time_step is None else f", time_step {self.time_step:.4g}"
         return f"{self.name}, model {self.model}{step}"
 
     def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """How it finds pairs, and what steps do that are longer than its own, of which the run warns."""
+        """Return further remarks of advice on the engine.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+        observable : str
+            Name of the observable.
+        paths : bool
+            True if the observable depends on the paths of particles.
+
+        Returns
+        -------
+        dict of str to str
+            Remarks by title: the search for pairs, and the effect of steps longer than the default, of which
+            the run warns.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
+        >>> list(gp.DSMC(time_step=2.0).notes(scene, "pressure", paths=False))
+        ['boxes', 'time step']
+        """
         found = {"boxes": "cells, whose particles collide by chance: positions of pairs are given up"}
         longer = 1.0 if self.time_step is None else self.time_step / self._own_step(scene)
         if longer >= 1.5:
@@ -190,14 +495,51 @@ class DSMC(Engine):
         return found
 
     def variant(self, scene: Scene) -> str:
-        """The model, and whether threads share the work."""
+        """Return the name of its compiled kernels for a scene.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+
+        Returns
+        -------
+        str
+            The model, whether steps follow the speeds, and whether threads share the work.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> gp.DSMC(threads=2).variant(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)]))
+        'boltzmann-threads'
+        """
         from gaspart.engines.dsmc.defaults import may_speed_up
 
         paced = "-paced" if may_speed_up(scene) else ""
         return self.model + paced + ("-threads" if self.threads > 1 else "")
 
     def for_small_scene(self, scene: Scene) -> DSMC:
-        """With one cell, and the step for the full scene."""
+        """Return settings with which a scene of few particles needs the same kernels.
+
+        Parameters
+        ----------
+        scene : Scene
+            The full scene.
+
+        Returns
+        -------
+        DSMC
+            The engine, with one cell and the step for the full scene.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
+        >>> gp.DSMC().for_small_scene(scene).cells_per_side
+        1
+        """
         return self.resolved(scene)._with(cells_per_side=1, adapts=(self.adapts_steps, False))
 
     def start(
@@ -207,7 +549,37 @@ class DSMC(Engine):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> DsmcDynamics:
-        """Set the engine up for a scene in a given state; `seed` is that of collisions and thermal walls."""
+        """Set the engine up for a scene in a given state.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+        state : State
+            State of its particles.
+        seed : int or tuple of int, default 0
+            Seed of collisions and thermal walls.
+        tallies : sequence of OptionalTally, optional
+            Optional tallies.
+
+        Returns
+        -------
+        DsmcDynamics
+            The scene in progress.
+
+        Raises
+        ------
+        SceneError
+            If the engine does not model the scene.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> state = gp.Simulation(scene, "dsmc", seed=1).state
+        >>> gp.DSMC().start(scene, state).time
+        0.0
+        """
         from gaspart.engines.dsmc.dynamics import DsmcDynamics
 
         return DsmcDynamics(self, scene, state, seed, tallies)

@@ -1,4 +1,4 @@
-"""A scene under the event-driven engine: the arrays that its kernels work on, and how they are driven."""
+"""Dynamics of a scene under the event-driven engine: the arrays of its kernels, and their control."""
 
 from __future__ import annotations
 
@@ -75,11 +75,11 @@ from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
-# The model and the particles of the event-driven engine's kernels, and the parts of a run.
+# Model and particles of the event-driven engine's kernels, and the parts of a run.
 
 
 def particles_of(state: State, boxes: Boxes) -> Particles:
-    """The particles of a state, with nothing predicted yet."""
+    """Return the particles of a state, without predictions."""
     n = state.count
     particles = Particles(
         flights=aligned((n,), flight_dtype(state.dimension)),
@@ -96,7 +96,10 @@ def particles_of(state: State, boxes: Boxes) -> Particles:
 def event_model(
     scene: Scene, state: State, seed: int | tuple[int, ...], boxes: Boxes, largest: float
 ) -> tuple[Model, float]:
-    """The model of a scene, and its unit of mass. largest: the largest radius of the particles in boxes."""
+    """Return the model of a scene, and its unit of mass.
+
+    largest : largest radius of the particles in boxes
+    """
     law = contact_law(scene, state)
     law = law._replace(duration=contact_duration(scene, law)) if law else None
     unit_mass, masses = (1.0, None) if law else scaled_masses(state.masses)
@@ -120,7 +123,7 @@ def event_model(
 def event_parts(
     scene: Scene, state: State, seed: int | tuple[int, ...], model: Model, unit_mass: float
 ) -> list[Part]:
-    """The parts of a run, one for each feature of the scene."""
+    """Return the parts of a run, one for each feature of the scene."""
     gravity, law, faces, walls = model.gravity, model.law, model.faces, model.walls
     lightest = float(state.masses.min(initial=np.inf))
     parts = (
@@ -142,7 +145,10 @@ def event_parts(
 
 
 def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
-    """Put particles back that rounding shows beyond a periodic face, which they reach just now."""
+    """Move particles back that rounding shows beyond a periodic face.
+
+    They reach this face just now.
+    """
     lengths = np.array(space.lengths)
     outside = ((positions < 0.0) | (positions >= lengths)) & space.periodic
     if not outside.any():
@@ -156,8 +162,10 @@ def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
 
 
 class EventDynamics(Dynamics):
-    """A scene in progress. Clocks count from the start of the current epoch, so that they lose no
-    precision."""
+    """Scene in progress under the event-driven engine.
+
+    Clocks count from the start of the current epoch, so that they lose no precision.
+    """
 
     numbers = ("start", "epoch", "base", "quiet", "clock", "since")
 
@@ -222,7 +230,7 @@ class EventDynamics(Dynamics):
 
     @property
     def time(self) -> float:
-        """The time reached."""
+        """Time reached."""
         return self._start + self._clock
 
     def advance(
@@ -232,15 +240,14 @@ class EventDynamics(Dynamics):
         log: EventLog | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Process events up to time `until`, at most `max_events` of them (collisions, wall hits, and
-        attempts to enter through open faces).
+        """Process events up to time `until`, at most `max_events` of them.
 
-        max_work: the number of events, crossings and predictions of a new epoch after which to return as
-        well, to within a factor of 2, at the time reached.
+        Events are collisions, wall hits, and attempts to enter through open faces. Raises SimulationError,
+        with the state kept, if particles collapse: they would collide for ever in no time; and, in a run that
+        only events end, if nothing happens in a thousand flights through the container.
 
-        Raises SimulationError, with the state kept, if particles collapse: they would meet for ever in no
-        time; and if nothing happens in a thousand flights through the container, where only events end the
-        run.
+        max_work : number of events, crossings and predictions of a new epoch after which to return as well,
+            to within a factor of 2, at the time reached
         """
         left, work = (
             np.iinfo(np.int64).max if number is None else number for number in (max_events, max_work)
@@ -277,7 +284,7 @@ class EventDynamics(Dynamics):
                 if not ends_epoch:
                     self._clock = stop
                     return
-                work -= len(self._flights)  # all is predicted anew
+                work -= len(self._flights)  # all events are predicted anew
                 begun -= self._next_epoch(endless=until == np.inf)
             else:
                 self._clock = max(self._clock, last)
@@ -290,11 +297,11 @@ class EventDynamics(Dynamics):
 
     @property
     def _at_rest(self) -> bool:
-        """Whether all particles are at rest, for good."""
+        """True if all particles are at rest, for good."""
         return any(part.at_rest for part in self._parts)
 
     def _stay(self, until: float) -> None:
-        """Let time pass in a scene at rest."""
+        """Advance the time in a scene at rest."""
         if until == np.inf:
             raise SimulationError(
                 f"at time {self.time:g} all particles are at rest: there are no more events"
@@ -302,14 +309,21 @@ class EventDynamics(Dynamics):
         self._clock = until - self._start
 
     def _run(self, record: Record | None, limits: tuple[float, int, int]) -> tuple[int, int, int, float]:
-        """Let the kernel run: why it stopped, the events and crossings it processed, the time of the last."""
+        """Run the kernel; return its reason to stop, its numbers and the last time.
+
+        The numbers count the processed events and crossings; the time is the time of the last of them.
+        """
         monitors = Monitors(record, self._collapse.watch)
         scene = self._particles, self._queue, self._boxes, self._model, self._tally.arrays
         return loop.run(*scene, monitors, limits, () if self._queue is None else None)
 
     def _next_epoch(self, endless: bool) -> float:
-        """Start the clocks again from zero, and predict all events anew. endless: whether only events end the
-        run. Returns the length of the epoch that has ended."""
+        """Restart the clocks from zero, and predict all events anew.
+
+        Returns the length of the epoch that has ended.
+
+        endless : True if only events end the run
+        """
         length = self._epoch
         check_clocks(self._start, self._epoch)
         for part in self._parts:
@@ -330,13 +344,18 @@ class EventDynamics(Dynamics):
         return length
 
     def _base_from(self, present: float) -> float:
-        """The length of an epoch without the factor of `Epochs.quiet`; `present`: that of the last one."""
+        """Return the length of an epoch without the factor of `Epochs.quiet`.
+
+        present : this length for the last epoch
+        """
         stored = sum(part.stored for part in self._parts)
         return self._epochs.base(self._flights["velocity"], stored, present)
 
     def _renew_epoch(self) -> float:
-        """Let shorter epochs begin if particles, all at the present time, have become so fast: a gas at rest
-        has one without end. Returns by how much later the clocks have been started."""
+        """Begin shorter epochs if particles, all at the present time, have become fast enough.
+
+        The epoch of a gas at rest has no end. Returns by how much later the clocks have been started.
+        """
         base, time = self._base_from(self._base), self.time
         if base >= self._base:
             return 0.0
@@ -353,7 +372,7 @@ class EventDynamics(Dynamics):
         return later
 
     def _begin_epoch(self, length: float) -> None:
-        """Let the present epoch have this length, and with it all times that are too short for the clocks."""
+        """Set the length of the present epoch, and all times too short for the clocks."""
         self._epoch = length
         for part in self._parts:
             self._model = part.begin_epoch(length, self._start, self._model)
@@ -365,16 +384,16 @@ class EventDynamics(Dynamics):
 
     @property
     def dissipated(self) -> float:
-        """The energy that contacts and thermal walls have taken since time 0, less what kicks have given."""
+        """Energy taken by contacts and thermal walls since time 0, minus the energy of kicks."""
         return self._tally.dissipated
 
     @property
     def exchanged(self) -> float:
-        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
+        """Sum of the absolute energies exchanged by contacts and by each face since time 0."""
         return self._tally.exchanged
 
     def _present(self) -> np.ndarray:
-        """The flights (N,) at the present time."""
+        """Return the flights (N,) at the present time."""
         flights = self._flights.copy()
         if not self._at_rest:
             advance_all(flights, self._clock, self._model.space, self._model.gravity)
@@ -382,7 +401,7 @@ class EventDynamics(Dynamics):
 
     @property
     def state(self) -> State:
-        """All particles at the present time."""
+        """State of all particles at the present time."""
         flights = self._present()
         state = replace(
             self._reference,
@@ -397,7 +416,7 @@ class EventDynamics(Dynamics):
 
     @property
     def _since(self) -> float:
-        """The time of the last reset of the tally."""
+        """Time of the last reset of the tally."""
         return self._tally.since
 
     @_since.setter
@@ -405,7 +424,7 @@ class EventDynamics(Dynamics):
         self._tally.since = time
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        """Everything that the kernels change and that cannot be made again, by name."""
+        """Return the arrays, by name, that the kernels change and that cannot be made again."""
         arrays = {**self._particles._asdict(), **self._tally.changing, **super()._arrays()}
         arrays |= {"event_count": self._event_count, "lost": self._tally.lost}
         if self._boxes.lists:
@@ -413,26 +432,32 @@ class EventDynamics(Dynamics):
         return arrays
 
     def _kept(self) -> dict[str, Any]:
-        """Particles at their own clocks, predictions and counts, and of which search they are. Of lists the
-        `room`: when it does not suffice all are made anew, which work counters tell."""
+        """Return particles at their own clocks, predictions, counts, and their search.
+
+        Of neighbour lists only the `room` is stored: if it does not suffice all lists are made anew, which
+        work counters show.
+        """
         made = self._boxes.lists
         room = {"room": (made.room, made.per_cell)} if made else {}
         return {**super()._kept(), **self._searched(), **room}
 
     def _searched(self) -> dict[str, Any]:
-        """The search of which predictions and centres of lists are."""
+        """Return the search to which predictions and centres of lists belong."""
         return {"search": self._search, "boxes_per_side": self._grid.per_side}
 
     def _is_of_this_search(self, checkpoint: dict[str, np.ndarray]) -> bool:
         return all(np.array_equal(checkpoint.get(key, ()), value) for key, value in self._searched().items())
 
     def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """All but the search; nor the centres of other neighbour lists, or of none."""
+        """Return the arrays needed from a checkpoint: all except the search.
+
+        The centres of neighbour lists are not needed from a checkpoint of another search.
+        """
         spared = {*self._searched(), *(() if self._is_of_this_search(checkpoint) else ("centres", "room"))}
         return {key: array for key, array in self.checkpoint().items() if key not in spared}
 
     def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Begin the epoch again; of another search, with everything predicted anew."""
+        """Begin the epoch again; after another search, predict everything anew."""
         self._begin_epoch(self._epoch)
         if not self._is_of_this_search(checkpoint):
             self._particles.predictions["box"] = self._grid.coordinates(self._present()["position"])

@@ -1,4 +1,4 @@
-"""How the event-driven engine finds the next contact: the choice by density; neighbour lists for a scene."""
+"""Search of the event-driven engine: the choice by density; neighbour lists for a scene."""
 
 from __future__ import annotations
 
@@ -16,17 +16,19 @@ if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
 _LISTED = {2: 8.0, 3: 15.0}  # particles that a list holds on average: they fill one or two vectors of eight
-_MARGINS = 0.1, 0.65  # of the largest diameter: limits on how far a particle moves before its list is renewed
+_MARGINS = 0.1, 0.65  # limits of a list's margin, in largest diameters
 _MANY = 1 << 15  # particles whose neighbour lists no longer fit into the processor's own cache
 _DENSE = {2: (0.45, 0.55), 3: (0.28, 0.4)}  # packing fractions from which lists are faster: few, many
-_ALIKE = 1.5  # and the largest ratio of radii: a list of small particles reaches as far as one of large ones
+_ALIKE = 1.5  # largest ratio of radii: a list of small particles reaches as far as a list of large ones
 _ROOM = {2: 16, 3: 32}  # entries of a list at first
 _SMALLEST, _LARGEST = 1e-12, 1e12  # radii whose squares are numbers in single precision
 
 
 def distances(scene: Scene) -> tuple[float, float]:
-    """How far a particle moves before its list is renewed, and how far the list reaches: so far that the
-    rounding of centres to single precision hides no contact."""
+    """Return the distance at which a particle's list is renewed, and the reach of the list.
+
+    The reach is so large that the rounding of centres to single precision hides no contact.
+    """
     d, diameter, lengths = scene.dimension, 2.0 * scene.largest_radius, scene.container.lengths
     rounding = 16.0 * float(np.finfo(np.float32).eps) * max(lengths)
     holding = (_LISTED[d] + 1.0) * scene.container.volume / (scene.count * ball_volume(d))
@@ -42,7 +44,7 @@ def distances(scene: Scene) -> tuple[float, float]:
 
 
 def obstacle_to_lists(scene: Scene) -> str | None:
-    """Why a scene cannot be run with neighbour lists, if so."""
+    """Return the reason why a scene cannot be run with neighbour lists, or None."""
     if scene.gravity is not None:
         return "gravity"
     if scene.walls:
@@ -61,10 +63,10 @@ def obstacle_to_lists(scene: Scene) -> str | None:
 
 
 def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
-    """The search for a scene: "boxes" or "lists" where it is left to the engine.
+    """Return the search for a scene: "boxes" or "lists" if the engine chooses.
 
-    Raises SceneError if lists are asked for, but the scene has something that they do not support; and if
-    the particles are more than a search can number.
+    Raises SceneError if lists are requested, but the scene has a feature that they do not support; and if the
+    particles are more than a search can number.
     """
     if scene.capacity > 1 << NUMBER_BITS:
         raise SceneError(
@@ -83,8 +85,11 @@ def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
 
 
 def neighbour_lists(scene: Scene, room: int = 0, per_cell: int = 1) -> NeighbourLists:
-    """Empty neighbour lists for a scene. room: words of each; per_cell: pages of a cell, of 8 particles
-    each."""
+    """Return empty neighbour lists for a scene.
+
+    room : number of words of each list
+    per_cell : number of pages of a cell, of 8 particles each
+    """
     from gaspart.kernels.event.neighbour_lists import empty_neighbour_lists
 
     margin, reach = distances(scene)
@@ -99,8 +104,7 @@ def neighbour_lists(scene: Scene, room: int = 0, per_cell: int = 1) -> Neighbour
 
 
 def make_lists(lists: NeighbourLists, scene: Scene) -> NeighbourLists:
-    """Make the neighbour lists of a scene from their centres: these ones, or new ones with as much room as
-    they need."""
+    """Make the neighbour lists of a scene from their centres; return them or larger ones."""
     from gaspart.kernels.event import neighbour_lists as kernels
 
     kernels.make_lists(lists, scene.container.lengths)

@@ -1,4 +1,4 @@
-"""The event-driven engine (Spencer 2021 and 2022; Lubachevsky, J. Comput. Phys. 94, 255 (1991))."""
+"""Event-driven engine (Spencer 2021 and 2022; Lubachevsky, J. Comput. Phys. 94, 255 (1991))."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
 from gaspart.keys import choice, declared, per_side
 from gaspart.scene.features import FEATURES
+from gaspart.state.optional_tallies import TALLIES
 
 if TYPE_CHECKING:
     from gaspart.engines.event.dynamics import EventDynamics
@@ -23,18 +24,47 @@ SEARCHES = ("automatic", "boxes", "lists", "direct", "pairs")
 @register
 @dataclass(frozen=True)
 class EventDriven(Engine):
-    """From one event to the next, exactly.
+    """Event-driven engine: exact collisions of hard particles, from one event to the next.
 
-    search: "boxes", with one next event per particle in a queue; "lists", the same with neighbour lists;
-    "automatic", the one of these that is faster at the density of the scene; "direct", with a single box,
-    each search over all particles; "pairs", all pairs before every event (Spencer 2021, section 3.1), the
-    referee. All give the same bits. boxes_per_side: a number, or one per axis; by default 0.5 to 1.5 a
-    particle.
+    All searches give the same bits. The method is described in [1]_ and [2]_.
 
+    Parameters
+    ----------
+    search : {"automatic", "boxes", "lists", "direct", "pairs"}, default "automatic"
+        Search for the next event: "boxes", with one next event per particle in a queue; "lists", the same
+        with neighbour lists; "automatic", the faster of these two at the density of the scene; "direct", with
+        a single box, each search over all particles; "pairs", all pairs before every event ([1]_, section
+        3.1), as a reference.
+    boxes_per_side : int or (d,) sequence of int, optional
+        Number of boxes along each axis. Default: 0.5 to 1.5 boxes per particle.
+
+    Raises
+    ------
+    SceneError
+        If a setting is invalid, or boxes are given for a search without them.
+
+    See Also
+    --------
+    TimeStepped : Time steps with overlap resolution.
+    DSMC : Collision partners drawn at random.
+
+    Notes
+    -----
     No box is narrower than the diameters of the particles in it. A few oversized particles can be left out of
-    the boxes, each of them tested by every small one near it: by default the largest of all, if that saves a
-    quarter of what a search examines (`state.boxes`); with `boxes_per_side`, those that are wider than a
-    box, which must be fewer than the others.
+    the boxes; every small particle near them tests each of them. By default these are the largest particles
+    of all, if this saves a quarter of the particles that a search examines (`state.boxes`); with
+    `boxes_per_side`, the particles wider than a box, which must be fewer than the others.
+
+    References
+    ----------
+    .. [1] Spencer (2021 and 2022).
+    .. [2] B. D. Lubachevsky, J. Comput. Phys. 94, 255 (1991).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> gp.EventDriven(search="lists").describe()
+    'event, float64'
     """
 
     search: str = field(
@@ -48,9 +78,7 @@ class EventDriven(Engine):
     name: ClassVar[str] = "event"
     title: ClassVar[str] = "event-driven"
     records_events: ClassVar[bool] = True
-    tallies: ClassVar[frozenset[str]] = frozenset(
-        ("stress", "impulses", "pair_impulses", "wall_shear", "entries", "fixed_collisions", "per_area")
-    )
+    tallies: ClassVar[frozenset[str]] = frozenset(tally.name for tally in TALLIES)
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     neutral_settings: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
     first_segment: ClassVar[int] = 256  # events with crossings and predictions
@@ -67,20 +95,90 @@ class EventDriven(Engine):
         return chosen_search(scene, self.search, self.boxes_per_side is not None)
 
     def describe(self) -> str:
-        """With its precision."""
+        """Return its name with its precision.
+
+        Returns
+        -------
+        str
+            The description.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.EventDriven().describe()
+        'event, float64'
+        """
         return f"{self.name}, {self.precision}"
 
     def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """How it finds pairs."""
+        """Return further remarks of advice on the engine.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+        observable : str
+            Name of the observable.
+        paths : bool
+            True if the observable depends on the paths of particles.
+
+        Returns
+        -------
+        dict of str to str
+            Remarks by title: the search for pairs.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> gp.EventDriven().notes(scene, "pressure", paths=False)
+        {'boxes': 'automatic, about one per particle'}
+        """
         return {"boxes": "automatic, about one per particle"}
 
     def variant(self, scene: Scene) -> str:
-        """The search; of "direct" that of boxes, of which it has one."""
+        """Return the name of its compiled kernels for a scene.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+
+        Returns
+        -------
+        str
+            The search; "boxes" for "direct", which has one box.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> gp.EventDriven().variant(scene)
+        'boxes'
+        """
         search = self._search(scene)
         return "boxes" if search == "direct" else search
 
     def for_small_scene(self, scene: Scene) -> EventDriven:
-        """With the search for this scene, not the one for a few particles, and one box if there are any."""
+        """Return settings with which a scene of few particles needs the same kernels.
+
+        Parameters
+        ----------
+        scene : Scene
+            The full scene.
+
+        Returns
+        -------
+        EventDriven
+            The engine, with the search for the full scene, and one box if it has boxes.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> gp.EventDriven().for_small_scene(scene).search
+        'boxes'
+        """
         boxes = None if self.boxes_per_side is None else 1
         return EventDriven(search=self._search(scene), boxes_per_side=boxes)
 
@@ -91,7 +189,37 @@ class EventDriven(Engine):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> EventDynamics:
-        """Set the engine up for a scene in a given state; `seed` is that of thermal walls and kicks."""
+        """Set the engine up for a scene in a given state.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+        state : State
+            State of its particles.
+        seed : int or tuple of int, default 0
+            Seed of thermal walls and kicks.
+        tallies : sequence of OptionalTally, optional
+            Optional tallies.
+
+        Returns
+        -------
+        EventDynamics
+            The scene in progress.
+
+        Raises
+        ------
+        SceneError
+            If the scene excludes the search.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> state = gp.Simulation(scene, "dsmc", seed=1).state
+        >>> gp.EventDriven().start(scene, state).time
+        0.0
+        """
         from gaspart.engines.event.dynamics import EventDynamics
 
         return EventDynamics(scene, state, seed, self.search, self.boxes_per_side, tallies)

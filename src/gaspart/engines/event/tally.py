@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.engines.features.part import Part, TallyPart
-from gaspart.engines.features.tallies import impulses_part, pair_impulses_part, stress_part
+from gaspart.engines.features.tallies import PARTS
 from gaspart.errors import SimulationError
 from gaspart.kernels import model as kernels
 from gaspart.kernels.event.pair_contact import CollapseWatch
@@ -20,8 +20,6 @@ from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
-PARTS = {"stress": stress_part, "impulses": impulses_part, "pair_impulses": pair_impulses_part}
-"""Functions that make the part of an optional tally, by its name."""
 _OPTIONAL = kernels.Tally._field_defaults  # entries that a part has
 
 
@@ -33,15 +31,22 @@ def tally_parts(
     scene: Scene,
     state: State,
 ) -> list[TallyPart]:
-    """The parts of optional tallies. flights (N,): the particles; state: that at time 0."""
+    """Return the parts of optional tallies.
+
+    flights : (N,), particles
+    state : state at time 0
+    """
     return [PARTS[tally.name](tally, flights, model, unit_mass, scene, state) for tally in asked]
 
 
 class EventTally:
-    """The counts of a scene in progress, since the last `reset`.
+    """Counts of a scene in progress, since the last `reset`.
 
-    arrays: those that the kernels add to; since: the time of the reset; lost (2,): the net and the gross
-    energy taken before it, see `dissipated` and `exchanged`.
+    Attributes
+    ----------
+    arrays : arrays to which the kernels add
+    since : time of the reset
+    lost : (2,), net and gross energy taken before the reset, see `dissipated` and `exchanged`
     """
 
     def __init__(self, scene: Scene, unit_mass: float, parts: Sequence[Part]) -> None:
@@ -51,12 +56,15 @@ class EventTally:
         self.lost = np.zeros(2)
 
     def reset(self, time: float, clock: float) -> None:
-        """Begin to count from zero at a time, which is `clock` on the clocks of the epoch."""
+        """Begin to count from zero at a time, and remember the energies taken before.
+
+        clock : this time on the clocks of the epoch
+        """
         self.lost = np.array([self.dissipated, self.exchanged])
         self.begin(time, clock)
 
     def begin(self, time: float, clock: float) -> None:
-        """Begin to count from zero, and forget what was counted before."""
+        """Begin to count from zero, and forget the counts before."""
         self.arrays = kernels.empty_tally(self._surfaces)._replace(**self._optional)
         for part in self._parts:
             part.reset(clock)
@@ -64,11 +72,11 @@ class EventTally:
 
     @property
     def changing(self) -> dict[str, np.ndarray]:
-        """The arrays by name, without those of parts."""
+        """Arrays by name, without the arrays of parts."""
         return {key: array for key, array in self.arrays._asdict().items() if key not in _OPTIONAL}
 
     def read(self, time: float, clock: float) -> Tally:
-        """Counters and sums up to the present `time`."""
+        """Return counters and sums up to the present `time`."""
         arrays = self.arrays
         sums = (net(terms) * self._unit_mass for terms in arrays.sums)
         counted: dict[str, Any] = dict(zip(kernels.COUNTS, arrays.counts.tolist(), strict=True))
@@ -88,19 +96,19 @@ class EventTally:
 
     @property
     def dissipated(self) -> float:
-        """The energy that contacts and thermal walls have taken since time 0, less what kicks have given."""
+        """Energy taken by contacts and thermal walls since time 0, minus the energy of kicks."""
         taken = self.arrays.sums[kernels.LOSS], self.arrays.wall_energy
         return float(self.lost[0]) + net(*taken) * self._unit_mass - self._given
 
     @property
     def exchanged(self) -> float:
-        """The sum of what contacts and each face have taken or given since time 0, each counted positive."""
+        """Sum of the absolute energies exchanged by contacts and by each face since time 0."""
         gross = net(self.arrays.sums[kernels.LOSS]) + float(np.abs(values(self.arrays.wall_energy)).sum())
         return float(self.lost[1]) + gross * self._unit_mass + self._given
 
     @property
     def _given(self) -> float:
-        """The energy that scheduled events have given since the last reset."""
+        """Energy given by scheduled events since the last reset."""
         return sum(part.given for part in self._parts)
 
 
@@ -109,18 +117,19 @@ class EventTally:
 
 _LENGTH = 10  # an epoch of the clocks is some 2^10 times of flight over a diameter
 _AT_REST = 2.0**960  # the epoch of a scene in which nothing moves
-_RESOLVED = 2.0**-52  # of speeds
-_OTHER = 2.0**10  # by which speeds must have changed for epochs of another length
+_RESOLVED = 2.0**-52  # relative resolution of speeds
+_OTHER = 2.0**10  # factor of speeds from which the length of epochs changes
 QUIET = 64
-"""Epochs without an event after which epochs are doubled."""
+"""Number of epochs without an event after which epochs are doubled."""
 
 
 class Epochs:
-    """How long the epochs of a scene are.
+    """Lengths of the epochs of a scene.
 
-    The speed for times of flight is the rms speed, with the largest gain by gravity and faces. masses (N,),
-    infinite for fixed particles; gained: the square of the largest speed that the scene itself gives a
-    particle.
+    The speed for times of flight is the rms speed, with the largest gain due to gravity and faces.
+
+    masses : (N,), infinite for fixed particles
+    gained : square of the largest speed that the scene itself gives a particle
     """
 
     def __init__(self, scene: Scene, masses: np.ndarray, gained: float) -> None:
@@ -131,13 +140,17 @@ class Epochs:
         self._masses = masses[self._moving]
 
     def speed(self, velocities: np.ndarray) -> float:
-        """The speed for times of flight, with velocities (N, d)."""
+        """Return the speed for times of flight, with velocities (N, d)."""
         square = float((velocities**2).sum(axis=1).mean()) if len(velocities) else 0.0
         return math.sqrt(square + self._gained)
 
     def _shared(self, velocities: np.ndarray, stored: float) -> float:
-        """The rms speed of particles that share their energy equally: the few heavy or spinning ones of a gas
-        at rest give it to the others within an epoch. stored: their energy besides that of flight."""
+        """Return the rms speed of particles that share their energy equally.
+
+        The few heavy or spinning particles of a gas at rest give their energy to the others within an epoch.
+
+        stored : energy of the particles except the energy of flight
+        """
         if not len(self._masses):
             return 0.0
         squares = (velocities[self._moving] ** 2).sum(axis=1)
@@ -145,38 +158,45 @@ class Epochs:
         return math.sqrt(2.0 * energy / len(self._masses) * float((1.0 / self._masses).mean()))
 
     def base(self, velocities: np.ndarray, stored: float, present: float = 0.0) -> float:
-        """The length of an epoch of particles with velocities (N, d) and a `stored` energy besides; a
-        `present` one is kept as by `length`."""
+        """Return the length of an epoch for velocities (N, d) and a `stored` energy.
+
+        The stored energy is added to the energy of flight. A `present` length is kept as in `length`.
+        """
         length = self.length(self.speed(velocities), present)
         return min(length, self.length(self._shared(velocities, stored), length))
 
     def flights(self, velocities: np.ndarray, length: float) -> float:
-        """How many flights through the container particles with velocities (N, d) make in an epoch of this
-        length, relative to one another; 0 if rounding hides that they do. Particles that move together do not
-        meet, but do not miss one another either."""
+        """Return the number of flights through the container relative to one another in an epoch.
+
+        The particles have velocities (N, d). The result is 0 if rounding hides their relative motion.
+        Particles that move together do not collide, but do not miss one another either.
+        """
         relative = self.speed(velocities - velocities.mean(axis=0))
         return relative * length / self._across if relative > _RESOLVED * self.speed(velocities) else 0.0
 
     def length(self, speed: float, present: float = 0.0) -> float:
-        """The time after which clocks start again from zero: a power of two, so that it scales with the
-        units.
+        """Return the time after which clocks restart from zero.
 
-        A `present` length is kept until speeds have changed by a factor of 2^10: a cooling gas needs longer
-        epochs, since the work of an epoch does not depend on its length.
+        It is a power of two, so that it scales with the units. A `present` length is kept until speeds have
+        changed by a factor of 2^10: a cooling gas needs longer epochs, since the work of an epoch does not
+        depend on its length.
         """
         length = _power_of_two(self._diameter / speed, _LENGTH) if speed > 0.0 else _AT_REST
         return present if present / _OTHER < length < present * _OTHER else length
 
     def quiet(self, speed: float, length: float, number: int) -> float:
-        """The length of an epoch after a `number` of them without an event: twice the last one, until it is
-        a time of flight through the container. The clocks are then as precise as the positions."""
+        """Return the length of an epoch after a `number` of epochs without an event.
+
+        It is twice the last one, until it equals a time of flight through the container. The clocks are then
+        as precise as the positions.
+        """
         most = _power_of_two(self._across / speed, 0) if speed > 0.0 else length
         doublings = min(max(number - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(length)[1]))
         return math.ldexp(length, doublings)
 
 
 def _power_of_two(time: float, more: int) -> float:
-    """The next power of two above a time, times 2^more; at most `_AT_REST`."""
+    """Return the next power of two above a time, times 2^more; at most `_AT_REST`."""
     _, exponent = math.frexp(time)
     return min(math.ldexp(1.0, exponent + more), _AT_REST) if time < _AT_REST else _AT_REST
 
@@ -203,8 +223,14 @@ _COLLAPSE = "an inelastic collapse, or a stack at rest, which a contact_duration
 
 
 def check_progress(time: float, spent: float, epoch: float) -> None:
-    """Raise SimulationError if `MANY` events, up to `time`, have `spent` less than clocks of such an `epoch`
-    can resolve: their order would be rounding only."""
+    """Raise SimulationError if `MANY` events took less time than the clocks can resolve.
+
+    Their order would be rounding only.
+
+    time : present time
+    spent : time of these events
+    epoch : length of the epoch
+    """
     if spent < MANY * _RESOLVED * epoch:
         raise SimulationError(
             f"at time {time:g} there were {MANY} events within a time of {spent:g}: "
@@ -222,8 +248,10 @@ def check_clocks(start: float, epoch: float) -> None:
 
 
 def check_events(time: float, quiet: int, flights: float) -> None:
-    """Raise SimulationError after too many `quiet` epochs in a row, up to `time`, without an event. flights:
-    those through the container in each of them, see `Epochs.flights`."""
+    """Raise SimulationError after too many `quiet` epochs in a row without an event.
+
+    flights : number of flights through the container in each epoch, see `Epochs.flights`
+    """
     if quiet <= _QUIET or (0.0 < quiet * flights < _FLIGHTS and quiet <= _QUIET_TOGETHER):
         return
     why = "particles move together" if 0.0 < quiet * flights < _FLIGHTS else "particles miss one another"
@@ -231,8 +259,10 @@ def check_events(time: float, quiet: int, flights: float) -> None:
 
 
 class CollapsePart(Part):
-    """Detection of a collapse of `count` particles. watch: what the kernels count; None where none is
-    possible."""
+    """Detection of a collapse of `count` particles.
+
+    watch : counts of the kernels; None if no collapse is possible
+    """
 
     def __init__(self, model: Model, count: int) -> None:
         law = model.law
@@ -250,12 +280,15 @@ class CollapsePart(Part):
         self.watch = CollapseWatch(since, contacts, 0.0, most)
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set the time in which so many contacts are a collapse."""
+        """Set the time in which too many contacts are a collapse."""
         self.watch = self.watch and self.watch._replace(interval=self._interval * length)
         return model
 
     def error(self, time: float) -> SimulationError:
-        """The error of a scene in which a particle has had too many contacts, up to `time`."""
+        """Return the error of a scene in which a particle has had too many contacts.
+
+        time : present time
+        """
         watch = self.watch
         assert watch is not None  # or the kernels would have seen none
         return SimulationError(

@@ -1,1 +1,1 @@
-"""Optional features of a scene as the engines need them, one module for each: see `part`."""
+"""Optional features of a scene in the form that the engines need: see `part`."""

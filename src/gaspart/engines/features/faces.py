@@ -1,4 +1,4 @@
-"""Faces of the container with a kind, for all engines, and what particles keep at them."""
+"""Faces of the container with a kind, for all engines, and their effects on particles."""
 
 from __future__ import annotations
 
@@ -23,17 +23,20 @@ from gaspart.state.initial import places_in_wells, well_energies, wells_of
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 
-# Open faces: which particles are inside, and the reservoirs from which they come.
+# Open faces: the particles inside, and the reservoirs from which they come.
 
 
 _ENTRY_DRAWS = 7  # the purpose of their random numbers, after those of interior walls
 _ARRAYS = "positions", "velocities", "images", "radii", "masses", "species", "spins", "moments_of_inertia"
-"""Those of a `State` that have a row for each particle."""
+"""Arrays of a `State` that have a row for each particle."""
 
 
 def with_room(scene: Scene, state: State) -> State:
-    """A state with all numbers that particles may have: those that no particle has are at no place (NaN) and
-    at rest. The same one without open faces."""
+    """Return a state with all numbers that particles may have.
+
+    Numbers without a particle have no position (NaN) and are at rest. Without open faces the state itself is
+    returned.
+    """
     free = scene.capacity - state.count
     if free == 0:
         return state
@@ -46,7 +49,7 @@ def with_room(scene: Scene, state: State) -> State:
 
 
 def opened(scene: Scene, state: State) -> kernels.Open | None:
-    """The kernels' `Open` of a state with all numbers; None without open faces."""
+    """Return the kernels' `Open` of a state with all numbers; None without open faces."""
     if not scene.is_open:
         return None
     present = np.isfinite(state.positions[:, 0]).astype(np.uint8)
@@ -57,7 +60,7 @@ def opened(scene: Scene, state: State) -> kernels.Open | None:
 def reservoirs_of(
     scene: Scene, seed: int | tuple[int, ...], inside: kernels.Open
 ) -> kernels.Reservoirs | None:
-    """The gases behind open faces; None if there is a vacuum behind all of them."""
+    """Return the gases behind open faces; None for a vacuum behind all of them."""
     rates, widths = np.zeros((2, 2 * scene.dimension))
     for number, face in scene.faces_of(Open):
         if face.temperature is not None:
@@ -66,7 +69,7 @@ def reservoirs_of(
     if not rates.any():
         return None
     up_to = np.cumsum(rates) / rates.sum()
-    up_to[np.flatnonzero(rates)[-1] :] = 1.0  # whatever rounding makes of it
+    up_to[np.flatnonzero(rates)[-1] :] = 1.0  # for any rounding
     next_one = np.zeros(1, dtype=np.int64), np.full(1, np.inf), np.zeros(3)
     return kernels.Reservoirs(
         key_of(seed, _ENTRY_DRAWS), float(rates.sum()), up_to, widths, *next_one, inside
@@ -74,13 +77,16 @@ def reservoirs_of(
 
 
 def crowded_error(time: float, most: int) -> SimulationError:
-    """The error of a run in which more than `most` particles would be inside."""
+    """Return the error of a run in which more than `most` particles would be inside."""
     return SimulationError(f"at time {time:g} there is no room for more than {most} particles")
 
 
 class OpenPart(Part):
-    """The open faces of a scene: which particles are inside, how many have entered since the tally began, and
-    the number and the time, on the clocks of the epoch, of the next attempt to enter."""
+    """Open faces of a scene.
+
+    The arrays are the particles inside, the number that have entered since the tally began, and the number
+    and the time, on the clocks of the epoch, of the next attempt to enter.
+    """
 
     def __init__(self, scene: Scene, inside: kernels.Open, reservoirs: kernels.Reservoirs | None) -> None:
         self._scene, self._inside, self._reservoirs = scene, inside, reservoirs
@@ -102,7 +108,7 @@ class OpenPart(Part):
         return model
 
     def write(self, state: State, clock: float) -> None:
-        """Leave only the particles that are inside, with their numbers."""
+        """Keep only the particles that are inside, with their numbers."""
         state.numbers = np.flatnonzero(self._inside.present)
         for key in _ARRAYS:
             setattr(state, key, getattr(state, key)[state.numbers])
@@ -112,7 +118,7 @@ class OpenPart(Part):
         self._inside.entries[:] = 0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """How many particles have entered through each face, by the field of `Tally`."""
+        """Return the number of particles that have entered through each face, by the field of `Tally`."""
         return {"entries": np.pad(self._inside.entries, (0, len(self._scene.walls)))}
 
 
@@ -124,7 +130,7 @@ _OF_EPOCH = 2.0**-24  # a particle at rest on which the piston lies meets it aga
 
 
 def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | None:
-    """The piston of a state, in units of `unit_mass`; None if there is none."""
+    """Return the piston of a state, in units of `unit_mass`, or None."""
     if not scene.pistons or state.piston is None:
         return None
     ((n, face),) = scene.pistons
@@ -136,8 +142,10 @@ def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | 
 
 
 class PistonPart(Part):
-    """The piston of a scene: twice its speed, stated or that which its load gives it, is what it can give a
-    particle."""
+    """Piston of a scene.
+
+    It can give a particle twice its own speed, which is prescribed or due to its load.
+    """
 
     def __init__(self, piston: kernels.Piston, scene: Scene) -> None:
         super().__init__({"piston": piston.motion})
@@ -147,21 +155,21 @@ class PistonPart(Part):
         self.gained = 4.0 * (fallen if face.speed is None else face.speed**2)
 
     def set_clock(self, clock: float) -> None:
-        """Let the present motion be that at this time."""
+        """Set the time of the present motion."""
         self._piston.motion[kernels.PISTON_CLOCK] = clock
 
     def begin_epoch(self, length: float, start: float, model: kernels.Model) -> kernels.Model:
-        """Set the speed at which particles part from it."""
+        """Set the minimum speed of separation of particles from the piston."""
         self._piston.slowest[0] = 0.5 * self._piston.push * _OF_EPOCH * length
         return model
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Move it to the end of the epoch, and let that be time 0 of its clock."""
+        """Move the piston to the end of the epoch, which becomes time 0 of its clock."""
         advance_piston(self._piston.motion, self._piston.push, length)
         self.set_clock(0.0)
 
     def write(self, state: State, clock: float) -> None:
-        """Write where it is along its axis, and its velocity."""
+        """Write position along its axis and velocity of the piston."""
         piston, motion = self._piston, self._piston.motion.copy()
         advance_piston(motion, piston.push, clock)
         place, velocity = motion[kernels.PISTON_PLACE], motion[kernels.PISTON_VELOCITY]
@@ -177,11 +185,11 @@ class PistonPart(Part):
 # A particle that is pressed to the face meets it again after a part of an epoch, or of the duration of a
 # contact, if that is longer; of the period, if the face's acceleration presses it, and that is shorter.
 _HOP_OF_EPOCH, _OF_DURATION, _OF_PERIOD = 2.0**-24, 2.0**-3, 2.0**-15
-_OF_SPEED = 2.0**-48  # it parts with this part of the face's speed at least
+_OF_SPEED = 2.0**-48  # minimum speed of separation divided by the face's speed
 
 
 def motion_of(scene: Scene) -> Motion | None:
-    """How the faces move, before the first epoch; None if none vibrates."""
+    """Return the motion of the faces before the first epoch; None if no face vibrates."""
     moving = scene.faces_of(Vibrating)
     if not moving:
         return None
@@ -201,7 +209,7 @@ def motion_of(scene: Scene) -> Motion | None:
 
 
 class VibratingPart(Part):
-    """Faces that move as prescribed: up to twice as fast as they do themselves particles leave them."""
+    """Faces that vibrate as prescribed; particles leave them at up to twice their speed."""
 
     def __init__(self, scene: Scene, motion: Motion) -> None:
         super().__init__({})
@@ -209,8 +217,10 @@ class VibratingPart(Part):
         self.gained = (2.0 * max(face.greatest_speed for _, face in self._faces)) ** 2
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Let the periods go on where the clocks are at zero. The remainder of a division is exact, so that
-        phases do not drift."""
+        """Continue the periods at the time where the clocks are at zero.
+
+        The remainder of a division is exact, so that phases do not drift.
+        """
         scene, motion = self._scene, self._motion
         motion.epoch[0] = length
         for n, face in self._faces:
@@ -226,18 +236,24 @@ class VibratingPart(Part):
 
 
 WALL_DRAWS = 2
-"""The purpose of the random numbers of thermal walls, after those of the initial state."""
+"""Number that identifies the random numbers of thermal walls, after the initial state's."""
 
 
 def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """(2d,), (2d,) the kernels' kinds of the container's faces, and their levels: temperatures or momenta."""
+    """Return kind (2d,) and level (2d,) of the container's faces for the kernels.
+
+    A level is a temperature or a momentum.
+    """
     surfaces = (scene.faces.get(name) for name in FACES[: 2 * scene.dimension])
     names, levels = zip(*(surface.rule if surface else ("hard", 0.0) for surface in surfaces), strict=True)
     return np.array([RULES[name] for name in names], dtype=np.int64), np.array(levels, dtype=float)
 
 
 def sliding_velocities(scene: Scene) -> np.ndarray | None:
-    """(2d, d) the velocities of the container's faces, None if it has no `has_dragged_faces`."""
+    """Return the velocities (2d, d) of the container's faces, or None.
+
+    None means that the scene drags no faces.
+    """
     if not scene.drags_faces:
         return None
     velocities = np.zeros((2 * scene.dimension, scene.dimension))
@@ -247,8 +263,7 @@ def sliding_velocities(scene: Scene) -> np.ndarray | None:
 
 
 def accommodations(scene: Scene) -> np.ndarray | None:
-    """(2d,) the fractions of hits of the container's faces after which velocities are drawn, None if all
-    are."""
+    """Return the fractions (2d,) of hits after which velocities are drawn, or None if all are."""
     if not scene.partial_faces:
         return None
     fractions = np.ones(2 * scene.dimension)
@@ -258,7 +273,7 @@ def accommodations(scene: Scene) -> np.ndarray | None:
 
 
 def ramp_of(scene: Scene) -> Ramp | None:
-    """The temperatures that vary along faces, None without any."""
+    """Return the temperatures that vary along faces, or None."""
     if not scene.ramps:
         return None
     axes, high = np.full(2 * scene.dimension, NONE), np.zeros(2 * scene.dimension)
@@ -268,12 +283,15 @@ def ramp_of(scene: Scene) -> Ramp | None:
 
 
 def has_special_faces(scene: Scene) -> bool:
-    """Whether particles meet faces with a kind, other than periodic ones."""
+    """Return True if particles hit faces with a kind, other than periodic faces."""
     return bool(scene.faces) and scene.shear_rate is None
 
 
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:
-    """The kinds of the container's faces as the kernels' `Faces`, in units of `unit_mass`."""
+    """Return the kinds of the container's faces as the kernels' `Faces`.
+
+    The unit of mass is `unit_mass`.
+    """
     kind, level = kinds_and_levels(scene)
     depths, widths = wells_of(scene)
     velocities, ramp = sliding_velocities(scene), ramp_of(scene)
@@ -297,8 +315,10 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
 
 
 def face_energy(scene: Scene) -> float:
-    """Upper estimate of the energy that a thermal face or wall or a well gives a particle, at whatever speed
-    it moves."""
+    """Return an upper estimate of the energy that a face or wall gives a particle.
+
+    The energy is given by a thermal face or wall or a well to a particle of any speed.
+    """
     hottest = max(scene.face_temperatures, default=0.0)
     deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
     fastest = max((math.hypot(*(face.velocity or ())) for _, face in scene.sliding_faces), default=0.0)
@@ -307,9 +327,13 @@ def face_energy(scene: Scene) -> float:
 
 
 class FacesPart(Part):
-    """Faces with a kind, in units of `unit_mass`: which particles are in a well or stuck, with what energy,
-    how often random numbers were drawn, and what momentum faces were given along themselves. lightest: the
-    least mass of a particle."""
+    """Faces with a kind, in units of `unit_mass`.
+
+    The arrays are the particles in a well or stuck, their energies, the numbers of draws of random numbers,
+    and the momentum that faces were given along themselves.
+
+    lightest : least mass of a particle
+    """
 
     def __init__(self, scene: Scene, faces: Faces, unit_mass: float, lightest: float = np.inf) -> None:
         self._shear = faces.sliding.shear if faces.sliding else None
@@ -320,11 +344,11 @@ class FacesPart(Part):
 
     @property
     def stored(self) -> float:
-        """The energy of particles that stick to a face."""
+        """Energy of particles that stick to a face."""
         return float(self.arrays["held"].sum()) * self._unit_mass
 
     def write(self, state: State, clock: float) -> None:
-        """Write the energies in wells, and add those of particles that stick to a face."""
+        """Write the energies in wells, and add the energies of particles that stick to a face."""
         state.well_energies = well_energies(self._scene, self.arrays["place"])
         if state.vibrations is not None:
             state.vibrations += self.arrays["held"].sum(axis=1) * self._unit_mass
@@ -335,7 +359,7 @@ class FacesPart(Part):
             self._shear[...] = 0.0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """The momentum that faces were given along themselves, by the field of `Tally`."""
+        """Return the momentum that faces were given along themselves, by the field of `Tally`."""
         if self._shear is None:
             return {}
         shear = values(self._shear).reshape(-1, self._scene.dimension) * self._unit_mass

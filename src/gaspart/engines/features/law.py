@@ -1,4 +1,4 @@
-"""The law of contacts, for all engines, and what particles keep inside: spins and vibrations."""
+"""Collision law for all engines, and internal properties of particles: spins and vibrations."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ _BISECTIONS = 100  # until neighbouring numbers enclose the damping of viscoelas
 
 
 def contact_law(scene: Scene, state: State) -> ContactLaw | None:
-    """The law of contacts, or None if all are elastic, smooth and between particles that can move."""
+    """Return the collision law, or None for elastic, smooth collisions.
+
+    The result is a law too if particles are fixed.
+    """
     rule = scene.restitution or Restitution()
     if rule.smooth_and_elastic and not np.isinf(state.masses).any():
         return None
@@ -42,8 +45,10 @@ def contact_law(scene: Scene, state: State) -> ContactLaw | None:
 
 
 def _viscous(scene: Scene) -> float | None:
-    """The constant of viscoelastic particles, from the restitution of two of the first species, or else of
-    the first particle; None if the restitution is constant."""
+    """Return the constant of viscoelastic particles, or None for a constant restitution.
+
+    It follows from the restitution of two particles of the first species, or like the first particle.
+    """
     rule = scene.restitution
     if rule is None or rule.reference_speed is None:
         return None
@@ -60,7 +65,7 @@ def _viscous(scene: Scene) -> float | None:
 
 
 class LawPart(Part):
-    """Particles under a law of contacts: their spins (N, 3), and the energies (N,) of those that vibrate."""
+    """Particles under a collision law: spins (N, 3), and energies (N,) of vibrating particles."""
 
     def __init__(self, law: ContactLaw) -> None:
         super().__init__({"spins": law.spins})
@@ -70,9 +75,9 @@ class LawPart(Part):
 
     @property
     def stored(self) -> float:
-        """The energy of spins and of vibrations."""
+        """Energy of spins and of vibrations."""
         squares = (self.arrays["spins"] ** 2).sum(axis=1)
-        turning = squares > 0.0  # and so not of smooth particles, whose moment of inertia may be infinite
+        turning = squares > 0.0  # excludes smooth particles, whose moment of inertia may be infinite
         spins = 0.5 * float((squares[turning] / self._inverse_inertia[turning]).sum())
         vibrations = self.arrays.get("vibrations")
         return spins + (0.0 if vibrations is None else float(np.maximum(vibrations, 0.0).sum()))
@@ -90,15 +95,20 @@ class LawPart(Part):
 
 
 def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
-    """(unit, array): equal masses are not part of the kernel's model, and their sums scaled by `unit`."""
+    """Return the unit of mass, and the masses in it, or None if equal.
+
+    Equal masses are not part of the kernel's model, and their sums are multiplied by the unit.
+    """
     if len(masses) == 0:
         return 1.0, None
     return (float(masses[0]), None) if (masses == masses[0]).all() else (1.0, masses)
 
 
 def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, float]:
-    """The momentum and the energy that few particles will exceed, each a power of two in units of
-    `unit_mass`: sums that several threads make are in parts of these."""
+    """Return the momentum and the energy that few particles will exceed.
+
+    Each is a power of two in units of `unit_mass`: sums of several threads are in fractions of these.
+    """
     moving = np.isfinite(state.masses)
     if not moving.any():
         return 1.0, 1.0
@@ -116,20 +126,20 @@ def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, 
 
 # Jams of a scene under gravity: particles that are held until a contact moves them (`kernels.event.jams`).
 #
-# All follows from what is taken for rest: a movement of less than 2^-8 of the smallest diameter d. Gravity
-# g, tilted by an angle a of tangent 2^-2, moves no particle of a jam as far in the time sqrt(d/g) of a
-# fall, nor does a contact that gives it less than a speed v: up a slope of this angle it comes v^2/(2 g
-# sin a) far. A jam is what has one particle at least that is pressed: its contacts follow one another
-# faster, in the mean of a fall, than those of two particles that gravity alone presses together.
+# All follows from the definition of rest: a movement of less than 2^-8 of the smallest diameter d. Gravity g,
+# tilted by an angle a of tangent 2^-2, moves no particle of a jam as far in the time sqrt(d/g) of a fall, nor
+# does a contact that gives it less than a speed v: up a slope of this angle it comes v^2/(2 g sin a) far. A
+# jam has at least one particle that is pressed: its contacts follow one another faster, in the mean of a
+# fall, than the contacts of two particles that gravity alone presses together.
 
 
-FURTHEST = 2.0**-8  # of the smallest diameter: what moves less rests
+FURTHEST = 2.0**-8  # smallest displacement of a particle that does not rest, in smallest diameters
 _TILT = 2.0**-2
-_PLANES = 24  # that a particle touches, of which more are not regarded
+_PLANES = 24  # maximum number of planes of a particle; further planes are ignored
 
 
 def slowest_that_moves(scene: Scene) -> float:
-    """The speed that frees a particle from a jam; infinite without gravity."""
+    """Return the speed that frees a particle from a jam; infinite without gravity."""
     gravity = math.hypot(*(scene.gravity or ()))
     if gravity == 0.0:
         return math.inf
@@ -137,7 +147,10 @@ def slowest_that_moves(scene: Scene) -> float:
 
 
 def _tilted(gravity: tuple[float, ...]) -> np.ndarray:
-    """(2, 3) or (4, 3) accelerations, tilted to all sides; whatever supports all of them supports gravity."""
+    """Return the accelerations (2, 3) or (4, 3) of gravity tilted to all sides.
+
+    A support against all of them is a support against gravity.
+    """
     whole = np.zeros(3)
     whole[: len(gravity)] = gravity
     across = [np.array([-whole[1], whole[0], 0.0])]
@@ -149,8 +162,11 @@ def _tilted(gravity: tuple[float, ...]) -> np.ndarray:
 
 
 class Jams:
-    """Looks for jams in a scene after every `window` of time. axis: of its gravity, not periodic; reach: the
-    largest gap of particles that touch."""
+    """Search for jams in a scene after every `window` of time.
+
+    axis : axis of gravity that is not periodic
+    reach : largest gap of particles that touch
+    """
 
     def __init__(self, scene: Scene, axis: int, reach: float, window: float) -> None:
         from gaspart.kernels.event.jams import Limits
@@ -172,8 +188,12 @@ class Jams:
         tally: Tally,
         time: float,
     ) -> bool:
-        """Hold those of the particles at these places (N, d) that belong to a jam at this time. stays (N,):
-        which have not left their places. Returns whether events must be predicted anew."""
+        """Hold the particles at positions (N, d) that belong to a jam at this time.
+
+        Returns whether events must be predicted anew.
+
+        stays : (N,), whether a particle has not left its position
+        """
         from gaspart.kernels.event.jams import (
             HELD,
             PRESSED,
@@ -186,7 +206,7 @@ class Jams:
         )
 
         law, flights = model.law, particles.flights
-        assert law is not None and law.duration is not None  # as `rest.rest_watch` requires
+        assert law is not None and law.duration is not None  # as `rest_watch` requires
         duration, moves = law.duration, law.duration.inverse_mass > 0.0
         marks = np.empty((3, len(flights)), dtype=bool)
         marks[HELD], marks[STAYS] = stays & moves, stays | ~moves
@@ -199,7 +219,7 @@ class Jams:
         line = Line(order, places, self._axis)
         keep_stable(flights, line, self._limits, model, marks)
         kept = marks[:2] | (stays & (duration.island >= len(flights)))
-        if (kept != marks[:2]).any():  # what a jam has held before remains unless gravity itself moves it
+        if (kept != marks[:2]).any():  # particles held by a jam before remain unless gravity moves them
             marks[:2] = kept
             keep_stable(flights, line, self._plain, model, marks)
         freed = free_unstable(flights, time, marks, model)
@@ -209,14 +229,17 @@ class Jams:
         return jam(flights, order, time, marks, parent, model, tally) or freed
 
 
-# Contacts that last: those within a time of an earlier one of the same particle are elastic.
+# Contacts that last: a contact less than a time after an earlier one of the same particle is elastic.
 
 
 _ARRAYS = ("latest", "met", "island", "contacts", "elastic", "kept")
 
 
 def contact_duration(scene: Scene, law: ContactLaw) -> ContactDuration | None:
-    """The kernels' rule under this `law`, before the first contact; None if every contact dissipates."""
+    """Return the kernels' rule under a law before the first contact, or None.
+
+    Without a rule every contact dissipates.
+    """
     if not scene.contact_duration > 0.0:
         return None
     never = np.full(scene.count, -np.inf)
@@ -234,8 +257,10 @@ def contact_duration(scene: Scene, law: ContactLaw) -> ContactDuration | None:
 
 
 class DurationPart(Part):
-    """Contacts that last, and under `gravity` islands at rest, which it does not move, and jams, which
-    contacts do not move either."""
+    """Contacts that last, and islands and jams under gravity.
+
+    Islands are at rest, and gravity does not move them; contacts do not move jams either.
+    """
 
     def __init__(self, law: ContactLaw, duration: ContactDuration, gravity: Gravity | None) -> None:
         arrays = {f"contact_{key}": getattr(duration, key) for key in _ARRAYS}
@@ -250,24 +275,26 @@ class DurationPart(Part):
         self._duration.elastic[:], self._duration.kept[:] = 0, 0.0
 
     def counts(self, clock: float) -> dict[str, float]:
-        """The elastic contacts, and the energy that they have not dissipated."""
+        """Return the number of elastic contacts, and the energy that they have not dissipated."""
         kept = running_sum.net(self._duration.kept)
         return {"elastic_contacts": int(self._duration.elastic[0]), "retained_energy": kept}
 
 
 # Scenes under gravity that come to rest.
 #
-# With a contact duration, a pile that has settled goes on with tiny elastic contacts for ever. A scene is
-# taken for being at rest, and nothing happens in it any more, if for the time sqrt(d/g) of a fall each
-# particle has stayed within 2^-8 of the smallest diameter d, and then lies on a wall or has contacts that
-# last. The same holds for a part of it, particles with such contacts and what lies or moves within 2^-8 d
-# of them, until another particle meets one of them. The kinetic energy of flight is then counted as
-# dissipated; spins, on which elastic contacts do not act, are kept.
+# With a contact duration, a settled pile has tiny elastic contacts for ever. A scene is taken for being at
+# rest, and has no events any more, if for the time sqrt(d/g) of a fall each particle has stayed within 2^-8
+# of the smallest diameter d, and then lies on a wall or has contacts that last. The same holds for a part of
+# it, particles with such contacts and particles that lie or move within 2^-8 d of them, until another
+# particle collides with one of them. The kinetic energy of flight is then counted as dissipated; spins, on
+# which elastic contacts do not act, are kept.
 
 
 class RestWatch(Part):
-    """Looks at regular times, which do not depend on where a run is split, whether all particles rest: their
-    places (N, d) at the last look, the time of the next one on the clocks of the epoch, and whether they do.
+    """Test at regular times whether all particles rest.
+
+    The times do not depend on where a run is split. The arrays are the positions (N, d) at the last test, the
+    time of the next test on the clocks of the epoch, and the result.
     """
 
     def __init__(self, scene: Scene, state: State) -> None:
@@ -285,16 +312,18 @@ class RestWatch(Part):
 
     @property
     def at_rest(self) -> bool:
-        """Whether all particles rest."""
+        """True if all particles rest."""
         return bool(self._rests[0])
 
     def set_clock(self, clock: float) -> None:
-        """Look for the first time after the time of a fall from now on."""
+        """Schedule the first test after the time of a fall from now on."""
         self._next[0] = clock + self._window
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Look which particles rest, and stop them. Returns whether events must be predicted anew: not if all
-        rest."""
+        """Find the particles that rest, and stop them.
+
+        Returns whether events must be predicted anew; this is not so if all particles rest.
+        """
         from gaspart.kernels.event.jams import MOVES, RESTS, find_resting, stop_all
 
         flights, places, time = particles.flights, self._before, self.next
@@ -309,7 +338,7 @@ class RestWatch(Part):
         return self._jams.hold(particles, places, ~marks[MOVES], model, tally, time) or found
 
     def _hold(self, particles: Particles, marks: np.ndarray, model: Model, tally: Tally, time: float) -> bool:
-        """Hold islands. Returns whether there are any new ones."""
+        """Hold islands; return whether there are any new ones."""
         from gaspart.kernels.event.jams import RESTS, TOUCHES, hold, join
         from gaspart.kernels.model import NONE
 
@@ -318,7 +347,7 @@ class RestWatch(Part):
         awake = (law.duration.island == NONE) & (law.inverse_mass > 0.0)
         if not (marks[RESTS] & marks[TOUCHES] & awake).any():
             return False
-        near = np.flatnonzero(marks.any(axis=0) & awake)  # not what slides slowly and touches nothing
+        near = np.flatnonzero(marks.any(axis=0) & awake)  # without sliding particles that touch nothing
         order = near[np.argsort(places[near, self._axis], kind="stable")]
         parent = np.empty(len(flights), dtype=np.int64)
         join(flights, order, places, self._axis, self._most, model.space, parent)
@@ -326,8 +355,10 @@ class RestWatch(Part):
 
 
 def rest_watch(scene: Scene, state: State) -> RestWatch | None:
-    """The watch of a scene in which all particles may come to rest: contacts that last, gravity that
-    drives no flow, and no face or wall that gives energy."""
+    """Return the watch of a scene in which all particles may come to rest, or None.
+
+    Such a scene has contacts that last, gravity that drives no flow, and no face or wall that gives energy.
+    """
     falls = scene.gravity is not None and not scene.driven_axes
     still = not (scene.faces or scene.face_temperatures)
     return RestWatch(scene, state) if scene.contact_duration > 0.0 and falls and still else None

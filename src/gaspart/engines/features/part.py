@@ -1,7 +1,7 @@
-"""The part of a run that belongs to one feature of its scene.
+"""Part of a run that belongs to one feature of its scene.
 
-A module of this package has all that the engines need of a feature: what the kernels' model has of it, None
-where it is absent, and a `Part`. An engine goes through the parts of a scene and does not name them.
+A module of this package has all that the engines need of a feature: its form in the kernels' model, None if
+it is absent, and a `Part`. An engine iterates over the parts of a scene and does not name them.
 """
 
 from __future__ import annotations
@@ -25,12 +25,15 @@ if TYPE_CHECKING:
 
 
 class Part:
-    """A feature in a run. Each method is for what a feature may have, and does nothing by default.
+    """Feature in a run; by default its methods do nothing.
 
-    arrays: those that a run changes, by their names in a checkpoint; sums: likewise those (threads, ...) that
-    several threads add to, of which a checkpoint has the sum; times: those of `arrays` that are times on the
-    clocks of the epoch; scheduled (1,): the time of the next event that it has scheduled; gained: the square
-    of the largest speed that it can give a particle.
+    Attributes
+    ----------
+    arrays : arrays that a run changes, by their names in a checkpoint
+    sums : arrays (threads, ...) to which several threads add, by name; a checkpoint has their sum
+    times : the `arrays` that are times on the clocks of the epoch
+    scheduled : (1,), time of the next event that the part has scheduled
+    gained : square of the largest speed that the part can give a particle
     """
 
     gained = 0.0
@@ -47,45 +50,57 @@ class Part:
 
     @property
     def next(self) -> float:
-        """The time of the next scheduled event on the clocks of the epoch; infinite if there is none."""
+        """Time of the next scheduled event on the clocks of the epoch, or infinity."""
         return math.inf if self._scheduled is None else float(self._scheduled[0])
 
     @property
     def at_rest(self) -> bool:
-        """Whether it has stopped all particles, for good."""
+        """True if the part has stopped all particles, for good."""
         return False
 
     @property
     def stored(self) -> float:
-        """The energy that particles keep in it and that contacts may turn into motion."""
+        """Energy that particles store in this feature and that contacts may convert to motion."""
         return 0.0
 
     @property
     def given(self) -> float:
-        """The energy that it has given by scheduled events since the last `reset`."""
+        """Energy that the part has given by scheduled events since the last `reset`."""
         return 0.0
 
     def set_clock(self, clock: float) -> None:
         """Begin at this time on the clocks of the epoch."""
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set all that depends on the `length` of an epoch of the clocks that starts at the time `start`.
-        Returns the model for it."""
+        """Set all data that depend on an epoch of the clocks; return the model for it.
+
+        length : length of the epoch
+        start : time at which it starts
+        """
         return model
 
     def close_epoch(self, length: float) -> None:
-        """Count what depends on the flights of an epoch of this `length`, before all particles are moved to
-        its end."""
+        """Count the effects of flights of an epoch before the particles move to its end.
+
+        length : length of the epoch
+        """
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Let the clocks count from zero again after an epoch of this `length`, which is the time `start`; or
-        from another start, so much later, within an epoch."""
+        """Shift the times of the part to a new start of the clocks.
+
+        The clocks restart from zero after an epoch of this `length`, at the time `start`; or, within an
+        epoch, from a start that is so much later.
+        """
         for times in self._times:
             times -= length
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Let the event happen that is scheduled for the time `next` of an epoch with this `start`. Returns
-        whether all events must be predicted anew."""
+        """Perform the event that is scheduled for the time `next`.
+
+        Returns whether all events must be predicted anew.
+
+        start : start of the epoch
+        """
         raise NotImplementedError
 
     def reset(self, clock: float) -> None:
@@ -94,20 +109,24 @@ class Part:
             sums[...] = 0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Its counters from the last `reset` until this time on the clocks of the epoch, by the fields
-        of `state.tally.Tally`."""
+        """Return the counters since the last `reset` by the fields of `state.tally.Tally`.
+
+        clock : present time on the clocks of the epoch
+        """
         return {}
 
     def write(self, state: State, clock: float) -> None:
-        """Write what the particles and the scene have of it, at this time on the clocks of the epoch, into a
-        state."""
+        """Write the properties of particles and scene due to this feature into a state.
+
+        clock : present time on the clocks of the epoch
+        """
 
 
 class TallyPart(Part):
-    """An optional tally in a run (`state.optional_tallies`).
+    """Optional tally in a run (`state.optional_tallies`).
 
-    name: that of the tally; kernel: what the kernels add to, in an entry of their own tally that has this
-    name.
+    name : name of the tally
+    kernel : data to which the kernels add, in the entry of their own tally that has this name
     """
 
     def __init__(
@@ -121,22 +140,25 @@ class TallyPart(Part):
         self.name, self.kernel = name, kernel
 
     def read(self, clock: float) -> np.ndarray:
-        """All its sums from the last `reset` until this time on the clocks of the epoch, in one array."""
+        """Return all sums since the last `reset` in one array.
+
+        clock : present time on the clocks of the epoch
+        """
         raise NotImplementedError
 
 
 def arrays_of(parts: Iterable[Part]) -> dict[str, np.ndarray]:
-    """The arrays of several parts, by name."""
+    """Return the arrays of several parts, by name."""
     return {key: array for part in parts for key, array in part.arrays.items()}
 
 
 def sums_of(parts: Iterable[Part]) -> dict[str, np.ndarray]:
-    """The arrays of several parts that threads add to, by name."""
+    """Return the arrays of several parts to which threads add, by name."""
     return {key: array for part in parts for key, array in part.sums.items()}
 
 
 def write_parts(parts: Iterable[Part], state: State, clock: float = 0.0) -> None:
-    """Write what several parts have into a state. Energies of vibrations add up."""
+    """Write the properties of several parts into a state; energies of vibrations add up."""
     if state.vibrations is not None:
         state.vibrations = np.zeros(state.count)
     for part in parts:
@@ -146,12 +168,12 @@ def write_parts(parts: Iterable[Part], state: State, clock: float = 0.0) -> None
 # Gravity, and the particles that it holds on interior walls.
 
 
-_SHORTEST_BOUNCE = 2.0**-44  # of an epoch: the longest bounce on a floor that is taken for rest
-_LOWEST = 2.0**-44  # of the container: the highest bounce on an interior wall that is taken for rest
+_SHORTEST_BOUNCE = 2.0**-44  # longest bounce on a floor that is taken for rest, in epochs
+_LOWEST = 2.0**-44  # highest bounce on an interior wall that is taken for rest, in container lengths
 
 
 def gravity_of(scene: Scene, state: State) -> Gravity | None:
-    """The kernels' gravity, before the first epoch of the clocks; None if there is none."""
+    """Return the kernels' gravity before the first epoch of the clocks, or None."""
     if scene.gravity is None:
         return None
     height = _LOWEST * max(scene.container.lengths)
@@ -160,7 +182,7 @@ def gravity_of(scene: Scene, state: State) -> Gravity | None:
 
 
 class GravityPart(Part):
-    """Particles that fall, in a container with these `lengths`, and what they rest on at interior walls."""
+    """Falling particles in a container with `lengths`, and their support at interior walls."""
 
     def __init__(self, gravity: Gravity, lengths: tuple[float, ...]) -> None:
         support = gravity.support._asdict() if gravity.support else {}
@@ -169,7 +191,7 @@ class GravityPart(Part):
         self.gained = 2.0 * sum(falls)
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Bounces that an epoch's clocks do not resolve are rest."""
+        """Set the longest bounce that the epoch's clocks do not resolve, which is rest."""
         assert model.gravity is not None  # or there were no such part
         return model._replace(gravity=model.gravity._replace(shortest_bounce=_SHORTEST_BOUNCE * length))
 
@@ -178,7 +200,7 @@ class GravityPart(Part):
 
 
 def shear_of(scene: Scene) -> Shear | None:
-    """The shear of a scene, before the first epoch; None if there is none."""
+    """Return the shear of a scene before the first epoch, or None."""
     rate = scene.shear_rate
     if rate is None:
         return None
@@ -187,8 +209,11 @@ def shear_of(scene: Scene) -> Shear | None:
 
 
 class ShearPart(Part):
-    """How far the images are displaced: what follows from the time and the start, a state at time 0, so that
-    no checkpoint has it. At each crossing a particle may gain their velocity."""
+    """Displacement of the periodic images of a sheared scene.
+
+    It follows from the time and the start, a state at time 0, so that no checkpoint has it. At each crossing
+    a particle may gain the velocity of the images.
+    """
 
     def __init__(self, scene: Scene, state: State, shear: Shear) -> None:
         super().__init__({})
@@ -197,8 +222,10 @@ class ShearPart(Part):
         self.gained = shear.velocity**2
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Let the displacement go on where the clocks are at zero. The remainder of a division is exact, so
-        that it does not drift."""
+        """Continue the displacement at the time where the clocks are at zero.
+
+        The remainder of a division is exact, so that it does not drift.
+        """
         shear = self._shear
         period = self._length / abs(shear.velocity) if shear.velocity else math.inf
         phase = math.fmod(start, period)
@@ -207,8 +234,11 @@ class ShearPart(Part):
         return model
 
     def write(self, state: State, clock: float) -> None:
-        """Write how far images above are displaced. Particles that rounding shows beyond a sheared face,
-        which they reach just now, are put at it: they have not crossed it yet."""
+        """Write the displacement of the images above.
+
+        Particles that rounding shows beyond a sheared face, which they reach just now, are moved to the face:
+        they have not crossed it yet.
+        """
         shear = self._shear
         here = shear.origin[0] + shear.velocity * clock
         state.displaced = float(here + shear.turns[0] * self._length)
@@ -216,21 +246,24 @@ class ShearPart(Part):
         state.positions[:, GRADIENT] = np.clip(state.positions[:, GRADIENT], 0.0, inside)
 
 
-# The kicks of a thermostat, at regular times that do not depend on where a run is split.
+# Kicks of a thermostat, at regular times that do not depend on where a run is split.
 
 
-_MOST_NUMBERS = 2**63 - 1  # of kicks, before they begin anew
+_MOST_NUMBERS = 2**63 - 1  # largest number of a kick, after which numbers restart
 _KICK_DRAWS = 3  # the purpose of their random numbers, after those of thermal walls
 
 
 def _width(thermostat: Thermostat, dimension: int, unit_mass: float) -> float:
-    """The standard deviation of a kick's velocity components, for the unit of mass."""
+    """Return the standard deviation of a kick's velocity components, for the unit of mass."""
     return math.sqrt(2.0 * thermostat.power * thermostat.interval / (dimension * unit_mass))
 
 
 class Kicks(Part):
-    """The thermostat of a scene under the event-driven engine: the time of the next kick on the clocks of the
-    epoch, the number of kicks, and the energy given since the tally began."""
+    """Thermostat of a scene under the event-driven engine.
+
+    The arrays are the time of the next kick on the clocks of the epoch, the number of kicks, and the energy
+    given since the tally began.
+    """
 
     def __init__(
         self, thermostat: Thermostat, dimension: int, seed: int | tuple[int, ...], unit_mass: float
@@ -246,12 +279,14 @@ class Kicks(Part):
 
     @property
     def given(self) -> float:
-        """The energy that kicks have given since the tally began."""
+        """Energy given by kicks since the tally began."""
         return running_sum.net(self._given) * self._unit_mass
 
     def end_epoch(self, length: float, start: float) -> None:
-        """The next kick is at a multiple of the interval, rounded once: a sum of intervals would drift away
-        from it. The subtraction is exact."""
+        """Set the time of the next kick to a multiple of the interval, rounded once.
+
+        A sum of intervals would drift away from it. The subtraction is exact.
+        """
         self._next[0] = (int(self._number[0]) + 1) * self._interval - start
 
     def reset(self, clock: float) -> None:
@@ -259,7 +294,7 @@ class Kicks(Part):
         self._given[:] = 0.0
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Kick all particles. Returns that their flights have changed."""
+        """Kick all particles; return True, since their flights have changed."""
         from gaspart.kernels.event.pair_contact import kick_all
 
         counter = self._key, int(self._number[0])
@@ -270,17 +305,18 @@ class Kicks(Part):
 
 
 def kicks(scene: Scene, seed: int | tuple[int, ...], unit_mass: float) -> Kicks | None:
-    """The kicks of a scene's thermostat, if it has one and particles that can move."""
+    """Return the kicks of a scene's thermostat, if it has one and particles that can move."""
     if scene.thermostat is None or not any(not kind.fixed for kind in scene.kinds):
         return None
     return Kicks(scene.thermostat, scene.dimension, seed, unit_mass)
 
 
 class StepKicks(Part):
-    """The thermostat of a scene in steps. A step in which several kicks are due ends with one as strong as
-    all.
+    """Thermostat of a scene in steps.
 
-    given_terms (1, 2): the energy given since the tally began, see `running_sum.add`.
+    A step in which several kicks are due ends with one kick as strong as all of them.
+
+    given_terms : (1, 2), energy given since the tally began, see `physics.running_sum.add`
     """
 
     def __init__(
@@ -297,11 +333,16 @@ class StepKicks(Part):
         self.given_terms[:] = 0.0
 
     def _kicks_by(self, steps: float) -> int:
-        """How many kicks are due by the end of so many steps."""
+        """Return the number of kicks due by the end of a number of steps."""
         return math.floor(steps * self._per_step * (1.0 + 4e-16) + 1e-9)
 
     def until(self, steps: float, part: float) -> int:
-        """The number of the next parts of a step, of such a length, of which the last ends with a kick."""
+        """Return the number of parts of a step up to the next kick.
+
+        The kick comes at the end of the last of them.
+
+        part : length of a part
+        """
         due = self._kicks_by(steps)
         number = max(1, math.floor(((due + 1) / self._per_step - steps) / part) - 1)
         while self._kicks_by(steps + number * part) <= due:
@@ -309,8 +350,10 @@ class StepKicks(Part):
         return number
 
     def due(self, steps: float, part: float) -> tuple[float, tuple[np.ndarray, int]] | None:
-        """The width of the kick that all particles get after so many steps, the last `part` of which has just
-        been made, and the counter of its random numbers; None if none is due."""
+        """Return the width and counter of the kick due after a number of steps, or None.
+
+        part : length of the part that has just been made, the last of these steps
+        """
         due = self._kicks_by(steps)
         number = due - self._kicks_by(steps - part)
         if number <= 0:
@@ -319,7 +362,7 @@ class StepKicks(Part):
 
 
 def step_kicks(scene: Scene, time_step: float, seed: int | tuple[int, ...]) -> StepKicks | None:
-    """The kicks of a scene's thermostat in steps, if it has one."""
+    """Return the kicks of a scene's thermostat in steps, if it has one."""
     if scene.thermostat is None or not scene.count:
         return None
     return StepKicks(scene.thermostat, scene.dimension, time_step, seed)

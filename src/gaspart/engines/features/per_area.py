@@ -1,6 +1,6 @@
-"""Momentum and heat given to faces per area that centres can reach, for particles of several sizes.
+"""Momentum and heat given to faces by particles of several sizes, divided by accessible areas.
 
-Areas are those of the container at the start, with faces and walls that move where they then are.
+Areas are the areas of the container at the start; faces and walls that move are at their positions then.
 """
 
 from __future__ import annotations
@@ -20,8 +20,10 @@ from gaspart.state.state import State
 
 
 def inverse_areas(scene: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return one divided by the accessible area of each face by size, (sizes, 2d), 0 of faces that no centre
-    reaches, and the size of each particle, (N,): that of the first for fixed ones."""
+    """Return the inverse accessible area (sizes, 2d) of each face, and the particles' sizes (N,).
+
+    The inverse is 0 for faces that no centre reaches. Fixed particles have the first size.
+    """
     fixed = ~np.isfinite(state.masses)
     sizes, size = np.unique(state.radii[~fixed], return_inverse=True)
     areas = Accessible(scene, (state.positions[fixed], state.radii[fixed])).areas(sizes)
@@ -31,7 +33,10 @@ def inverse_areas(scene: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def per_area_fields(momentum: np.ndarray, heat: np.ndarray, walls: int) -> dict[str, np.ndarray]:
-    """Return the fields of `Tally` from the sums of faces, (2d, d) and (2d,), with 0 for interior walls."""
+    """Return the fields of `Tally` from the sums of faces, (2d, d) and (2d,).
+
+    Interior walls have 0.
+    """
     return {
         "momentum_per_area": np.pad(momentum, ((0, walls), (0, 0))),
         "heat_per_area": np.pad(heat, (0, walls)),
@@ -39,7 +44,7 @@ def per_area_fields(momentum: np.ndarray, heat: np.ndarray, walls: int) -> dict[
 
 
 class EventPerAreaPart(TallyPart):
-    """The sums of the event-driven engine, of masses in units of `unit_mass`."""
+    """Sums of the event-driven engine, with masses in units of `unit_mass`."""
 
     kernel: PerArea
 
@@ -61,7 +66,10 @@ class EventPerAreaPart(TallyPart):
 
 
 class ThreadedPerAreaPart(Part):
-    """The sums of an engine whose threads add to them. read: the value of the sums, (2d, d + 1)."""
+    """Sums of an engine whose threads add to them.
+
+    read : function that returns the value of the sums, (2d, d + 1)
+    """
 
     def __init__(self, sums: np.ndarray, read: Callable[[np.ndarray], np.ndarray]) -> None:
         super().__init__({}, sums={"per_area": sums})

@@ -1,4 +1,4 @@
-"""The sums of the stress tensor and the heat flux of a scene under the event-driven engine."""
+"""Sums of the stress tensor and the heat flux, and impulses, under the event-driven engine."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ from gaspart.state.tally import tallied_fluxes
 
 
 class StressPart(TallyPart):
-    """The stress tensor and the heat flux of a gas without walls.
+    """Stress tensor and heat flux of a gas without walls.
 
-    flights (N,): the particles, each with a velocity that holds at any time until its next contact; drift
-    (d,): the velocity of their centre of mass.
+    flights : (N,), particles, each with a velocity that is constant until its next contact
+    drift : (d,), velocity of their centre of mass
     """
 
     kernel: Stress
@@ -42,7 +42,7 @@ class StressPart(TallyPart):
         super().__init__("stress", Stress(sums, np.zeros((2, d + 1)), drift.copy()), {"stress": sums})
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Add what the particles have carried in the epoch."""
+        """Add the transport by the flights of the epoch."""
         add_flights(self._flights, length, *self._masses, self.kernel)
 
     def reset(self, clock: float) -> None:
@@ -51,38 +51,42 @@ class StressPart(TallyPart):
         add_flights(self._flights, -clock, *self._masses, self.kernel)
 
     def read(self, clock: float) -> np.ndarray:
-        """(2 d^2 + d,) the sums until this time on the clocks of the epoch."""
+        """Return the sums (2 d^2 + d,) until this time on the clocks of the epoch."""
         total = self.kernel._replace(sums=self.kernel.sums.copy())
         add_flights(self._flights, clock, *self._masses, total)
         return values(total.sums) * self._unit_mass
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """The sums, by the fields of `Tally`."""
+        """Return the sums by the fields of `Tally`."""
         return tallied_fluxes(self.read(clock), self._drift)
 
 
 class ShearedStressPart(StressPart):
-    """The stress tensor and the heat flux of a sheared gas. Velocities relative to the flow change in flight,
-    so that each flight counts from its clock on."""
+    """Stress tensor and heat flux of a sheared gas.
+
+    Velocities relative to the flow change in flight, so that each flight counts from its clock on.
+    """
 
     def __init__(self, flights: np.ndarray, model: Model, unit_mass: float, drift: np.ndarray) -> None:
         super().__init__(flights, model, unit_mass, drift)
         self._model = model
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set how fast the centre of mass moves about the flow: across it at one speed, and so along it less
-        and less."""
+        """Set the velocity of the centre of mass relative to the flow.
+
+        Its component across the flow is constant, so its component along the flow decreases steadily.
+        """
         assert model.shear is not None  # or there were no such part
         across = self._drift[GRADIENT]
         self.kernel.drift[FLOW] = self._drift[FLOW] - model.shear.rate * across * start
         return model
 
     def close_epoch(self, length: float) -> None:
-        """Add what the particles have carried until the end of the epoch."""
+        """Add the transport by the flights until the end of the epoch."""
         add_sheared_flights(self._flights, length, 1.0, self._model, self.kernel)
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Nothing: the flights begin anew."""
+        """Do nothing: the flights begin anew."""
 
     def reset(self, clock: float) -> None:
         """Begin to count from zero."""
@@ -90,7 +94,7 @@ class ShearedStressPart(StressPart):
         add_sheared_flights(self._flights, clock, -1.0, self._model, self.kernel)
 
     def read(self, clock: float) -> np.ndarray:
-        """(2 d^2 + d,) the sums until this time on the clocks of the epoch."""
+        """Return the sums (2 d^2 + d,) until this time on the clocks of the epoch."""
         total = self.kernel._replace(sums=self.kernel.sums.copy())
         add_sheared_flights(self._flights, clock, 1.0, self._model, total)
         return values(total.sums) * self._unit_mass
@@ -99,26 +103,32 @@ class ShearedStressPart(StressPart):
 def stress_part(
     asked: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> StressPart:
-    """The part for a gas that is sheared or not, which is in this `state` at time 0."""
+    """Return the part for a gas that is sheared or not.
+
+    state : state at time 0
+    """
     kind = StressPart if model.shear is None else ShearedStressPart
     return kind(flights, model, unit_mass, drift_of(scene, state))
 
 
-# The momentum that particles carry through planes across an axis, from the impulses that they receive.
+# Momentum that particles carry through planes across an axis, from the impulses that they receive.
 
 
 def rows_of(scene: Scene) -> np.ndarray:
-    """(N,) the row of each particle: the number of its species; single particles have the number after the
-    last, and are the first particles."""
+    """Return the row (N,) of each particle: the number of its species.
+
+    Single particles have the number after the last, and are the first particles.
+    """
     counts = [len(scene.particles), *(kind.count for kind in scene.species)]
     return np.repeat([len(scene.species), *range(len(scene.species))], counts)
 
 
 class ImpulsesPart(TallyPart):
-    """What is tallied of them: the momentum below each plane at the last reset and all impulses since then,
-    of which that below at present is taken off when it is read.
+    """Momentum below each plane at the last reset, and all impulses since then.
 
-    flights (N,): the particles, each at its own clock.
+    The present momentum below each plane is subtracted at reading.
+
+    flights : (N,), particles, each at its own clock
     """
 
     kernel: kernels.Impulses
@@ -134,7 +144,10 @@ class ImpulsesPart(TallyPart):
         super().__init__("impulses", kernels.Impulses(sums, axis, per_length, row), {"impulses": sums})
 
     def _add_momenta(self, clock: float, sign: float, sums: np.ndarray) -> None:
-        """Add `sign` times the momenta of all particles at this time on the clocks of the epoch."""
+        """Add `sign` times the momenta of all particles at a time.
+
+        clock : this time on the clocks of the epoch
+        """
         flights, model = self._flights.copy(), self._model
         advance_all(flights, clock, model.space, model.gravity)
         kernels.add_momenta(flights, sign, model, self.kernel._replace(sums=sums))
@@ -145,34 +158,39 @@ class ImpulsesPart(TallyPart):
         self._add_momenta(clock, 1.0, self.kernel.sums)
 
     def read(self, clock: float) -> np.ndarray:
-        """(species, bins) the momentum that has flown until this time on the clocks of the epoch."""
+        """Return the momentum (species, bins) carried until this time on the epoch's clocks."""
         sums = self.kernel.sums.copy()
         self._add_momenta(clock, -1.0, sums)
         return np.asarray(self._unit_mass * np.cumsum(sums, axis=1)[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """The same, by the field of `Tally`."""
+        """Return the momentum by the field of `Tally`."""
         return {"momentum_flux_sum": self.read(clock)}
 
 
 def impulses_part(
     asked: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> ImpulsesPart:
-    """The part of an `ImpulseTally`."""
+    """Return the part of an `ImpulseTally`."""
     assert isinstance(asked, ImpulseTally)
     return ImpulsesPart(flights, model, unit_mass, scene, "xyz".index(asked.axis), asked.bins)
 
 
-# The momentum that pairs gain along their separation, from the impulses of contacts.
+# Momentum that pairs gain along their separation, from the impulses of contacts.
 
 
 _FINEST = 2.0**-27
-"""The unit of whole numbers, in what a thermal momentum gives to a pair at the smallest diameter: a sum holds
-2^36 of these."""
+"""Unit of whole numbers, as a fraction of a thermal momentum's contribution to a pair at contact.
+
+The distance is the smallest diameter; a sum holds 2^36 of these contributions.
+"""
 
 
 class PairImpulsesPart(TallyPart):
-    """What is tallied of them, in whole numbers. unit: of these, in that of `Tally`."""
+    """Impulses of pairs, in whole numbers.
+
+    unit : unit of these numbers in units of `Tally`
+    """
 
     kernel: PairImpulses
 
@@ -185,11 +203,11 @@ class PairImpulsesPart(TallyPart):
         self.kernel.sums[...] = 0
 
     def read(self, clock: float) -> np.ndarray:
-        """(2, shells) k_B T g(r) times the time, of the pairs that collide and of the others."""
+        """Return k_B T g(r) times the time, (2, shells), of colliding pairs and of others."""
         return np.asarray(self._units * np.cumsum(self.kernel.sums, axis=1)[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """The same, by the fields of `Tally`."""
+        """Return the sums by the fields of `Tally`."""
         found = self.read(clock)
         return {"contact_impulse_sum": found[MEETING], "other_impulse_sum": found[OTHERS]}
 
@@ -197,7 +215,7 @@ class PairImpulsesPart(TallyPart):
 def pair_impulses_part(
     asked: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> PairImpulsesPart:
-    """The part of a `PairImpulseTally`."""
+    """Return the part of a `PairImpulseTally`."""
     assert isinstance(asked, PairImpulseTally)
     d, n = scene.dimension, scene.count
     momentum = math.sqrt(2.0 * state.kinetic_energy / n * float(state.masses.max())) / unit_mass
@@ -217,3 +235,7 @@ def pair_impulses_part(
     )
     pairs = 0.5 * n * (n - 1) * d * ball_volume(d)  # per volume and distance^(d - 1), if independent
     return PairImpulsesPart(kernel, unit_mass * scene.container.volume / (pairs * per_unit))
+
+
+PARTS = {"stress": stress_part, "impulses": impulses_part, "pair_impulses": pair_impulses_part}
+"""Functions that make the part of an optional tally of the event-driven engine, by its name."""

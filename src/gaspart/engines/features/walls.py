@@ -1,4 +1,4 @@
-"""Interior walls of a scene, as the kernels know them, and what a run changes of those at a temperature."""
+"""Interior walls of a scene for the kernels, and the state of warm or moving walls."""
 
 from __future__ import annotations
 
@@ -23,8 +23,10 @@ _INTERIOR_DRAWS = 6  # the purpose of their random numbers, after those of the e
 def interior_walls(
     scene: Scene, boxes: Boxes, largest_radius: float, warm: WarmWalls | None, moving: MovingWall | None
 ) -> InteriorWalls:
-    """The interior walls, with those near each box for radii up to `largest_radius`: one that moves is near
-    none."""
+    """Return the interior walls, with the walls near each box.
+
+    They are found for radii up to `largest_radius`. A moving wall is near no box.
+    """
     rows, wall = wall_rows(scene)
     if moving:
         rows, wall = rows[:0], wall[:0]
@@ -32,7 +34,7 @@ def interior_walls(
 
 
 def warm_walls(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> WarmWalls | None:
-    """Those at a temperature, in units of `unit_mass`; None if all are hard."""
+    """Return the walls at a temperature, in units of `unit_mass`, or None if all are hard."""
     level = np.array([wall.temperature or 0.0 for wall in scene.walls])
     if not level.any():
         return None
@@ -41,20 +43,24 @@ def warm_walls(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mas
 
 
 class WarmWallsPart(Part):
-    """How often random numbers were drawn for each particle at interior walls. lightest: the least mass of a
-    particle."""
+    """Numbers of draws of random numbers for each particle at interior walls.
+
+    lightest : least mass of a particle
+    """
 
     def __init__(self, scene: Scene, warm: WarmWalls, lightest: float) -> None:
         super().__init__({"wall_draws": warm.draws})
         self.gained = face_energy(scene) / lightest
 
 
-# A wall across the container that moves, between two gases.
+# Moving wall across the container, between two gases.
 
 
 def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.MovingWall | None:
-    """The wall that moves, as it does in a state, in units of `unit_mass`; None if there is none. Raises
-    SceneError without particles on both its sides, which keep it inside the container."""
+    """Return the moving wall in its state, in units of `unit_mass`, or None.
+
+    Raises SceneError without particles on both its sides, which keep it inside the container.
+    """
     wall = scene.moving_wall
     if wall is None or state.piston is None:
         return None
@@ -66,7 +72,7 @@ def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.Movi
 
 
 class MovingWallPart(Part):
-    """The motion of the wall, with its energy, in units of `unit_mass`."""
+    """Motion of the wall, with its energy, in units of `unit_mass`."""
 
     def __init__(self, wall: kernels.MovingWall, unit_mass: float) -> None:
         super().__init__({"piston": wall.motion})
@@ -74,20 +80,20 @@ class MovingWallPart(Part):
 
     @property
     def stored(self) -> float:
-        """The energy of the wall."""
+        """Energy of the wall."""
         return 0.5 * self._mass * float(self._motion[kernels.PISTON_VELOCITY]) ** 2
 
     def set_clock(self, clock: float) -> None:
-        """Let the present motion be that at this time."""
+        """Set the time of the present motion."""
         self._motion[kernels.PISTON_CLOCK] = clock
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Move it to the end of the epoch, and let that be time 0 of its clock."""
+        """Move the wall to the end of the epoch, which becomes time 0 of its clock."""
         advance_wall(self._motion, length)
         self.set_clock(0.0)
 
     def write(self, state: State, clock: float) -> None:
-        """Write where it is along its axis, and its velocity."""
+        """Write position along its axis and velocity of the wall."""
         motion = self._motion.copy()
         advance_wall(motion, clock)
         state.piston = motion[[kernels.PISTON_PLACE, kernels.PISTON_VELOCITY]]

@@ -1,1 +1,1 @@
-"""The time-stepped engine: overlaps found after each step (Frederickx & Meerts 2010)."""
+"""Time-stepped engine: overlaps found after each step (Frederickx & Meerts 2010)."""

@@ -30,7 +30,10 @@ if TYPE_CHECKING:
 
 
 def empty_particles(engine: TimeStepped, scene: Scene, state: State, ordinary: int) -> StepParticles:
-    """Room for the particles, of which so many are `ordinary`, and their masses; with no list made yet."""
+    """Return empty arrays for the particles, with their masses and without a list.
+
+    ordinary : number of ordinary particles
+    """
     real = np.dtype(engine.precision).type
     _, masses = masses_of(scene, state)
     shape = (state.dimension, state.count)
@@ -48,7 +51,7 @@ def empty_particles(engine: TimeStepped, scene: Scene, state: State, ordinary: i
 
 
 def masses_of(scene: Scene, state: State) -> tuple[float, np.ndarray]:
-    """The unit of mass, and the masses (N,) in it."""
+    """Return the unit of mass, and the masses (N,) in it."""
     if needs_rules(scene):
         return 1.0, state.masses
     unit, masses = scaled_masses(state.masses)
@@ -58,7 +61,11 @@ def masses_of(scene: Scene, state: State) -> tuple[float, np.ndarray]:
 def model_for(
     engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...], radii: np.ndarray
 ) -> StepModel:
-    """The model of a scene. radii: of the ordinary particles; `seed` is that of thermal walls."""
+    """Return the model of a scene.
+
+    radii : radii of the ordinary particles
+    seed : seed of thermal walls
+    """
     real = np.dtype(engine.precision).type
     lengths, margin = scene.container.lengths, real(not scene.centres_to_walls)
     space = Space(tuple(real(length) for length in lengths), scene.container.periodic, margin)
@@ -83,8 +90,13 @@ def step_tally(
     areas: tuple[np.ndarray, np.ndarray] | None,
     fixed: bool,
 ) -> StepTally:
-    """A tally at zero, for so many faces; largest: see `largest_terms`; asked: the parts of optional
-    tallies; areas: the `inverse_areas` if they differ; fixed: whether there are fixed particles."""
+    """Return a tally at zero, for a number of faces.
+
+    largest : see `largest_terms`
+    asked : parts of optional tallies
+    areas : `inverse_areas` if they differ
+    fixed : True if there are fixed particles
+    """
     tally = StepTally(
         counts=np.zeros(layout.PASSED + 1, dtype=np.int64),
         sums=np.zeros((len(layout.SUMS), 2)),
@@ -109,8 +121,12 @@ def step_tally(
 def rules_for(
     engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...], space: Space
 ) -> Rules | None:
-    """The kernels' `Rules` of a scene with faces or contacts that change more than momenta; None for any
-    other. space: that of the step engine's kernels."""
+    """Return the kernels' `Rules` of a scene with special faces or contacts, or None.
+
+    These faces and contacts change more than momenta.
+
+    space : space of the step engine's kernels
+    """
     if not needs_rules(scene):
         return None
     special = special_faces(scene, state, seed, unit_mass=1.0)._replace(sliding=None)
@@ -140,29 +156,31 @@ def rules_for(
 
 
 def parts_for(scene: Scene, rules: Rules | None) -> list[Part]:
-    """The parts of a run of a scene with such rules; none without."""
+    """Return the parts of a run of a scene with such rules; no parts without rules."""
     if rules is None:
         return []
     law, faces = rules.model.law, rules.model.faces
-    heat = Part({}, sums={"heat": rules.heat[np.newaxis]})  # all threads have one
+    heat = Part({}, sums={"heat": rules.heat[np.newaxis]})  # common to all threads
     parts = LawPart(law) if law else None, FacesPart(scene, faces, 1.0) if faces else None, heat
     return [part for part in parts if part]
 
 
 def needs_rules(scene: Scene) -> bool:
-    """Whether faces or contacts of a scene change more than momenta."""
+    """Return True if faces or contacts of a scene change more than momenta."""
     return bool(scene.faces) or scene.rough or scene.vibrates
 
 
-# Tallies of the time-stepped engine that not every run has. Threads add to them, exactly.
+# Optional tallies of the time-stepped engine. Threads add to them, exactly.
 
 
 class ImpulsesPart(TallyPart):
-    """The momentum that particles carry through planes across an axis: that below each plane at the last
-    reset, `momenta`, and all impulses since then, less that below it at present.
+    """Momentum that particles carry through planes across an axis.
 
-    particles: those of the kernels; unit_mass, largest: the unit of their masses, and the bound of a momentum
-    in it. The kernel is the entries of a `StepTally`, by name.
+    It is the momentum below each plane at the last reset, `momenta`, and all impulses since then, minus the
+    present momentum below the plane. The kernel is the entries of a `StepTally`, by name.
+
+    particles : particles of the kernels
+    units : unit of their masses, and the bound of a momentum in this unit
     """
 
     kernel: dict[str, Any]
@@ -195,8 +213,10 @@ class ImpulsesPart(TallyPart):
         self.reset(0.0)
 
     def _momenta(self) -> np.ndarray:
-        """(rows, bins + 1) the momenta of all particles now, as impulses are summed; in their own order, of
-        which rounding is to depend on nothing else."""
+        """Return the present momenta (rows, bins + 1) of all particles, binned like impulses.
+
+        They are added in the particles' own order, on which alone rounding may depend.
+        """
         particles = self._particles
         order = np.argsort(particles.index)
         places = particles.positions[self._axis][order].astype(float) * self._per_length
@@ -214,13 +234,13 @@ class ImpulsesPart(TallyPart):
         self.arrays["momenta"][...] = self._momenta()
 
     def read(self, clock: float) -> np.ndarray:
-        """(species, bins) the momentum that has flown until now."""
+        """Return the momentum (species, bins) carried until now."""
         impulses = whole_parts(self.sums["impulses"].sum(axis=0), self._largest).sum(axis=-1)
         below = np.cumsum(impulses + (self.arrays["momenta"] - self._momenta()), axis=1)
         return np.asarray(self._unit_mass * below[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """The same, by the field of `Tally`."""
+        """Return the momentum by the field of `Tally`."""
         return {"momentum_flux_sum": self.read(clock)}
 
 
@@ -236,11 +256,15 @@ def tally_parts(
     threads: int,
     units: tuple[float, float],
 ) -> list[TallyPart]:
-    """The parts of optional tallies. particles: in their slots at time 0; units: see `ImpulsesPart`."""
+    """Return the parts of optional tallies.
+
+    particles : particles in their slots at time 0
+    units : see `ImpulsesPart`
+    """
     return [PARTS[tally.name](tally, particles, model, scene, threads, units) for tally in asked]
 
 
-# The search of the time-stepped engine: boxes, or the cells and the skin of a neighbour list.
+# Search of the time-stepped engine: boxes, or the cells and the skin of a neighbour list.
 
 
 _CELLS_PER_PARTICLE = 6.0
@@ -249,7 +273,7 @@ _LEAST = 1.6  # times the distance by which the fastest two approach in a step, 
 
 
 def search_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray) -> Search:
-    """The boxes, or the cells and room for the pairs of a neighbour list, for particles of these radii."""
+    """Return boxes, or cells and empty pairs of a neighbour list, for particles of these radii."""
     pairs = np.empty((engine.threads, state.count // engine.threads + 16), np.uint64)
     if engine.boxes_per_side is None:
         return Search(None, cells_for(engine, scene, state, radii), pairs)
@@ -268,7 +292,7 @@ def search_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarra
 
 
 def cells_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray) -> Cells:
-    """The cells of the neighbour list."""
+    """Return the cells of the neighbour list."""
     real = np.dtype(engine.precision).type
     lengths, periodic = scene.container.lengths, scene.container.periodic
     contact = 2.0 * radii.max(initial=0.0)
@@ -305,11 +329,14 @@ def _width(scene: Scene, count: int) -> float:
 
 
 def _skin(engine: TimeStepped, scene: Scene, state: State, contact: float) -> float:
-    """The skin that costs least: a thin one is used up soon, a thick one lists many pairs."""
+    """Return the skin that costs least.
+
+    A thin skin is used up soon, a thick one lists many pairs.
+    """
     dimension, density = scene.dimension, state.count / scene.container.volume
     squares = (state.velocities**2).sum(axis=1)
     fastest = np.sqrt(squares.max(initial=0.0))
-    if state.count > 1:  # in the end, whatever the speeds are now
+    if state.count > 1:  # speeds in the end, for any present speeds
         square = max(squares.mean(), face_energy(scene) / float(state.masses.min())) / dimension
         fastest = max(fastest, np.sqrt(square * (2.0 * np.log(state.count) + 2.0)))
     gravity = 0.0 if scene.gravity is None else float(np.abs(scene.gravity).max())

@@ -1,4 +1,4 @@
-"""A scene under the time-stepped engine: the arrays that its kernels work on, and how they are driven."""
+"""Dynamics of a scene under the time-stepped engine: the arrays of its kernels, and their control."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ if TYPE_CHECKING:
 
 _BY_THREAD = ("wall_hits", "wall_impulse", "wall_loss")
 _OF_ALL = ("counts", "sums", "extremes")
-"""The arrays of `StepTally`."""
+"""Arrays of `StepTally`."""
 
 
 class StepDynamics(SteppedDynamics):
-    """A scene under way; its time is a whole number of steps."""
+    """Dynamics of a scene; its time is a whole number of steps."""
 
     def __init__(
         self,
@@ -115,13 +115,13 @@ class StepDynamics(SteppedDynamics):
 
     @property
     def _loss(self) -> np.ndarray:
-        """Of contacts between particles, and with walls by thread."""
+        """Energy taken by contacts between particles, and by walls in each thread."""
         tally = self._tally
         at_walls = running_sum.whole_parts(tally.wall_loss, self._largest[1])
         return np.vstack([tally.sums[layout.LOSS], at_walls])
 
     def _advance_to(self, step: int) -> None:
-        """Raises SimulationError for a step that is too long for the particles."""
+        """Advance to a step. Raises SimulationError for a step that is too long for the particles."""
         self._run(step - self._steps)
         self._steps = step
         counts = self._tally.counts
@@ -129,7 +129,7 @@ class StepDynamics(SteppedDynamics):
         check_late(self._engine, self.time, *found)
 
     def _run(self, steps: int) -> None:
-        """Let the kernel make so many steps; or, if none, only a list."""
+        """Run the kernel for a number of steps; for 0 steps, make only a list."""
         settings = self._real(self.time_step), self._engine.rewind, self._engine.passes
         pairs = loop.run_steps(
             self._particles, self._search, self._model, settings, steps, self._tally, self._threads
@@ -137,13 +137,17 @@ class StepDynamics(SteppedDynamics):
         self._search = self._search._replace(pairs=pairs)
 
     def _sums(self) -> dict[str, np.ndarray]:
-        """With those of which all threads have one, as if it were that of the first."""
+        """Return the arrays with counts; arrays common to all threads get one row."""
         whole = {key: getattr(self._tally, key)[np.newaxis] for key in _OF_ALL}
         return whole | {key: getattr(self._tally, key) for key in _BY_THREAD}
 
     def _per_area(self, most: float, sums: np.ndarray) -> np.ndarray:
-        """Return the momentum along each axis and the heat given to each face per accessible area,
-        (2d, d + 1); most: one divided by the least area."""
+        """Return momentum along each axis and heat given to each face per accessible area.
+
+        The shape is (2d, d + 1).
+
+        most : inverse of the least area
+        """
         d = self._scene.dimension
         units = np.array(self._largest) * (self._unit_mass * most)
         given = running_sum.whole_parts(sums.sum(axis=0), 1.0).sum(axis=-1) * units
@@ -163,16 +167,19 @@ class StepDynamics(SteppedDynamics):
         }
 
     def _kept(self) -> dict[str, Any]:
-        """The bounds of the neighbour list, too, and what it is made of."""
+        """Return the data of a checkpoint, with bounds and origin of the neighbour list."""
         return {**super()._kept(), "reach": self._particles.bounds, **self._list_parts()}
 
     def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """All but what the list is made of: it may be that of another search."""
+        """Return the arrays needed from a checkpoint, except the origin of the list.
+
+        The list may belong to another search.
+        """
         spared = self._list_parts()
         return {key: array for key, array in self.checkpoint().items() if key not in spared}
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """With the list of the checkpoint, if it is one of these settings."""
+        """Place the particles, with the list of the checkpoint if its settings are the same."""
         super()._place_again(checkpoint)
         self._particles.bounds[...] = 0.0, np.inf  # as at the start: the next step makes a list
         if self._has_list_of(checkpoint):
@@ -180,14 +187,17 @@ class StepDynamics(SteppedDynamics):
             self._particles.bounds[...] = checkpoint["reach"]
 
     def _list_parts(self) -> dict[str, np.ndarray]:
-        """The origin of the neighbour list: `origin` (d, N), where particles were, by slot; settings."""
+        """Return the origin (d, N) of the neighbour list by slot, and its settings.
+
+        The origin is the positions of the particles when the list was made.
+        """
         if self._search.cells is None:
             return {}
         settings = {key: np.array(getattr(self._search.cells, key)) for key in ("skin", "per_side")}
         return {"origin": self._search.cells.origin, "threads": np.array(self._engine.threads), **settings}
 
     def _has_list_of(self, checkpoint: dict[str, np.ndarray]) -> bool:
-        """Whether a checkpoint has a list that was made with the settings of this engine."""
+        """Return True if a checkpoint has a list that was made with this engine's settings."""
         own = self._list_parts()
         if not own or not checkpoint["reach"][layout.DISPLACEMENT] < np.inf:
             return False

@@ -1,4 +1,4 @@
-"""The scenes that the time-stepped engine can model, and with which settings."""
+"""Limits of the scenes and settings that the time-stepped engine can model."""
 
 from __future__ import annotations
 
@@ -19,28 +19,37 @@ if TYPE_CHECKING:
     from gaspart.engines.step.settings import TimeStepped
 
 
-_OVERSIZED = 16  # at most so many particles are tested against all others
+_OVERSIZED = 16  # maximum number of particles that are tested against all others
 _LARGER = 2.0  # radii of the next smaller particle: larger ones are among them
 _SINGLE = 1e9  # the largest length or speed in float32, whose squares are multiplied with each other
 _RESOLVED = 1e5  # diameters in the longest side, at most: float32 then resolves contacts to a hundredth
 MOST_PARTICLES = 2**28
-"""An entry of the neighbour list holds two slots and eight marks in 64 bits
-(`kernels.step.neighbour_list`)."""
+"""Bound on the number of particles: an entry of the neighbour list has two slots and eight marks in 64 bits.
+
+See `kernels.step.neighbour_list`.
+"""
 
 MISSED, MISSED_MOST = 0.01, 0.1
-"""The part of all contacts that a step may miss before the engine warns, and refuses."""
+"""Fraction of contacts that a step may miss before the engine warns, and rejects the step."""
 CONTACTS, CONTACTS_MOST = {True: 2.5, False: 0.5}, {True: 5.0, False: 1.0}
-"""Contacts of a particle in a step, with several passes or with one, before the engine warns, and refuses. Up
-to the first the pressure is correct to about 1 % (measured: docs/time-stepped.md)."""
+"""Contacts of a particle in a step, with several passes or with one, before the engine warns, and rejects.
+
+Up to the first limit the pressure is correct to about 1 % (measured: docs/time-stepped.md).
+"""
 
 LATE_MOST, PASSED_MOST, FEW = 0.25, 0.01, 2
-"""The part of all contacts that may be found a step too late; and with particles half-way through each other
-by then; FEW are allowed in any case. In gases, up to a step of which the engine warns, they are 0.05 and
-0.004."""
+"""Fraction of contacts that may be found a step too late, and with particles half-way through each other.
+
+FEW are allowed in any case. In gases, up to a step of which the engine warns, the fractions are 0.05 and
+0.004.
+"""
 
 
 def oversized_particles(state: State) -> np.ndarray:
-    """(N,) which particles are too large for boxes and cells: a few, much larger than all the others."""
+    """Mark the particles (N,) that are too large for boxes and cells.
+
+    They are few, and much larger than all the others.
+    """
     order = np.argsort(state.radii, kind="stable")
     sizes = state.radii[order]
     oversized = np.zeros(state.count, dtype=bool)
@@ -51,7 +60,7 @@ def oversized_particles(state: State) -> np.ndarray:
 
 
 def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
-    """Raise SceneError for so many particles, or so short a container, that this engine does not model."""
+    """Raise SceneError for too many particles, or a container that is too short."""
     if state.count >= MOST_PARTICLES:
         raise SceneError(
             "count", state.count, f"the time-stepped engine takes {MOST_PARTICLES - 1} particles at most"
@@ -66,9 +75,12 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
 
 
 def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
-    """Raise SceneError for steps in which particles move by less than their positions are rounded by, or so
-    far that the rounding is as large as the container; and, in float32, for lengths and speeds whose squares
-    it cannot hold, and particles so small in their container that it cannot resolve where they touch."""
+    """Raise SceneError for steps or sizes that the precision does not resolve.
+
+    These are steps in which particles move by less than the rounding of their positions, or so far that the
+    rounding is as large as the container; and, in float32, lengths and speeds whose squares it cannot hold,
+    and particles so small in their container that it cannot resolve their contacts.
+    """
     longest, speeds = max(scene.container.lengths), np.sqrt((state.velocities**2).sum(axis=1))
     typical, fastest = math.sqrt(float((speeds**2).mean())) if state.count else 0.0, speeds.max(initial=0.0)
     moved, rounding = typical * engine.time_step, float(np.finfo(engine.precision).eps)
@@ -91,12 +103,12 @@ def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
 
 
 def missed_contacts(time_step: float, several: bool, state: State) -> float:
-    """The part of all contacts that a step misses: pairs that touch and part again within it.
+    """Return the fraction of contacts that a step misses: pairs that touch and separate within it.
 
-    (2/3) (v_th dt / sigma)^2 of a dilute gas of spheres, 1/4 instead of 2/3 for discs, v_th = sqrt(kT/m);
-    four times that if only growing overlaps are resolved (with one pass, not `several`). From the flux of
-    pairs through chords that they cross within a step. v_th is that of each species now; the mean over the
-    pairs that collide.
+    For a dilute gas of spheres it is (2/3) (v_th dt / sigma)^2, with 1/4 instead of 2/3 for discs and v_th =
+    sqrt(kT/m); four times this value if only growing overlaps are resolved (with one pass, not `several`). It
+    follows from the flux of pairs through chords that they cross within a step. v_th is the present value of
+    each species; the result is the mean over the pairs that collide.
     """
     square, radius, number = [], [], []
     for kind in np.unique(state.species):
@@ -117,8 +129,10 @@ def missed_contacts(time_step: float, several: bool, state: State) -> float:
 
 
 def check_step(engine: TimeStepped, state: State) -> None:
-    """Raise SceneError for a step with which the engine would be far off, warn of one with errors of
-    percents, and name the step that would do."""
+    """Raise SceneError for a step with large errors; warn of errors of percents.
+
+    The message names a sufficient step.
+    """
     if state.count < 2:
         return
     several = engine.passes > 1
@@ -138,8 +152,11 @@ def check_step(engine: TimeStepped, state: State) -> None:
 
 
 def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: int) -> None:
-    """Raise SimulationError if contacts are found a step too late, or particles pass through each other:
-    speeds have become so high, or gaps are so narrow, that the step is too long."""
+    """Raise SimulationError if too many contacts are found a step too late.
+
+    The same holds for particles that pass through each other. Speeds have become so high, or gaps are so
+    narrow, that the step is too long.
+    """
     most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
     if engine.passes > 1 and (late > most[0] or passed > most[1]):
         raise SimulationError(
@@ -149,8 +166,11 @@ def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: in
 
 
 def contacts_per_step(time_step: float, state: State) -> float:
-    """How often a particle meets another in a step: Enskog's rate for equal particles of the same packing
-    fraction, with the contact value of Carnahan & Starling (1969), of Henderson (1975) for discs."""
+    """Return the number of collisions of a particle in a step.
+
+    It is Enskog's rate for equal particles of the same packing fraction, with the contact value of Carnahan &
+    Starling (1969), of Henderson (1975) for discs.
+    """
     spheres = state.dimension == 3
     ball = ball_volume(state.dimension) * float((state.radii**state.dimension).mean())
     density = state.count / float(state.lengths.prod())
@@ -162,20 +182,22 @@ def contacts_per_step(time_step: float, state: State) -> float:
     return density * around * contact * thermal * time_step
 
 
-# The time step for an accuracy, and the bound on its error: contacts that a step misses.
+# Time step for an accuracy, and the bound on its error: the contacts that a step misses.
 
 
 _SHARE = 0.125
-"""Part of an accuracy that the contacts which time steps miss may take."""
+"""Fraction of an accuracy that the contacts missed by time steps may take."""
 _SAFE = 2.0
-"""Error of a pressure or a rate over the part of contacts that are missed, at most."""
+"""Maximum error of a pressure or a rate, divided by the fraction of contacts that are missed."""
 _LONGEST = 0.2
-"""Of the mean time between a particle's collisions."""
+"""Longest step, as a fraction of the mean time between a particle's collisions."""
 
 
 def candidate(engine: TimeStepped, asked: Asked) -> Candidate:
-    """The engine with the longest step that is accurate enough. Raises SceneError for a gas in which nothing
-    collides."""
+    """Return the engine with the longest step that is accurate enough.
+
+    Raises SceneError for a gas without collisions.
+    """
     conditions, initial = asked.conditions, asked.initial
     hot = _as_hot(initial, float(conditions.temperature.max())) if initial else None
     missed = missed_contacts(1.0, True, hot) if hot else 0.0
@@ -183,12 +205,12 @@ def candidate(engine: TimeStepped, asked: Asked) -> Candidate:
     if not missed > 0.0 or not math.isfinite(free):
         raise SceneError("time_step", None, "follows from contacts, which particles at rest do not have")
     longest = min(math.sqrt(_SHARE * asked.accuracy / (_SAFE * missed)), _LONGEST * free)
-    step = float(f"{0.95 * longest:.2g}")  # not above the longest, however it is rounded
+    step = float(f"{0.95 * longest:.2g}")  # not above the longest, for any rounding
     return Candidate(engine.with_step(step), discretisation=_SAFE * missed * step**2)
 
 
 def _as_hot(state: State, temperature: float) -> State:
-    """A state whose particles have the mean squares of velocities at a temperature."""
+    """Return a state whose particles have the mean squares of velocities at a temperature."""
     moving = np.isfinite(state.masses)
     mean = np.where(moving, np.sqrt(temperature / np.where(moving, state.masses, 1.0)), 0.0)
     return replace(state, velocities=np.repeat(mean[:, None], state.dimension, axis=1))

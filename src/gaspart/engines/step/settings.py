@@ -1,4 +1,4 @@
-"""The time-stepped engine (Frederickx & Meerts 2010), with the contact corrected."""
+"""Time-stepped engine (Frederickx & Meerts 2010), with the contact corrected."""
 
 from __future__ import annotations
 
@@ -25,19 +25,57 @@ PRECISIONS = ("float64", "float32")
 @register
 @dataclass(frozen=True)
 class TimeStepped(Engine):
-    """Small steps; pairs that overlap after a step collide as they were at their contact.
+    """Time-stepped engine: overlapping pairs collide in their state at contact.
 
-    time_step: in the scene's time unit. boxes_per_side: search the boxes of a grid, a number of them or one
-    per axis, down to 1 (all pairs); by default a neighbour list is used instead, with a `skin` (a length)
-    that the engine chooses unless it is given. near_boxes: look only into boxes within reach of a contact.
-    precision: "float64" or "float32". rewind: collide pairs as they were at their contact (off: as they lie
-    after the step, to measure what rewinding buys). passes: how often a step may look for overlaps; it ends
-    with the first pass that finds none. With more than one, overlaps that grew and shrank within the step
-    count too; one is the rule of Frederickx & Meerts. See docs/time-stepped.md for what each of these buys.
+    After each step, overlapping pairs are moved back to their contact, collide there, and move for the rest
+    of the step. The result has the same bits for any `boxes_per_side`, `near_boxes`, `skin` and `threads`.
 
-    threads: how many share the work of a list; not worth it below some 5e4 particles (docs/performance.md).
+    Parameters
+    ----------
+    time_step : float, [time]
+        Length of a step.
+    boxes_per_side : int or (d,) sequence of int, optional
+        Search the boxes of a grid with this number of boxes along each axis, down to 1 (all pairs). Default:
+        a neighbour list.
+    precision : {"float64", "float32"}, default "float64"
+        Floating-point type of the state.
+    rewind : bool, default True
+        Collide pairs in their state at contact. If False, they collide where they lie after the step, which
+        measures the effect of rewinding.
+    passes : int, default 4
+        Maximum number of searches for overlaps in a step; the first search without overlaps ends the step.
+        With more than one, overlaps that grew and shrank within the step count too; one is the rule of [1]_.
+    skin : float, [length], optional
+        Distance beyond a contact up to which the neighbour list reaches. Default: chosen by the engine.
+    near_boxes : bool, default False
+        Search only boxes within reach of a contact.
+    threads : int, default 1
+        Number of threads that share the work of a list; not worth it below some 5e4 particles
+        (docs/performance.md).
 
-    The result is the same, bit for bit, for any boxes_per_side, near_boxes, skin and threads.
+    Raises
+    ------
+    SceneError
+        If a setting is invalid.
+
+    See Also
+    --------
+    EventDriven : Exact collisions of hard particles.
+    DSMC : Collision partners drawn at random.
+
+    Notes
+    -----
+    docs/time-stepped.md has the measured effect of each of these settings.
+
+    References
+    ----------
+    .. [1] Frederickx and Meerts (2010).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> gp.TimeStepped(time_step=0.01).describe()
+    'step, time_step 0.01, float64, 4 passes'
     """
 
     time_step: float = field(metadata=declared(positive("duration of a step")))
@@ -94,52 +132,245 @@ class TimeStepped(Engine):
 
     @property
     def quantum(self) -> float:
-        """A step."""
+        """Length of a step, of which all times are multiples.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.TimeStepped(time_step=0.01).quantum
+        0.01
+        """
         return self.time_step
 
     def with_step(self, step: float) -> TimeStepped:
-        """With steps of this length."""
+        """Return a copy with this time step.
+
+        Parameters
+        ----------
+        step : float, [time]
+            Length of a step.
+
+        Returns
+        -------
+        TimeStepped
+            The engine.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.TimeStepped(time_step=0.01).with_step(0.02).time_step
+        0.02
+        """
         return replace(self, time_step=step)
 
     @classmethod
     def offered(cls) -> tuple[TimeStepped, ...]:
-        """One, whose step is still to be chosen."""
+        """Return the engines among which advice chooses.
+
+        Returns
+        -------
+        tuple of TimeStepped
+            One engine, whose step is still to be chosen.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> len(gp.TimeStepped.offered())
+        1
+        """
         return (cls(1.0),)
 
     def candidate(self, asked: Asked) -> Candidate:
-        """With the longest step that is accurate enough."""
+        """Return the engine with the longest step that is accurate enough.
+
+        Parameters
+        ----------
+        asked : Asked
+            Observable of a steady scene, and its requested accuracy.
+
+        Returns
+        -------
+        Candidate
+            The engine, and bounds on its errors.
+
+        Raises
+        ------
+        SceneError
+            If no particles collide.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> from gaspart.accuracy.conditions import even_conditions
+        >>> from gaspart.engines.engine import Asked
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> state = gp.Simulation(scene, "dsmc", seed=1).state
+        >>> asked = Asked("pressure", 0.01, even_conditions(scene, 1.0), initial=state)
+        >>> candidate = gp.TimeStepped(time_step=0.01).candidate(asked)
+        >>> candidate.engine.time_step, round(candidate.bias, 4)
+        (0.019, 0.0011)
+        """
         from gaspart.engines.step.limits import candidate
 
         return candidate(self, asked)
 
     def timed_step(self, scene: Scene) -> float:
-        """In diameters over the thermal speed of a plain gas. Raises SceneError for other scenes."""
+        """Return the time step in diameters divided by the thermal speed of a plain gas.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene of equal particles.
+
+        Returns
+        -------
+        float, [1]
+            Time step in the unit of the table of costs.
+
+        Raises
+        ------
+        SceneError
+            If the scene is not a plain gas.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> round(gp.TimeStepped(time_step=0.01).timed_step(scene), 4)
+        0.025
+        """
         return self.time_step / _unit(scene)
 
     def at_step(self, scene: Scene, step: float, precision: str) -> TimeStepped:
-        """In that unit."""
+        """Return a copy with a time step and a precision of the table of costs.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene of equal particles.
+        step : float, [1]
+            Time step in diameters divided by the thermal speed of a plain gas.
+        precision : {"float64", "float32"}
+            Floating-point type of the state.
+
+        Returns
+        -------
+        TimeStepped
+            The engine.
+
+        Raises
+        ------
+        SceneError
+            If the scene is not a plain gas.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> gp.TimeStepped(time_step=0.01).at_step(scene, 0.05, "float32").describe()
+        'step, time_step 0.02, float32, 4 passes'
+        """
         return replace(self, time_step=step * _unit(scene), precision=precision)
 
     @property
     def limitations(self) -> str:
-        """Pairs that touch and part within a step are missed."""
+        """Features that the engine lacks, in words.
+
+        Pairs that touch and separate within a step are missed.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.TimeStepped(time_step=0.01).limitations
+        'exact contacts'
+        """
         return "exact contacts"
 
     def describe(self) -> str:
-        """With its step and its passes."""
+        """Return its name with its step, precision and passes.
+
+        Returns
+        -------
+        str
+            The description.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.TimeStepped(time_step=0.01).describe()
+        'step, time_step 0.01, float64, 4 passes'
+        """
         return f"{self.name}, time_step {self.time_step:.4g}, {self.precision}, {self.passes} passes"
 
     def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """How it finds pairs."""
+        """Return further remarks of advice on the engine.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+        observable : str
+            Name of the observable.
+        paths : bool
+            True if the observable depends on the paths of particles.
+
+        Returns
+        -------
+        dict of str to str
+            Remarks by title: the search for pairs.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> gp.TimeStepped(time_step=0.01).notes(scene, "pressure", paths=False)
+        {'boxes': 'none: a neighbour list'}
+        """
         return {"boxes": "none: a neighbour list"}
 
     def variant(self, scene: Scene) -> str:
-        """The search, the precision, and whether threads share the work."""
+        """Return the name of its compiled kernels for a scene.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+
+        Returns
+        -------
+        str
+            Search and precision, and whether threads share the work.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> gp.TimeStepped(time_step=0.01, threads=2).variant(scene)
+        'list-float64-threads'
+        """
         search = "list" if self.boxes_per_side is None else "boxes"
         return f"{search}-{self.precision}" + ("-threads" if self.threads > 1 else "")
 
     def for_small_scene(self, scene: Scene) -> TimeStepped:
-        """With one box, if there are any."""
+        """Return settings with which a scene of few particles needs the same kernels.
+
+        Parameters
+        ----------
+        scene : Scene
+            The full scene.
+
+        Returns
+        -------
+        TimeStepped
+            The engine, with one box if it has boxes.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> gp.TimeStepped(time_step=0.01, boxes_per_side=4).for_small_scene(scene).boxes_per_side
+        1
+        """
         return self if self.boxes_per_side is None else replace(self, boxes_per_side=1)
 
     def start(
@@ -149,13 +380,43 @@ class TimeStepped(Engine):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> StepDynamics:
-        """Set the engine up for a scene in a given state; `seed` is that of thermal walls."""
+        """Set the engine up for a scene in a given state.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+        state : State
+            State of its particles.
+        seed : int or tuple of int, default 0
+            Seed of thermal walls.
+        tallies : sequence of OptionalTally, optional
+            Optional tallies.
+
+        Returns
+        -------
+        StepDynamics
+            The scene in progress.
+
+        Raises
+        ------
+        SceneError
+            If the engine does not model the scene, or the step is too long.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+        >>> state = gp.Simulation(scene, "dsmc", seed=1).state
+        >>> gp.TimeStepped(time_step=0.01).start(scene, state).time
+        0.0
+        """
         from gaspart.engines.step.dynamics import StepDynamics
 
         return StepDynamics(self, scene, state, seed, tallies)
 
 
 def _unit(scene: Scene) -> float:
-    """The time that a diameter takes at the thermal speed of a plain gas."""
+    """Return the time to cross a diameter at the thermal speed of a plain gas."""
     gas = plain_gas(scene)
     return gas.diameter / gas.thermal_speed

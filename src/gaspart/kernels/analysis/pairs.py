@@ -2,9 +2,9 @@
 
 The container is divided into columns along its last axis, and these into boxes. Particles are sorted by box,
 so that all particles of a column between two heights are adjacent. Each particle is compared with such a
-range of half of the columns around it: each pair is met once, by every image that can be near. Distances are
-computed in vectors of `WIDTH` particles; those beyond a range are computed too and overwritten. Counts are
-whole numbers, which do not depend on the order of the pairs.
+range in half of the columns around it: each pair is found once, with every image that can be near. Distances
+are computed in vectors of `WIDTH` particles; distances beyond a range are computed too and overwritten.
+Counts are whole numbers, which do not depend on the order of the pairs.
 """
 
 from math import floor, sqrt
@@ -14,7 +14,7 @@ import numpy as np
 from gaspart.kernels.compile.policy import allocating_kernel, inner_allocating_kernel, inner_helper
 
 WIDTH = 16
-"""Number of particles whose distances are computed at once: a fixed number, of which vectors are made."""
+"""Number of particles whose distances are computed at once: a fixed number, for vector instructions."""
 MARGIN = 1.0 + 1e-9
 """Factor of the largest distance, so that no pair is missed by the rounding of a box's edge."""
 _ROOM = 4096  # bins of pairs that are found before they are counted
@@ -23,7 +23,20 @@ _TABLES = 4  # of counts, so that one addition does not wait for another to the 
 
 @inner_allocating_kernel
 def sort_by_box(places, lengths, numbers, start, boxes):
-    """Return coordinates (3, N + WIDTH) in [0, L), in the order of boxes, and fill start (boxes + 1,)."""
+    """Sort particles by box, and fill the first particle of each box.
+
+    Parameters
+    ----------
+    places : (3, N), positions
+    lengths : (3,), sides of the container
+    numbers : (3,), number of boxes along each axis
+    start : (boxes + 1,), filled with the first particle of each box, and the end
+    boxes : (N,), workspace for the box of each particle
+
+    Returns
+    -------
+    (3, N + WIDTH), coordinates in [0, L), in the order of boxes
+    """
     count = places.shape[1]
     wrapped, ordered = np.empty((3, count)), np.zeros((3, count + WIDTH))
     start[:] = 0
@@ -50,16 +63,29 @@ def sort_by_box(places, lengths, numbers, start, boxes):
 
 @inner_helper
 def add_to_tables(found, number, tables):
-    """Count the first `number` bins that were found."""
+    """Count the first `number` bins that were found.
+
+    Parameters
+    ----------
+    found : bins of pairs
+    number : number of bins to count
+    tables : (tables, bins + 1), counts
+    """
     for n in range(number):
         tables[n % _TABLES, found[n]] += 1
 
 
 @inner_helper
 def find_bins(ordered, first, stop, place, scale, found):
-    """Write the bins of the distances of a place to the particles first ... stop - 1, rounded up to vectors.
+    """Write the bins of the distances between a position and a range of particles.
 
-    scale: bins per distance, and the number of bins, which is the bin of all that are farther.
+    Parameters
+    ----------
+    ordered : (3, N + WIDTH), positions of the particles
+    first, stop : range of particles, which is rounded up to vectors
+    place : (3,), position
+    scale : bins per distance, and the number of bins, which is the bin of all larger distances
+    found : bins of the distances
     """
     per_length, most = scale
     x, y, z = place
@@ -72,7 +98,14 @@ def find_bins(ordered, first, stop, place, scale, found):
 
 @inner_helper
 def wrap_column(column, number, length):
-    """Return the column within the container, and the coordinate of the image in which it was met."""
+    """Return a column within the container, and the displacement of its image.
+
+    Parameters
+    ----------
+    column : number of the column, which may be outside
+    number : number of columns
+    length : side of the container
+    """
     if column < 0:
         return column + number, -length
     if column >= number:
@@ -82,16 +115,36 @@ def wrap_column(column, number, length):
 
 @inner_helper
 def gap_to_column(x, column, width):
-    """Return how far a column is from a coordinate; 0 within it."""
+    """Return the distance of a column from a coordinate; 0 within it.
+
+    Parameters
+    ----------
+    x : coordinate
+    column : number of the column
+    width : width of a column
+    """
     return max(column * width - x, x - (column + 1) * width, 0.0)
 
 
 @inner_helper
 def count_of_particle(n, ordered, reach, image, boxes, tables, found, filled):
-    """Find the bins of a particle's pairs within a column; return how many bins wait to be counted.
+    """Find the bins of a particle's pairs within a column.
 
-    reach: along the column; image: the first box of the column, how far its image is shifted, and whether it
-    is the particle's own; boxes: the length of all columns, their number of boxes, `start`, and the scale.
+    Parameters
+    ----------
+    n : particle
+    ordered : (3, N + WIDTH), positions of the particles
+    reach : largest distance along the column
+    image : first box of the column, displacement of its image along two axes, and whether it is the
+        particle's own column
+    boxes : length of all columns, their number of boxes, first particles of the boxes, and the scale
+    tables : (tables, bins + 1), counts
+    found : bins that are not yet counted
+    filled : number of these bins
+
+    Returns
+    -------
+    number of bins that are not yet counted
     """
     first_box, shift_x, shift_y, is_own = image
     length, number, start, scale = boxes
@@ -116,11 +169,16 @@ def count_of_particle(n, ordered, reach, image, boxes, tables, found, filled):
 
 @allocating_kernel
 def count_pairs(places, lengths, numbers, spans, furthest, counts):
-    """Add the pairs nearer than `furthest` to counts (bins,) of equal intervals of the distance.
+    """Add the pairs nearer than `furthest` to counts of equal intervals of the distance.
 
-    places (3, N), of discs with 0 along the first axis; lengths (3,); numbers (3,): boxes along each axis;
-    spans (2,): columns on each side, along the first two axes, that are near enough. furthest: at most half
-    of the shortest side.
+    Parameters
+    ----------
+    places : (3, N), positions, for discs with 0 along the first axis
+    lengths : (3,), sides of the container
+    numbers : (3,), number of boxes along each axis
+    spans : (2,), number of columns on each side, along the first two axes, that are near enough
+    furthest : largest distance, at most half of the shortest side
+    counts : (bins,), counts
     """
     count, bins = places.shape[1], len(counts)
     start = np.empty(numbers[0] * numbers[1] * numbers[2] + 1, np.int32)

@@ -1,9 +1,10 @@
 """Sums of exp(i k.r) over particles, at wave vectors of a periodic container.
 
 The exponential is a product of one factor per axis. Factors are powers of exp(2 pi i x / L), each made from
-two of half its exponent, so that rounding grows as the logarithm of the exponent. Particles are taken in
-blocks, whose factors stay in the processor's cache. Each of `LANES` sums takes every 16th particle, and they
-are added in one order: the compiler makes vectors, and the bits do not depend on their width.
+two factors of half its exponent, so that rounding grows as the logarithm of the exponent. Particles are
+processed in blocks, whose factors stay in the processor's cache. Each of `LANES` sums has every 16th
+particle, and they are added in one order: the compiler makes vectors, and the bits do not depend on their
+width.
 """
 
 import numpy as np
@@ -12,14 +13,21 @@ from gaspart.kernels.compile.policy import allocating_kernel, inner_helper
 
 BLOCK, LANES = 64, 16
 CONJUGATE = -1
-"""The second factor of a row that is the complex conjugate of its first one."""
+"""Second factor of a row that is the complex conjugate of its first one."""
 
 
 @inner_helper
 def tabulate_factors(cosines, sines, first, made, real, imaginary):
     """Fill the rows of a block's factors; all are 0 beyond the last particle.
 
-    Row 0 is 1, the next ones are those of the axes, and the others are `made`.
+    Row 0 is 1, the next rows are the factors of the axes, and the others are `made`.
+
+    Parameters
+    ----------
+    cosines, sines : (d, N), of 2 pi x / L along each axis
+    first : first particle of the block
+    made : (R, 2), rows whose product is each further row, or a row and `CONJUGATE`
+    real, imaginary : (rows, BLOCK), filled with the factors
     """
     here = min(BLOCK, cosines.shape[1] - first)
     base = 1 + len(cosines)
@@ -43,7 +51,12 @@ def tabulate_factors(cosines, sines, first, made, real, imaginary):
 
 @inner_helper
 def sum_lanes(lanes):
-    """Return the sum of all lanes."""
+    """Return the sum of all lanes.
+
+    Parameters
+    ----------
+    lanes : (LANES,), which are overwritten
+    """
     for n in range(8):
         lanes[n] += lanes[n + 8]
     return ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5])) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))
@@ -51,7 +64,14 @@ def sum_lanes(lanes):
 
 @inner_helper
 def sum_products_of_two(real, imaginary, rows, lanes):
-    """Fill two rows of lanes with the sums of the products of two factors."""
+    """Fill two rows of lanes with the sums of the products of two factors.
+
+    Parameters
+    ----------
+    real, imaginary : (rows, BLOCK), factors
+    rows : (2,), rows of the factors
+    lanes : (2, LANES), filled with the real and the imaginary parts
+    """
     a, b, c, d = real[rows[0]], imaginary[rows[0]], real[rows[1]], imaginary[rows[1]]
     for n in range(LANES):
         u = v = 0.0
@@ -64,7 +84,14 @@ def sum_products_of_two(real, imaginary, rows, lanes):
 
 @inner_helper
 def sum_products_of_three(real, imaginary, rows, lanes):
-    """Fill two rows of lanes with the sums of the products of three factors."""
+    """Fill two rows of lanes with the sums of the products of three factors.
+
+    Parameters
+    ----------
+    real, imaginary : (rows, BLOCK), factors
+    rows : (3,), rows of the factors
+    lanes : (2, LANES), filled with the real and the imaginary parts
+    """
     a, b, c, d = real[rows[0]], imaginary[rows[0]], real[rows[1]], imaginary[rows[1]]
     e, f = real[rows[2]], imaginary[rows[2]]
     for n in range(LANES):
@@ -79,10 +106,14 @@ def sum_products_of_three(real, imaginary, rows, lanes):
 
 @allocating_kernel
 def sum_waves(cosines, sines, made, waves, sums):
-    """Add sum exp(i k.r) over N particles to sums (2, M), the real and the imaginary parts.
+    """Add sum exp(i k.r) over N particles to sums of real and imaginary parts.
 
-    cosines, sines (d, N): of 2 pi x / L along each axis; made (R, 2): the two rows of which each further row
-    of factors is the product, or a row and `CONJUGATE`; waves (M, d): the row of each axis.
+    Parameters
+    ----------
+    cosines, sines : (d, N), of 2 pi x / L along each axis
+    made : (R, 2), rows whose product is each further row of factors, or a row and `CONJUGATE`
+    waves : (M, d), row of each axis for each wave vector
+    sums : (2, M), real and imaginary parts
     """
     rows = 1 + len(cosines) + len(made)
     real, imaginary, lanes = np.empty((rows, BLOCK)), np.empty((rows, BLOCK)), np.empty((2, LANES))

@@ -1,1 +1,1 @@
-"""How kernels are compiled, cached and loaded, and all that depends on the internals of numba."""
+"""Compilation, cache and loading of kernels, and all code that depends on the internals of numba."""

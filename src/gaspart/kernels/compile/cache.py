@@ -1,4 +1,4 @@
-"""The folder in which compiled kernels are kept."""
+"""Folder of the compiled kernels."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ _REMEDY = "set GASPART_CACHE to a writable folder"
 
 
 def cache_directory() -> Path:
-    """$GASPART_CACHE, or the folder gaspart in $XDG_CACHE_HOME or ~/.cache.
+    """Return $GASPART_CACHE, or the folder gaspart in $XDG_CACHE_HOME or ~/.cache.
 
-    Raises RuntimeError where neither is set and the user has no home.
+    Raises RuntimeError if neither variable is set and the user has no home.
     """
     chosen = os.environ.get("GASPART_CACHE")
     if chosen:
@@ -33,10 +33,11 @@ def cache_directory() -> Path:
 
 
 def usable_cache(version: str) -> Path | None:
-    """The folder `version` of the cache, made if it is missing.
+    """Return the folder `version` of the cache, which is made if it is missing.
 
-    It is a temporary one, with a warning, for a user without a cache folder that this user, and no other, can
-    write to. None, also with a warning, where that cannot be written either, or $GASPART_CACHE cannot.
+    If no cache folder is writable by this user and by no other user, a temporary folder is used, with a
+    warning. Returns None, also with a warning, if the temporary folder cannot be written either, or if
+    $GASPART_CACHE cannot be written.
     """
     try:
         wanted: Path | None = cache_directory() / version
@@ -55,7 +56,7 @@ _reported: set[Path] = set()
 
 
 def report_unwritable(directory: Path, error: OSError) -> None:
-    """Warn, once in a process, that compiled kernels cannot be kept: on a full disk, for example."""
+    """Warn once in a process that compiled kernels cannot be stored, as on a full disk."""
     if directory not in _reported:
         _reported.add(directory)
         why = f"cannot write the kernel cache {directory}: {error.strerror}"
@@ -63,7 +64,10 @@ def report_unwritable(directory: Path, error: OSError) -> None:
 
 
 def obstacle(directory: Path) -> str:
-    """Why kernels are not to be kept in a folder, which is made if it is missing; "" if they are."""
+    """Return the reason why a folder cannot store kernels, or "" if it can.
+
+    The folder is made if it is missing.
+    """
     try:
         directory.parent.mkdir(parents=True, exist_ok=True)
         directory.mkdir(mode=0o700, exist_ok=True)
@@ -76,12 +80,18 @@ def obstacle(directory: Path) -> str:
 
 
 def _is_private(found: os.stat_result) -> bool:
-    """Whether a folder is one that only this user may write to: no other places machine code in it."""
+    """Return True if a path is a folder to which only this user may write.
+
+    Other users then cannot place machine code in it.
+    """
     return stat.S_ISDIR(found.st_mode) and is_private(found)
 
 
 def _temporary(version: str) -> Path | None:
-    """A folder of this user in the one for temporary files, where others may have made it before."""
+    """Return a folder of this user in the folder for temporary files, or None.
+
+    Another user may have made a folder of this name before; such a folder is not used.
+    """
     try:
         own = Path(tempfile.gettempdir()) / f"gaspart-{user()}"
         own.mkdir(mode=0o700, exist_ok=True)
@@ -91,20 +101,22 @@ def _temporary(version: str) -> Path | None:
     return own / version if private and not obstacle(own / version) else None
 
 
-# How numba is loaded: without what its loading wastes, which would be half of a job's start.
+# Loading numba without unnecessary work, which would take half of the start-up time of a job.
 
 
 _LOOKED_FOR = {"coverage", "scipy.linalg.cython_blas"}
-"""What numba imports where it finds it: to tell which lines kernels run, and for their matrix products."""
+"""Optional imports of numba: to report which lines of kernels run, and for matrix products in kernels."""
 
 
 def load_numba(ours: bool = False) -> ModuleType:
-    """numba, and all that it would load with a first kernel.
+    """Import numba and everything that it would load with a first kernel.
 
-    This makes half a million objects, which stay, so the garbage collector does not look through them now.
-    ours: whether this process is one of gaspart's, and no other program's. Then the collector does so neither
-    later nor when the process ends, and what numba looks for and kernels of gaspart do not use is hidden from
-    it.
+    This makes half a million objects, which stay in memory, so the garbage collector is switched off
+    meanwhile.
+
+    ours : True if the process belongs to gaspart and to no other program. Then the collector ignores these
+        objects also later and at the end of the process, and optional imports of numba that kernels of
+        gaspart do not use are hidden from it.
     """
     if "numba.np.arraymath" in sys.modules:
         return import_module("numba")
@@ -125,12 +137,13 @@ def load_numba(ours: bool = False) -> ModuleType:
     return numba
 
 
-# Kernels that come with the package: machine code that was compiled when its wheel was made.
+# Kernels that come with the package: machine code that was compiled when the wheel was built.
 #
-# It is for every processor of the level x86-64-v3. A path has the digest of the sources and one of the
-# release of numba, the function and the types of its arguments, and the version of Python: a file for
-# anything else is not found. The list of the files has their sha256. It is as trustworthy as the package's
-# modules, which stand beside it, and what does not agree with it is never read as code.
+# The code runs on every processor of the level x86-64-v3. A path contains the digest of the sources, a digest
+# of the release of numba, the function, the types of its arguments, and the version of Python: a file for
+# anything else is not found. The list of the files has their sha256. A file is as trustworthy as the modules
+# of the package, which are installed in the same place; a file that differs from the list is never read as
+# code.
 
 
 FOLDER = Path(__file__).parents[1] / "shipped"
@@ -139,12 +152,15 @@ PROCESSOR = "x86-64-v3"
 FEATURES = (
     "+avx,+avx2,+bmi,+bmi2,+cx16,+f16c,+fma,+lzcnt,+movbe,+popcnt,+sahf,+sse3,+sse4.1,+sse4.2,+ssse3,+xsave"
 )
-"""What the level x86-64-v3 requires of a processor, in the words of LLVM."""
+"""Requirements of the level x86-64-v3 to a processor, as LLVM names them."""
 
 
 def shipped_key(key: tuple) -> tuple | None:
-    """The key of a kernel that this package may bring, from that of one for this processor: types of
-    arguments, processor, digest of the bytecode. None where the processor lacks what such a kernel uses."""
+    """Convert the key of a kernel for this processor to the key of a shipped kernel.
+
+    A key has the types of the arguments, the processor and the digest of the bytecode. Returns None if the
+    processor lacks a feature that shipped kernels use.
+    """
     types, (system, _, features), bytecode = key
     if not set(FEATURES.split(",")) <= set(features.split(",")):
         return None
@@ -152,8 +168,10 @@ def shipped_key(key: tuple) -> tuple | None:
 
 
 def shipped_content(path: str) -> bytes | None:
-    """The content of a file, by its path in the folder. None where it is not listed, is missing, or differs
-    from what the list states."""
+    """Return the content of a file, given by its path in the folder of shipped kernels.
+
+    Returns None if the file is not listed, is missing, or differs from its listed digest.
+    """
     expected = _digests().get(path)
     if expected is None:
         return None
@@ -166,7 +184,10 @@ def shipped_content(path: str) -> bytes | None:
 
 @cache
 def _digests() -> dict[str, str]:
-    """The sha256 of each file, by its path; none in a copy of the repository, which has no kernels."""
+    """Return the sha256 of each file by its path.
+
+    The result is empty in a copy of the repository, which has no compiled kernels.
+    """
     try:
         listed = json.loads((FOLDER / LIST).read_bytes())
     except (OSError, ValueError, RecursionError):

@@ -1,10 +1,10 @@
-"""The files of compiled kernels: one for each function and types of arguments.
+"""Files of compiled kernels: one for each function and types of arguments.
 
-numba names them by the folder of the source, so that no two copies of a project share any, and lists them in
-an index, which processes that compile at the same time overwrite for one another: two kernels may then be
-given the same file. Here a file is named by what was compiled, and nothing else, and begins with a checksum:
-a damaged one is compiled and written again. A file that cannot be written costs time in other processes only.
-What this user has not compiled may have come with the package (`shipped`).
+numba names its files by the folder of the source, so that no two copies of a project share a file, and lists
+them in an index. Processes that compile at the same time overwrite this index for one another: two kernels
+may then be given the same file. Here a file is named only by what was compiled, and begins with a checksum: a
+damaged file is compiled and written again. A file that cannot be written costs only time in other processes.
+A kernel that this user has not compiled may have come with the package (`shipped_content`).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def _checksum(content: bytes) -> bytes:
 
 
 def _code(content: bytes | None) -> bytes | None:
-    """What follows the checksum, if it agrees with that."""
+    """Return the content after the checksum, or None if the checksum disagrees."""
     if content is None or len(content) <= _LENGTH:
         return None
     kept, code = content[:_LENGTH], content[_LENGTH:]
@@ -43,8 +43,10 @@ def _code(content: bytes | None) -> bytes | None:
 
 
 def _own_content(path: str) -> bytes | None:
-    """The content of a file that this user has written; None if there is none. What another has placed there
-    would run in this one's name."""
+    """Read a file that this user has written; return None if there is no such file.
+
+    A file written by another user is rejected: its code would run in the name of this user.
+    """
     try:
         with open(path, "rb") as file:
             return file.read() if is_own(os.fstat(file.fileno())) else None
@@ -56,10 +58,10 @@ _KERNELS = Path(__file__).parents[1]
 
 
 class KernelLocator(caching.UserProvidedCacheLocator):
-    """The folder of the files of a function, one for each package, wherever that is installed.
+    """Folder of the files of a function: one for each package, wherever the package is installed.
 
-    The digest of the sources, which names the cache, is all that functions of `kernels` need. numba also uses
-    the digest of the file, the number of the line and the bytecode: comments and docstrings change these.
+    For functions of `kernels` the digest of the sources, which names the cache, suffices. numba also uses the
+    digest of the file, the number of the line and the bytecode, which comments and docstrings change.
     """
 
     def __init__(self, folder: Path, function: Callable) -> None:
@@ -87,14 +89,14 @@ def _make_folder(path: str) -> None:
 
 
 class KernelFiles(caching.IndexDataCacheFile):
-    """The files of one function, without an index."""
+    """Files of one function, without an index."""
 
     def __init__(self, folder: str, name: str, stamp: Any, suffix: str) -> None:
         super().__init__(folder, name, stamp)
         self._data_name_pattern = f"{name}.{{digest}}.{suffix}"
 
     def save(self, key: tuple, data: Any) -> None:
-        """Write what was compiled for `key`, completely or not at all. May raise OSError."""
+        """Write the compiled code for `key`, completely or not at all. May raise OSError."""
         path = Path(self._data_path(self._name(key)))
         content = self._dump(data)
         with scratch_beside(path) as scratch:
@@ -102,14 +104,20 @@ class KernelFiles(caching.IndexDataCacheFile):
             scratch.replace(path)
 
     def load(self, key: tuple) -> Any:
-        """What was compiled for `key`, by this user or for the package; None if no file of it is whole."""
+        """Return the compiled code for `key`, or None if no file of it is complete.
+
+        A file of this user comes first, then a file of the package.
+        """
         code = _code(_own_content(self._data_path(self._name(key))))
         if code is None:
             code = _code(self._shipped(key))
         return None if code is None else pickle.loads(code)
 
     def _shipped(self, key: tuple) -> bytes | None:
-        """The content of the file that came with the package: the folders are those of the cache."""
+        """Return the content of the file that came with the package.
+
+        The folders have the same names as the folders of the cache.
+        """
         for_many = shipped_key(key)
         if for_many is None:
             return None
@@ -117,14 +125,18 @@ class KernelFiles(caching.IndexDataCacheFile):
         return shipped_content(f"{folder.parent.name}/{folder.name}/{self._name(for_many)}")
 
     def _name(self, key: tuple) -> str:
-        """key: types of arguments, processor, and digests of bytecode. The stamp holds the options."""
+        """Return the name of the file for a key.
+
+        The key has the types of arguments, the processor, and digests of the bytecode. The stamp holds the
+        options.
+        """
         compiled = repr((self._version, self._source_stamp, key))
         digest = hashlib.sha256(compiled.encode()).hexdigest()
         return str(self._data_name_pattern.format(digest=digest[:24]))
 
 
 class KernelContents(caching.CompileResultCacheImpl):
-    """The contents of the file of a kernel: machine code."""
+    """Content of the file of a kernel: machine code."""
 
     suffix = "nbc"
 
@@ -136,9 +148,9 @@ class KernelContents(caching.CompileResultCacheImpl):
 
 
 class KernelCache(caching.FunctionCache):
-    """numba's cache of a function that is compiled with these `options`, with these files.
+    """Cache of a function compiled with given options, in place of numba's own cache.
 
-    May raise OSError.
+    Making it may raise OSError.
     """
 
     contents: ClassVar = KernelContents
@@ -154,7 +166,7 @@ class KernelCache(caching.FunctionCache):
         return types, system, ("" if self._impl.locator.digested else code, variables)
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep what was compiled for a signature. A warning where that fails, no error."""
+        """Store the compiled code for a signature; if that fails, warn without an error."""
         try:
             super().save_overload(sig, data)
         except OSError as error:

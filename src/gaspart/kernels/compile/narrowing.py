@@ -1,12 +1,12 @@
-"""What a function that only kernels call uses of the named tuples that it is given.
+"""Entries of named tuples that a function called only by kernels uses.
 
 numba compiles a function again for each type of its arguments, and the type of a `Model` states all features
-of a scene. Most functions use few of its entries: they are compiled for a tuple in which the others are None.
-Then scenes that differ in these share them, and calls pass less.
+of a scene. Most functions use few entries: they are compiled for a tuple whose other entries have type None.
+Scenes that differ only in these entries share the functions, and calls pass less.
 
-The entries are found in the source, with those that the functions use to which it hands them on. A branch on
-whether an argument is None is left out where numba leaves it out: if it is None. An argument that is
-used in any other way than by its entries is used whole.
+The entries are found in the source, including the entries used by functions to which a tuple is passed. A
+branch on a comparison of an argument with None is omitted where numba omits it: for an argument of type None.
+An argument that is used in any other way than by its entries is passed complete.
 """
 
 from __future__ import annotations
@@ -22,31 +22,32 @@ from gaspart.kernels.compile.cache import load_numba
 numba: Any = load_numba()
 types: Any = numba.types
 
-_UNKNOWN = None  # the type of what is not an argument, nor an entry of one
+_UNKNOWN = None  # type of an expression that is neither an argument nor an entry of an argument
 _MATTER = types.NamedTuple, types.NoneType
-Use = dict  # by name of an entry, what of it is used; {} if no more than whether it is None
+Use = dict  # uses of an entry by its name; {} if only its comparison with None is used
 WHOLE: Use = {"*": {}}
 
 
 def narrowed(function: Callable, arguments: tuple) -> tuple:
-    """The types of arguments for which a function is to be compiled instead of these."""
+    """Return the types of arguments for which a function is compiled instead of the given types."""
     uses = zip(arguments, _uses(function, arguments), strict=True)
     return tuple(_narrow(one, use) for one, use in uses)
 
 
 class Narrowed(types.NamedTuple):
-    """The type of a named tuple as an argument of a function that only kernels call.
+    """Type of a named tuple as an argument of a function that only kernels call.
 
-    Entries that the function does not use are None. It is a type of ours, so that numba's own stays as it is.
+    Entries that the function does not use have type None. The type is a class of gaspart, so that the type of
+    numba does not change.
     """
 
     def __init__(self, kinds: list, instance_class: type) -> None:
         super().__init__(kinds, instance_class)
-        # numba takes what is before the parenthesis for the name of the class, in loops that threads share
+        # numba takes the text before the parenthesis for the class name, in loops shared by threads
         self.name = self.name.replace("(", "(narrowed: ", 1)  # type: ignore[has-type]
 
     def unify(self, context: Any, other: Any) -> Any:
-        """Return the type of a variable that holds either this tuple or one that the function has made."""
+        """Return the common type of this tuple and of a tuple made by the function."""
         if not isinstance(other, types.NamedTuple) or other.instance_class is not self.instance_class:
             return None
         kinds = [context.unify_pairs(*pair) for pair in zip(self.types, other.types, strict=True)]
@@ -71,7 +72,7 @@ def _narrow(given: Any, use: Use) -> Any:
 @numba.extending.lower_cast(Narrowed, Narrowed)
 @numba.extending.lower_cast(Narrowed, types.NamedTuple)
 def _leave_out(context: Any, builder: Any, given: Any, narrow: Any, value: Any) -> Any:
-    """The entries of a named tuple that a function uses."""
+    """Build the tuple of the entries that a function uses."""
     none = context.get_dummy_value()
     entries = numba.core.cgutils.unpack_tuple(builder, value, len(given))
     kept = [
@@ -83,28 +84,31 @@ def _leave_out(context: Any, builder: Any, given: Any, narrow: Any, value: Any) 
 
 @numba.extending.register_model(Narrowed)
 class _OneArgument(numba.extending.models.TupleModel):
-    """A narrowed tuple is one argument of a function in machine code.
+    """Data model that passes a narrowed tuple as one argument of a function in machine code.
 
-    A named tuple of numba's is as many as there are words in its arrays. For a `Model` these are some two
-    hundred, which each call takes from it and each function puts together again: 40 % of all instructions to
-    be translated.
+    numba passes a named tuple as one argument for each word in its arrays. For a `Model` these are some two
+    hundred words, which each call takes from the tuple and each function puts together again: 40 % of all
+    instructions to be translated.
     """
 
     def get_argument_type(self) -> Any:
-        """Return the type of the argument, in LLVM."""
+        """Return the LLVM type of the argument."""
         return self.get_value_type()
 
     def as_argument(self, builder: Any, value: Any) -> Any:
-        """Return what a caller passes."""
+        """Return the value that a caller passes."""
         return value
 
     def from_argument(self, builder: Any, value: Any) -> Any:
-        """Return the value of what was passed."""
+        """Return the value of a passed argument."""
         return value
 
 
 def _uses(function: Callable, arguments: tuple) -> tuple[Use, ...]:
-    """What a function uses of each argument, by their types, `_UNKNOWN` where these are not known."""
+    """Return the entries of each argument that a function uses, given the types of the arguments.
+
+    The type is `_UNKNOWN` if it is not known.
+    """
     key = _key(function, arguments)
     if key not in _known_uses:
         _known_uses[key] = _read(function, arguments)
@@ -112,7 +116,10 @@ def _uses(function: Callable, arguments: tuple) -> tuple[Use, ...]:
 
 
 def _key(function: Callable, arguments: tuple) -> tuple:
-    """The source of a function, and the numbers of the types that matter, whose own hashes are slow."""
+    """Return a key of a function and its argument types: code and numbers of relevant types.
+
+    The hashes of the types themselves are slow.
+    """
     return function.__code__, tuple(one._code if isinstance(one, _MATTER) else _UNKNOWN for one in arguments)
 
 
@@ -133,7 +140,10 @@ def _read(function: Callable, arguments: tuple) -> tuple[Use, ...]:
 
 @cache
 def _definition(code: Any) -> tuple[ast.FunctionDef | None, set[str]]:
-    """The source of a function of a module, None for any other, and the arguments that it assigns to."""
+    """Return the source of a function of a module, and the arguments to which it assigns.
+
+    Any other function has no source: None.
+    """
     try:
         found = _functions(code.co_filename).get(code.co_firstlineno)
     except OSError:
@@ -147,13 +157,16 @@ def _definition(code: Any) -> tuple[ast.FunctionDef | None, set[str]]:
 
 @cache
 def _functions(file: str) -> dict[int, ast.FunctionDef]:
-    """The functions of a module, by the line where the code of each begins."""
+    """Return the functions of a module by the line where the code of each begins."""
     found = [one for one in ast.parse(Path(file).read_bytes()).body if isinstance(one, ast.FunctionDef)]
     return {min([one.lineno, *(before.lineno for before in one.decorator_list)]): one for one in found}
 
 
 def _is_plain(arguments: ast.arguments) -> bool:
-    """Whether all arguments are by place and without a default, as numba's are by then."""
+    """Return True if all arguments are positional and without a default.
+
+    The arguments that numba passes here have this form.
+    """
     others = arguments.posonlyargs, arguments.kwonlyargs, arguments.defaults
     return not any(others) and arguments.vararg is None and arguments.kwarg is None
 
@@ -164,14 +177,14 @@ def _merge(one: Use, other: Use) -> None:
 
 
 class _Reader(ast.NodeVisitor):
-    """Reads the body of a function, and notes what of its arguments is used."""
+    """Visitor that reads the body of a function and records how the function uses its arguments."""
 
     def __init__(self, names: dict[str, Any], arguments: dict[str, Any]) -> None:
         self.names, self.arguments = names, arguments
         self.uses: dict[str, Use] = {name: {} for name in arguments}
 
     def block(self, statements: list[ast.stmt]) -> bool:
-        """Read statements. Whether they always end the function."""
+        """Read statements; return True if they always end the function."""
         for one in statements:
             if isinstance(one, ast.If):
                 if self._branch(one):
@@ -183,7 +196,7 @@ class _Reader(ast.NodeVisitor):
         return False
 
     def _branch(self, one: ast.If) -> bool:
-        """Read what numba compiles of a branch."""
+        """Read the compiled part of a branch; return True if it always ends the function."""
         match one.test:
             case ast.Compare(ast.Name(name), [ast.Is() | ast.IsNot() as sign], [ast.Constant(None)]):
                 if isinstance(self.arguments.get(name), types.NoneType):
@@ -194,12 +207,12 @@ class _Reader(ast.NodeVisitor):
         return all(ends)
 
     def visit_Name(self, node: ast.Name) -> None:
-        """An argument that is used as it is."""
+        """Record an argument that is used as a whole."""
         if node.id in self.uses:
             _merge(self.uses[node.id], WHOLE)
 
     def visit_Attribute(self, node: ast.Attribute) -> None:
-        """An entry, or one of an entry."""
+        """Record the use of an entry, or of an entry of an entry."""
         place = self._place(node)
         if place is None:
             self.generic_visit(node)
@@ -207,24 +220,24 @@ class _Reader(ast.NodeVisitor):
             self._note(place, WHOLE)
 
     def visit_For(self, node: ast.For) -> None:
-        """As any block."""
+        """Read the body as a block."""
         self.visit(node.target)
         self.visit(node.iter)
         self.block(node.body)
         self.block(node.orelse)
 
     def visit_While(self, node: ast.While) -> None:
-        """As any block."""
+        """Read the body as a block."""
         self.visit(node.test)
         self.block(node.body)
         self.block(node.orelse)
 
     def visit_Call(self, node: ast.Call) -> None:
-        """What is handed on to a function of ours is used as it is there."""
+        """Record the uses of arguments inside a called function of gaspart."""
         called = self.names.get(node.func.id) if isinstance(node.func, ast.Name) else None
         function = getattr(called, "py_func", None)
         kinds = tuple(map(self._type, node.args))
-        named = any(isinstance(kind, types.NamedTuple) for kind in kinds)  # others are used whole
+        named = any(isinstance(kind, types.NamedTuple) for kind in kinds)  # others are passed complete
         starred = any(isinstance(one, ast.Starred) for one in node.args)
         if function is None or not named or node.keywords or starred:
             self.generic_visit(node)
@@ -238,14 +251,17 @@ class _Reader(ast.NodeVisitor):
                 self._note(place, use)
 
     def _note(self, place: list[str], use: Use) -> None:
-        """Note a use of an argument, or an entry."""
+        """Record a use of an argument or of an entry."""
         at = self.uses[place[0]]
         for name in place[1:]:
             at = at.setdefault(name, {})
         _merge(at, use)
 
     def _place(self, node: ast.expr) -> list[str] | None:
-        """The name of an argument and the entries that lead from it; None for any other expression."""
+        """Return an argument's name and the entries that an expression selects.
+
+        Returns None for any other expression.
+        """
         match node:
             case ast.Name(name) if name in self.uses:
                 return [name]
@@ -258,7 +274,7 @@ class _Reader(ast.NodeVisitor):
         return None
 
     def _type(self, node: ast.expr) -> Any:
-        """The type of an argument or an entry of one, or of None."""
+        """Return the type of an argument, of an entry of an argument, or of None."""
         match node:
             case ast.Constant(None):
                 return types.none

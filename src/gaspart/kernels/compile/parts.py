@@ -1,9 +1,10 @@
-"""How functions are compiled that only kernels call.
+"""Compilation of functions that only kernels call.
 
 numba optimises every function and makes machine code of it, and optimises it again within each function that
-calls it, up to the kernel that Python calls. These are only translated, and left to the last: what runs is
-that one, and the others would be most of the time that a first run takes. Their translations are kept in
-files, for other kernels that call them: most do not depend on what a scene requires.
+calls it, up to the kernel that Python calls. Functions called only by kernels are translated without that,
+and only the kernel is optimised and run; optimising the others would take most of the time of a first run.
+Their translations are stored in files for other kernels that call them: most do not depend on what a scene
+requires.
 """
 
 from __future__ import annotations
@@ -22,16 +23,17 @@ from gaspart.kernels.compile.narrowing import narrowed
 numba: Any = load_numba()
 core: Any = numba.core
 
-_FIRST = 2**32  # of the numbers below; numba counts from 1
+_FIRST = 2**32  # first number of gaspart; numba counts from 1
 _numbers = itertools.count(_FIRST + int.from_bytes(os.urandom(7), "big"))
 
 
 @contextmanager
 def _own_numbers() -> Iterator[None]:
-    """Number what is compiled meanwhile, functions of numba included, as no other process does.
+    """Give numbers to the functions compiled meanwhile that no other process gives.
 
-    numba numbers the functions of a process, to give those of one name different names in machine code. What
-    several processes have translated meets in one kernel, so that no two of them may count from one number.
+    Functions of numba are included. numba numbers the functions of a process, so that functions of the same
+    name get different names in machine code. Translations of several processes meet in one kernel, so no two
+    processes may count from the same number.
     """
     identity = core.bytecode.FunctionIdentity
     before, identity._unique_ids = identity._unique_ids, _numbers
@@ -42,7 +44,7 @@ def _own_numbers() -> Iterator[None]:
 
 
 def narrow_calls(part: Any) -> None:
-    """Let the callers of a function compile it for what it uses of their arguments."""
+    """Make callers compile a function only for the entries of their arguments that it uses."""
 
     def get_call_template(arguments: tuple, keywords: dict) -> tuple:
         signature, arguments = part._compiler.fold_argument_types(arguments, keywords)
@@ -54,11 +56,14 @@ def narrow_calls(part: Any) -> None:
 
 
 class _PartLibrary(core.codegen.JITCodeLibrary):
-    """Code that is linked into that of the callers, and only there fully optimised and run."""
+    """Code linked into the code of its callers, and only there fully optimised and run."""
 
     def _optimize_functions(self, ll_module: Any) -> None:
-        """Optimise lightly. Fully, loops about calls would be taken for small ones and doubled before what
-        is called is put in their place: the kernel would become twice as long, and slower."""
+        """Optimise lightly.
+
+        Full optimisation would take loops around calls for small loops and double them before the called
+        functions are inlined: the kernel would become twice as long, and slower.
+        """
         ll_module.data_layout = self._codegen._data_layout
         for function in ll_module.functions:
             if not function.is_declaration:
@@ -74,7 +79,7 @@ class _PartLibrary(core.codegen.JITCodeLibrary):
 
 
 def _known_as(described: Any, environment: Any, library: _PartLibrary) -> Any:
-    """What numba identifies a function by: what Python would call, here without code."""
+    """Return the object by which numba identifies a function, here without callable code."""
     no_code = 0
     return numba._dynfunc.make_function(
         described.lookup_module(), described.qualname, "", no_code, environment, (library,)
@@ -83,7 +88,7 @@ def _known_as(described: Any, environment: Any, library: _PartLibrary) -> Any:
 
 class _Pass(core.compiler_machinery.LoweringPass):
     def __init__(self) -> None:
-        """numba's is abstract."""
+        """Satisfy the abstract constructor of numba."""
         super().__init__()
 
 
@@ -99,7 +104,7 @@ class _BeginPart(_Pass):
 
 @core.compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
 class _OfferPart(_Pass):
-    """Let other functions call it."""
+    """Compiler pass that makes a function available to other functions."""
 
     _name = "offer_part"
 
@@ -113,7 +118,7 @@ class _OfferPart(_Pass):
 
 
 class KernelCompiler(core.compiler.Compiler):
-    """numba's own compiler, with numbers of our own."""
+    """Compiler of numba with the function numbers of gaspart."""
 
     def compile_extra(self, func: Any) -> Any:
         """Compile a function of Python."""
@@ -122,10 +127,13 @@ class KernelCompiler(core.compiler.Compiler):
 
 
 class PartCompiler(KernelCompiler):
-    """The same with two more passes."""
+    """Compiler of functions that only kernels call, with two additional passes."""
 
     def define_pipelines(self) -> list:
-        """The passes of numba with a first and a last one around its translation to LLVM."""
+        """Return the passes of numba with one pass added before and one after translation.
+
+        The translation is the one to LLVM.
+        """
         passes = core.compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.add_pass_after(_BeginPart, core.typed_passes.AnnotateTypes)
         passes.add_pass_after(_OfferPart, core.typed_passes.NativeLowering)
@@ -134,19 +142,22 @@ class PartCompiler(KernelCompiler):
 
 
 class _PartContents(KernelContents):
-    """What is in the file of a part: its translation, with those of the parts that it calls."""
+    """Content of the file of a part: its translation and the translations of called parts."""
 
     suffix = "part"
 
     def check_cachable(self, data: Any) -> bool:
-        """Whether other processes may use a result of the compiler: not where it calls a function of numba
-        that this process had compiled before for others, under a number that those may have given too."""
+        """Return True if other processes may use a compiler result.
+
+        The result is False if the code calls a function of numba that this process had compiled before for
+        other callers: other processes may have given the same number to another function.
+        """
         names = (one.name for one in data.library._final_module.functions if not one.is_declaration)
         numbers = (int(number) for name in names for number in re.findall(r"B\d+v(\d+)", name))
         return super().check_cachable(data) and all(number >= _FIRST for number in numbers)
 
     def reduce(self, result: Any) -> tuple:
-        """The contents of the file, of a result of the compiler."""
+        """Return the content of the file for a compiler result."""
         library, described = result.library, result.fndesc
         described.typemap = described.calltypes = None  # as numba does: these need not be kept
         environments = result.environment, tuple(result._find_referenced_environments())
@@ -154,7 +165,7 @@ class _PartContents(KernelContents):
         return library.name, code, described, environments, result.signature, result.reload_init
 
     def rebuild(self, target_context: Any, payload: tuple) -> Any:
-        """A result of the compiler, of the contents of the file."""
+        """Rebuild a compiler result from the content of a file."""
         name, code, described, (environment, referenced), signature, reload_init = payload
         for initialise in reload_init:
             initialise()
@@ -182,6 +193,6 @@ class _PartContents(KernelContents):
 
 
 class PartCache(KernelCache):
-    """numba's cache of a part."""
+    """Cache of a function that only kernels call, in place of numba's own cache."""
 
     contents: ClassVar = _PartContents

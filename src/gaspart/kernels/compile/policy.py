@@ -1,8 +1,8 @@
-"""How kernels are compiled: one policy, in one place.
+"""Compile policy of all kernels.
 
-IEEE arithmetic in the order written (no fastmath), so that the same source gives the same bits on every
-x86-64 machine; cached on disk, under a digest of the sources, because numba does not notice when a helper
-in another file changes.
+Kernels use IEEE arithmetic in the order written (no fastmath), so that the same source gives the same bits on
+every x86-64 machine. They are cached on disk under a digest of the sources, because numba does not notice
+when a helper in another file changes.
 """
 
 from __future__ import annotations
@@ -20,8 +20,10 @@ from gaspart.kernels.compile.sources import file_digests
 
 numba = load_numba()
 TESTED = "0.67", "0.68"
-"""Releases of numba whose internals `files`, `parts` and `narrowing` use. Another one compiles and keeps
-kernels in its own way, to the same bits and in several times as long."""
+"""Releases of numba whose internals `files`, `parts` and `narrowing` use.
+
+Another release compiles and stores kernels in its own way, to the same bits, in several times the time.
+"""
 _tested = numba.__version__.startswith(tuple(f"{release}." for release in TESTED))
 if _tested:
     from gaspart.kernels.compile.files import KernelCache
@@ -37,9 +39,9 @@ _KERNELS = Path(__file__).parents[1]
 
 @cache
 def source_digest() -> str:
-    """Return a short digest of every module of `kernels`, which hold all compiled code and nothing else.
+    """Return a short digest of all modules of `kernels`, which hold all compiled code.
 
-    Docstrings and comments do not change it.
+    These modules hold no other code. Docstrings and comments do not change the digest.
     """
     paths = sorted(_KERNELS.rglob("*.py"))
     digest = hashlib.sha256()
@@ -54,7 +56,10 @@ _CACHE = usable_cache(source_digest())
 
 
 def _compile(function: F, part: bool = False, **options: Any) -> F:
-    """part: whether only kernels call the function."""
+    """Compile a function with the options of the policy.
+
+    part : True if only kernels call the function.
+    """
     if part:
         options |= _UNWRAPPED
     if _tested:
@@ -87,8 +92,10 @@ def _use_own_files(compiled: Any) -> None:
 
 
 def _without_interruption(compile_: F) -> F:
-    """The same, with signals waiting until it has ended: what a handler raises within a callback of LLVM is
-    lost, and with it the code."""
+    """Wrap a compile function so that signals wait until it has ended.
+
+    An exception that a signal handler raises within a callback of LLVM is lost, and the code with it.
+    """
 
     @wraps(compile_)
     def compile_whole(*arguments: Any) -> Any:
@@ -99,42 +106,49 @@ def _without_interruption(compile_: F) -> F:
 
 
 def kernel(function: F) -> F:
-    """Compile `function` with numba under the package's policy. It must not make arrays.
+    """Compile a function that Python calls, without support for making arrays.
 
-    Without numba's reference counting, that is: counting the arrays that pass between helpers costs several
-    times what the helpers compute.
+    numba's reference counting is switched off: counting the arrays that pass between helpers takes several
+    times as long as the computation in the helpers. Hence the function must not make arrays.
     """
     return _compile(function, _nrt=False)
 
 
 def helper(function: F) -> F:
-    """The same for a small function that is inlined where it is used: LLVM by itself leaves a call, which
-    passes every array as seven words."""
+    """Compile a small function like `kernel`, and inline it in its callers.
+
+    By default LLVM keeps a call, which passes every array as seven words.
+    """
     return _compile(function, _nrt=False, forceinline=True)
 
 
 def allocating_kernel(function: F) -> F:
-    """The same for a function that makes arrays."""
+    """Compile a function that Python calls and that makes arrays."""
     return _compile(function)
 
 
 def inner_kernel(function: F) -> F:
-    """A kernel that only kernels call: without the way in from Python, which for a function that takes an
-    engine's arrays takes longer to compile than what it does."""
+    """Compile a function that only kernels call, without an entry from Python.
+
+    For a function that takes the arrays of an engine, this entry takes longer to compile than the function
+    itself.
+    """
     return _compile(function, part=True, _nrt=False)
 
 
 def inner_helper(function: F) -> F:
-    """The same for a function that is inlined."""
+    """Compile a function that only kernels call, and inline it in its callers."""
     return _compile(function, part=True, _nrt=False, forceinline=True)
 
 
 def inner_allocating_kernel(function: F) -> F:
-    """The same for a function that makes arrays."""
+    """Compile a function that only kernels call and that makes arrays."""
     return _compile(function, part=True)
 
 
 def inner_parallel_kernel(function: F) -> F:
-    """The same for a function whose `prange` loops are shared among threads. What its parts write must not
-    depend on one another, so that it does not matter which is done when."""
+    """Compile a function that only kernels call, with `prange` loops divided among threads.
+
+    The results of its iterations must not depend on one another, so that their order does not matter.
+    """
     return _compile(function, parallel=True, **_UNWRAPPED)

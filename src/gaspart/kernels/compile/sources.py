@@ -29,7 +29,10 @@ _DIGEST = re.compile(r"[0-9a-f]{32}")
 
 
 def file_digests(paths: Iterable[Path]) -> list[str]:
-    """Return the digest of each file: of the syntax tree of a Python file, of the bytes of any other file."""
+    """Return the digest of each file.
+
+    The digest of a Python file is computed from its syntax tree, the digest of any other file from its bytes.
+    """
     stored, added, digests = _stored(), {}, []
     for path in paths:
         content = path.read_bytes()
@@ -46,7 +49,7 @@ def file_digests(paths: Iterable[Path]) -> list[str]:
 
 
 def tree_digest(source: bytes) -> str:
-    """Return the digest of the syntax tree of Python source, or of its bytes if it has none."""
+    """Return the digest of the syntax tree of Python source; of its bytes if parsing fails."""
     try:
         tree = ast.parse(source)
     except (SyntaxError, ValueError):
@@ -55,7 +58,10 @@ def tree_digest(source: bytes) -> str:
 
 
 def _words(node: Any) -> Iterator[str]:
-    """Generate the text of a syntax tree, without empty fields, which other versions of Python may add."""
+    """Generate the text of a syntax tree without its empty fields.
+
+    Other versions of Python may add empty fields.
+    """
     if isinstance(node, ast.AST):
         yield f"({type(node).__name__}"
         for name, value in ast.iter_fields(node):
@@ -74,7 +80,10 @@ def _words(node: Any) -> Iterator[str]:
 
 
 def _is_text(node: Any) -> bool:
-    """Return True for a statement that is only a string: a docstring, also one of a constant."""
+    """Return True if a statement is only a string, such as a docstring.
+
+    The docstring of a constant is such a statement too.
+    """
     if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Constant):
         return False
     return isinstance(node.value.value, str)
@@ -86,7 +95,10 @@ def _digest(content: bytes) -> str:
 
 @cache
 def _stored() -> dict[str, str]:
-    """Digests of trees by those of contents, from the cache folder, and those that this process has found."""
+    """Return the stored digests of trees by the digests of the file contents.
+
+    They come from the cache folder; digests computed by this process are added.
+    """
     try:
         with open(_folder() / STORE, "rb") as file:
             content = json.load(file) if is_own(os.fstat(file.fileno())) else None
@@ -99,7 +111,10 @@ def _stored() -> dict[str, str]:
 
 
 def _store(added: dict[str, str]) -> None:
-    """Add digests to those in the cache folder, if it can be written: `usable_cache` reports if it cannot."""
+    """Add digests to the stored ones in the cache folder, if it can be written.
+
+    If it cannot be written, `usable_cache` warns.
+    """
     try:
         folder = _folder()
         _stored.cache_clear()
@@ -112,7 +127,10 @@ def _store(added: dict[str, str]) -> None:
 
 
 def _folder() -> Path:
-    """Return the folder of the stored digests. Raises RuntimeError if others may write there, or none may."""
+    """Return the folder of the stored digests.
+
+    Raises RuntimeError if other users may write to it, or if it cannot be written.
+    """
     folder = cache_directory() / "sources"
     if obstacle(folder):
         raise RuntimeError

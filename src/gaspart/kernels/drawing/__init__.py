@@ -1,1 +1,1 @@
-"""The compiled part of pictures: a ray tracer for spheres, and discs drawn pixel by pixel."""
+"""Compiled functions that draw pictures: a ray tracer for spheres, and discs drawn pixel by pixel."""

@@ -1,4 +1,4 @@
-"""The compiled part of the ray tracer (see `rendering.pictures`): rays, shadows and the light of the sky."""
+"""The compiled part of the ray tracer (see `rendering.tracer`): rays, shadows and the light of the sky."""
 
 from __future__ import annotations
 
@@ -13,17 +13,20 @@ from gaspart.kernels.compile.policy import (
 
 SUBRAYS = 4
 NOTHING, FLOOR, EDGE, SPHERE = 0, 2, 4, 6
-"""What a pixel shows; sphere i is SPHERE + 2 i, and 1 is added in the shadow."""
+"""Codes of the visible object of a pixel; sphere i is SPHERE + 2 i; 1 is added in the shadow."""
 
 _AMBIENT, _LAMP, _GLOSS = 0.55, 0.75, 0.18
-_HAZE = 0.22  # what the far end of the container loses of its colour
+_HAZE = 0.22  # fraction of its colour that the far end of the container loses
 _FLOOR_LIGHT, _EDGE_LIGHT = 0.72, 0.16
 _EDGE_PIXELS = 0.8  # half the width of the container's edges
 
 
 @kernel
 def list_spheres(lowest, highest, numbers, places, listed):
-    """Count the spheres of each cell in `places`; or, where `listed` has room, put them at their places."""
+    """Count the spheres of each cell in `places`, or fill the lists of the cells.
+
+    If `listed` is not empty, the index of each sphere is written to the next position of its cells.
+    """
     for i in range(len(lowest)):
         for x in range(lowest[i, 0], highest[i, 0] + 1):
             for y in range(lowest[i, 1], highest[i, 1] + 1):
@@ -51,7 +54,7 @@ def _along(o, d, t):
 
 @inner_kernel
 def _hit(o, d, sphere):
-    """Distance at which a ray from outside enters a sphere, or infinity."""
+    """Return the distance at which a ray from outside enters a sphere, or infinity."""
     to = (sphere[0] - o[0], sphere[1] - o[1], sphere[2] - o[2])
     b = _dot(to, d)
     miss = _along(to, d, -b)
@@ -64,7 +67,10 @@ def _hit(o, d, sphere):
 
 @inner_kernel
 def _nearest(o, d, spheres, grid, any_will_do):
-    """Distance and index of the first sphere that a ray meets: infinity and -1 if there is none."""
+    """Return distance and index of the first sphere on a ray.
+
+    Without a hit they are infinity and -1.
+    """
     low, side, numbers, first, listed, _ = grid
     enter, leave = 0.0, math.inf
     for k in range(3):
@@ -105,12 +111,15 @@ def _nearest(o, d, spheres, grid, any_will_do):
 
 @kernel
 def sky(p, n, spheres, grid):
-    """The part of the sky over a place p of a surface with the normal n that near spheres leave free.
+    """Return the fraction of the sky that near spheres leave free above a point.
 
-    A sphere of radius r whose centre is at the distance h r, at an angle of cosine c to the normal, takes
-    c / h^2 of the light of an even sky if it is wholly above the horizon (exact); as it sets, that is led
-    to 0. Only what is nearer than a cell's side counts, fading out, and each sphere once, in the first of
-    the 27 cells that has it.
+    A sphere of radius r whose centre is at the distance h r, at an angle of cosine c to the normal, takes c /
+    h^2 of the light of a uniform sky if it is wholly above the horizon (exact); as the sphere sets, this
+    fraction goes to 0. Only spheres nearer than the side of a cell count, with an effect that fades with
+    distance. Each sphere counts once, in the first of the 27 cells that contains it.
+
+    p : point of a surface
+    n : normal of the surface
     """
     low, side, numbers, first, listed, lowest = grid
     free = 1.0
@@ -141,7 +150,10 @@ def sky(p, n, spheres, grid):
 
 @inner_kernel
 def _edge(o, d, edges, thickness):
-    """Distance of the nearest edge that a ray passes by less than `thickness` times that distance."""
+    """Return the distance of the nearest edge of the container that a ray touches.
+
+    A ray touches an edge if it passes at less than `thickness` times that distance.
+    """
     best = math.inf
     for m in range(len(edges)):
         e = edges[m]
@@ -159,7 +171,7 @@ def _edge(o, d, edges, thickness):
 
 @inner_kernel
 def _look(o, d, forward, light, scales, scene, grid, thickness):
-    """Red, green and blue along a ray, and what is seen there."""
+    """Return red, green and blue along a ray, and the code of the visible object."""
     spheres, colours, edges, lengths = scene
     t, i = _nearest(o, d, spheres, grid, False)
     shown = SPHERE + 2 * i if i >= 0 else NOTHING
@@ -202,7 +214,10 @@ def _look(o, d, forward, light, scales, scene, grid, thickness):
 
 @inner_kernel
 def _pixel(column, row, image, view, scales, scene, grid):
-    """What is seen at a place of the picture, in pixels from its upper left corner."""
+    """Return the colour and the visible object at a point of the picture.
+
+    column, row : coordinates in pixels from the upper left corner
+    """
     height, width = image.shape[0], image.shape[1]
     across = (2.0 * column / width - 1.0) * scales[0]
     along = (1.0 - 2.0 * row / height) * scales[1]
@@ -220,7 +235,7 @@ def _pixel(column, row, image, view, scales, scene, grid):
 
 @kernel
 def render_once(image, shown, view, scales, scene, grid):
-    """One ray through the middle of every pixel."""
+    """Trace one ray through the middle of every pixel."""
     for row in range(shown.shape[0]):
         for column in range(shown.shape[1]):
             seen = _pixel(column + 0.5, row + 0.5, image, view, scales, scene, grid)
@@ -230,7 +245,7 @@ def render_once(image, shown, view, scales, scene, grid):
 
 @kernel
 def refine(image, places, view, scales, scene, grid):
-    """Many rays through the pixels at places (M, 2), row and column."""
+    """Trace many rays through the pixels at `places` (M, 2), given by row and column."""
     for n in range(len(places)):
         row, column = places[n, 0], places[n, 1]
         red, green, blue = 0.0, 0.0, 0.0
@@ -243,7 +258,7 @@ def refine(image, places, view, scales, scene, grid):
         image[row, column, 0], image[row, column, 1], image[row, column, 2] = red, green, blue
 
 
-# Discs and lines drawn into an image by the part of each pixel that they cover.
+# Discs and lines drawn into an image by the fraction of each pixel that they cover.
 
 
 _LINE = 0.75  # half the width of lines, in pixels

@@ -1,11 +1,11 @@
-"""Collisions of a dilute gas: pairs of particles of one cell, wherever they are in it.
+"""Collisions of a dilute gas between pairs of particles anywhere in one cell.
 
 The majorant frequency scheme (Ivanov & Rogasinsky, Sov. J. Numer. Anal. Math. Modelling 3, 453 (1988)): the
 collisions in a cell are a Markov process in continuous time, in which a pair collides at the rate S g / V,
 with S the cross-section and g the relative speed. Trials happen at the rate of all pairs with a bound of S g
-and are accepted with the ratio of the two. The time to the next trial has no memory, so that the bound
-may change with each collision, and is exact at any time: the velocities of a cell lie in a box, and no
-relative speed exceeds its diagonal.
+and are accepted with the ratio of the two. The time to the next trial has no memory, so that the bound may
+change with each collision, and is exact at any time: the velocities of a cell lie in a box, and no relative
+speed exceeds its diagonal.
 """
 
 from __future__ import annotations
@@ -34,24 +34,26 @@ from gaspart.kernels.model import LOSS, ContactLaw
 from gaspart.kernels.physics.collision import collide_by_law
 from gaspart.kernels.physics.exact_sum import add_exact
 
-# One sampled collision: the direction of contact, and what passes there.
+# Sampling of one collision: the direction of contact, and the transferred momentum.
 #
-# Of two particles that meet somewhere in a cell, the unit vector n from the first to the second at their
-# contact has a density proportional to -g.n where that is positive, g being the relative velocity (second
-# minus first). In three dimensions this makes the relative velocity after an elastic collision isotropic;
-# in two the impact parameter is uniform.
+# For two particles that collide somewhere in a cell, the unit vector n from the first to the second at
+# contact has a density proportional to -g.n where that is positive, with g the relative velocity (second
+# minus first). In three dimensions this makes the relative velocity after an elastic collision isotropic; in
+# two dimensions the impact parameter is uniform.
 
 
 class Sums(NamedTuple):
-    """What the contact law of the event-driven engine adds to."""
+    """Sums to which the collision law of the event-driven engine adds."""
 
     sums: np.ndarray
 
 
 @inner_helper
 def unit_vector(key, step, cell, trial):
-    """(3,) an isotropic unit vector (Marsaglia, Ann. Math. Stat. 43, 645 (1972)), from blocks 1, 2 ... of
-    the trial's random words."""
+    """Draw an isotropic unit vector (3,) (Marsaglia, Ann. Math. Stat. 43, 645 (1972)).
+
+    The random words are blocks 1, 2, ... of the trial.
+    """
     block = 0
     while True:
         block += 1
@@ -66,7 +68,7 @@ def unit_vector(key, step, cell, trial):
 
 @inner_helper
 def in_plane(key, step, cell, trial):
-    """(3,) the same in the plane of the first two axes."""
+    """Draw an isotropic unit vector (3,) in the plane of the first two axes."""
     block = 0
     while True:
         block += 1
@@ -80,15 +82,19 @@ def in_plane(key, step, cell, trial):
 
 @inner_helper
 def impact_parameter(key, step, cell, trial):
-    """A number from -1 to 1, from block 1 of the trial's random words."""
+    """Draw a number from -1 to 1 from block 1 of the trial's random words."""
     words = words_of(key, step, cell, trial, 1)
     return 2.0 * fraction(words[0]) - 1.0
 
 
 @inner_helper
 def contact_vector(g, speed, dimension, counter):
-    """(3,) the unit vector from the first particle to the second at a sampled contact. g (3,): the relative
-    velocity, second minus first; speed: its size; counter: key, step, cell and trial."""
+    """Draw the unit vector (3,) from the first particle to the second at a collision.
+
+    g : (3,), relative velocity, second minus first
+    speed : size of g
+    counter : key, step, cell and trial
+    """
     key, step, cell, trial = counter
     x, y, z = g[0] / speed, g[1] / speed, g[2] / speed
     if dimension == 2:
@@ -105,8 +111,10 @@ def contact_vector(g, speed, dimension, counter):
 
 @inner_helper
 def collide_smooth(particles, pair, normal, masses):
-    """An elastic contact of smooth particles in two slots. normal (3,): the unit vector from the first to the
-    second. Returns the momentum that passes."""
+    """Apply an elastic collision to the smooth particles in two slots; return the transferred momentum.
+
+    normal : (3,), unit vector from the first particle to the second
+    """
     i, j = pair
     total, approach = masses[0] + masses[1], 0.0
     for k in range(len(particles.images)):
@@ -122,7 +130,7 @@ def collide_smooth(particles, pair, normal, masses):
 
 @inner_helper
 def law_of(context, law):
-    """The law of the event-driven engine's physics, for the two particles in a thread's room."""
+    """Return the collision law of the event-driven engine for the two particles in a thread's workspace."""
     workspace, part = context.workspace, context.part
     inverses = workspace.inverse_mass[part], workspace.inverse_inertia[part]
     return ContactLaw(
@@ -132,7 +140,11 @@ def law_of(context, law):
 
 @inner_helper
 def load_spin(i, place, which, context, law):
-    """Write mass and spin of particle i, of a kind, into a place of a thread's room."""
+    """Write mass and spin of a particle to position `place` of a thread's workspace.
+
+    i : number of the particle
+    which : kind of the particle
+    """
     workspace, part = context.workspace, context.part
     workspace.inverse_mass[part, place] = 1.0 / workspace.mass[which]
     workspace.inverse_inertia[part, place] = 1.0 / workspace.inertia[which]
@@ -142,14 +154,17 @@ def load_spin(i, place, which, context, law):
 
 @inner_helper
 def store_spin(i, place, context, law):
-    """Write the spin back from there."""
+    """Write the spin back from the workspace."""
     for k in range(3):
         law.spins[i, k] = context.workspace.pair_spins[context.part, place, k]
 
 
 @inner_helper
 def load_particle(particles, slot, place, which, context, law):
-    """Write the particle in a slot, of a kind, into a place of a thread's room."""
+    """Write the particle in a slot to position `place` of a thread's workspace.
+
+    which : kind of the particle
+    """
     flights = context.workspace.flights[context.part]
     for k in range(len(particles.images)):
         flights[place].velocity[k] = particles.data[velocity_row(particles, k), slot]
@@ -160,7 +175,7 @@ def load_particle(particles, slot, place, which, context, law):
 
 @inner_helper
 def store_particle(particles, slot, place, context, law):
-    """Write velocity and spin back from there."""
+    """Write velocity and spin back from the workspace."""
     flights = context.workspace.flights[context.part]
     for k in range(len(particles.images)):
         particles.data[velocity_row(particles, k), slot] = flights[place].velocity[k]
@@ -169,7 +184,7 @@ def store_particle(particles, slot, place, context, law):
 
 @inner_helper
 def count_loss(context):
-    """Move the energy that the law has taken from the thread's room to its tally."""
+    """Move the energy dissipated by the law from the thread's workspace to its tally."""
     workspace, sums = context.workspace, context.workspace.sums[context.part]
     add_exact(workspace.loss[context.part], sums[LOSS, 0] + sums[LOSS, 1])
     sums[LOSS, 0] = sums[LOSS, 1] = 0.0
@@ -177,8 +192,10 @@ def count_loss(context):
 
 @inner_helper
 def collide_loaded_pair(normal, context, law):
-    """A contact by the law of the two particles in a thread's room. Returns the momentum that passes along
-    the normal."""
+    """Apply the collision law to the particles in a thread's workspace.
+
+    Returns the momentum transferred along the normal.
+    """
     flights = context.workspace.flights[context.part]
     rr = rv = 0.0
     for k in range(len(context.space.lengths)):
@@ -195,20 +212,28 @@ def collide_loaded_pair(normal, context, law):
 
 # Time integrals of the stress tensor and of the heat flux (Helfand, Phys. Rev. 119, 1 (1960)).
 #
-# The stress sum S (d, d) grows by m v v dt while particles fly, and by r dp at a collision, with r the
-# vector from the second particle to the first and dp what that gains. The heat sum Q (d,) grows by E v dt
-# and by r times half of the difference of what the two particles gain in energy E, which with spins
-# includes that of rotation. Velocities v are about that of the centre of mass, which is conserved, so that
-# a gas that moves as a whole has the sums of one at rest. A particle's velocity is constant in a step
-# without walls and pull, so nothing is approximated. The collisions' part of S is summed by itself too.
+# The stress sum S (d, d) grows by m v v dt during flight, and by r dp at a collision, with r the vector from
+# the second particle to the first and dp the momentum gained by the first. The heat sum Q (d,) grows by E v
+# dt, and at a collision by r times half of the difference of the energy gains of the two particles. The
+# energy E includes rotation if there are spins. Velocities v are relative to the velocity of the centre of
+# mass, which is conserved: a gas that moves as a whole has the sums of a gas at rest. A particle's velocity
+# is constant in a step without walls and gravity, so nothing is approximated. The collisional part of S is
+# also summed separately.
 #
-# The sums of a cell are made by one thread and added exactly, so that they do not depend on threads.
+# The sums of a cell are computed by one thread and added exactly, so that they do not depend on the number of
+# threads.
 
 
 class Stress(NamedTuple):
-    """By thread: sums (threads, 2 d^2 + d, WIDTH), those of S, by rows, of its part from collisions, and of
-    Q; cell (threads, 2 d^2 + d), what the present cell adds; before (threads, 2, d + 1), velocity and energy
-    of two particles before they collide. drift (d,): the velocity of the centre of mass."""
+    """Sums of the stress tensor and of the heat flux, by thread.
+
+    Attributes
+    ----------
+    sums : (threads, 2 d^2 + d, WIDTH), sums of S by rows, of its collisional part, and of Q
+    cell : (threads, 2 d^2 + d), contribution of the present cell
+    before : (threads, 2, d + 1), velocity and energy of two particles before their collision
+    drift : (d,), velocity of the centre of mass
+    """
 
     sums: np.ndarray
     cell: np.ndarray
@@ -218,13 +243,13 @@ class Stress(NamedTuple):
 
 @inner_helper
 def velocity_about(particles, slot, axis, stress):
-    """A component of the velocity of the particle in a slot about that of the centre of mass."""
+    """Return a component of a particle's velocity relative to the centre of mass."""
     return particles.data[velocity_row(particles, axis), slot] - stress.drift[axis]
 
 
 @inner_helper
 def energy_of(particles, slot, context, stress, law):
-    """The kinetic energy of the particle in a slot, likewise."""
+    """Return the kinetic energy of the particle in a slot, relative to the centre of mass."""
     workspace = context.workspace
     kind = kind_in(particles, slot, workspace)
     square = 0.0
@@ -243,7 +268,7 @@ def energy_of(particles, slot, context, stress, law):
 
 @inner_helper
 def add_flight(particles, slot, context, stress, law):
-    """Add what the particle in a slot carries in a step."""
+    """Add the transport by the flight of the particle in a slot during a step."""
     d, workspace, cell = len(context.space.lengths), context.workspace, stress.cell[context.part]
     mass = workspace.mass[kind_in(particles, slot, workspace)]
     energy = energy_of(particles, slot, context, stress, law)
@@ -256,7 +281,7 @@ def add_flight(particles, slot, context, stress, law):
 
 @inner_helper
 def finish_cell(context, stress):
-    """Move the sums of the present cell to those of its thread."""
+    """Move the sums of the present cell to the sums of its thread."""
     cell, sums = stress.cell[context.part], stress.sums[context.part]
     for n in range(len(cell)):
         add_exact(sums[n], cell[n])
@@ -265,7 +290,7 @@ def finish_cell(context, stress):
 
 @inner_kernel
 def add_flights(particles, cells, grid, context, stress, law):
-    """Add what the particles of some cells, from cells[0] to cells[1], carry in a step."""
+    """Add the transport by the flights of the particles of the cells from cells[0] to cells[1]."""
     for cell in range(cells[0], cells[1]):
         for slot in range(np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])):
             add_flight(particles, slot, context, stress, law)
@@ -274,7 +299,7 @@ def add_flights(particles, cells, grid, context, stress, law):
 
 @inner_helper
 def note_pair(particles, pair, context, stress, law):
-    """Keep velocities and energies of the particles in two slots, which are to collide."""
+    """Store velocities and energies of the particles in two slots before their collision."""
     before, d = stress.before[context.part], len(context.space.lengths)
     for n in range(2):
         for k in range(d):
@@ -284,8 +309,10 @@ def note_pair(particles, pair, context, stress, law):
 
 @inner_helper
 def add_contact(particles, pair, apart, context, stress, law):
-    """Add what has passed between the particles in two slots since `note_pair`. apart (3,): the vector from
-    the second to the first."""
+    """Add the transfer between the particles in two slots since `note_pair`.
+
+    apart : (3,), vector from the second particle to the first
+    """
     before, cell = stress.before[context.part], stress.cell[context.part]
     d, workspace = len(context.space.lengths), context.workspace
     mass = workspace.mass[kind_in(particles, pair[0], workspace)]
@@ -299,24 +326,27 @@ def add_contact(particles, pair, apart, context, stress, law):
             cell[d * d + d * k + n] += apart[k] * gained
 
 
-_ROUNDED = 1.0 + 1e-12  # a chance above 1 by more than rounding
+_ROUNDED = 1.0 + 1e-12  # probability above 1 by more than rounding
 
 
 @inner_helper
 def cross_section(sigma, dimension):
-    """The area (3D) or width (2D) in which particles with the distance sigma at contact meet."""
+    """Return the cross-section, an area (3D) or width (2D), for a contact distance sigma."""
     return 3.141592653589793 * sigma * sigma if dimension == 3 else 2.0 * sigma
 
 
 @inner_helper
 def widened(x, y, low, high):
-    """A range that holds x and y as well."""
+    """Extend a range so that it contains x and y."""
     return min(min(x, y), low), max(max(x, y), high)
 
 
 @inner_helper
 def bounds_of(u, v, w, first, end):
-    """The ranges of three arrays, in one loop: a minimum waits for the one before."""
+    """Return the ranges of three arrays, found in one loop.
+
+    Each minimum waits for the one before it, so three arrays in one loop take no longer than one array.
+    """
     low_u = high_u = u[first]
     low_v = high_v = v[first]
     low_w = high_w = w[first]
@@ -329,7 +359,7 @@ def bounds_of(u, v, w, first, end):
 
 @inner_helper
 def section_of(particles, pair, context):
-    """The cross-section of the particles in two slots."""
+    """Return the cross-section of the particles in two slots."""
     d, kinds = len(context.space.lengths), context.workspace
     if len(kinds.kind) == 0:
         return cross_section(2.0 * kinds.largest, d)
@@ -339,7 +369,10 @@ def section_of(particles, pair, context):
 
 @inner_helper
 def scatter_equal(particles, pair, g, square, counter):
-    """An elastic collision of spheres of equal mass: their relative velocity g (3,) becomes isotropic."""
+    """Apply an elastic collision to spheres of equal mass.
+
+    Their relative velocity g (3,) becomes isotropic.
+    """
     i, j = pair
     half = 0.5 * sqrt(square)
     direction = unit_vector(counter[0], counter[1], counter[2], counter[3])
@@ -352,8 +385,11 @@ def scatter_equal(particles, pair, g, square, counter):
 
 @inner_helper
 def collide_pair(particles, pair, g, square, counter, context, law):
-    """Let the particles in two slots collide. g (3,): their relative velocity, second minus first; counter:
-    of the random numbers."""
+    """Apply a collision to the particles in two slots.
+
+    g : (3,), relative velocity, second minus first
+    counter : key, step, cell and trial of the random numbers
+    """
     d, kinds = len(context.space.lengths), context.workspace
     if law is None:
         if d == 3 and len(kinds.kind) == 0:
@@ -373,7 +409,7 @@ def collide_pair(particles, pair, g, square, counter, context, law):
 
 @inner_helper
 def between(particles, pair):
-    """(3,) the vector from the second to the first of the particles in two slots of a cell."""
+    """Return the vector (3,) from the second to the first of the particles in two slots."""
     x, y = particles.data[position_row(particles, 0)], particles.data[position_row(particles, 1)]
     z = particles.data[position_row(particles, len(particles.images) - 1)]
     i, j = pair
@@ -382,8 +418,11 @@ def between(particles, pair):
 
 @inner_helper
 def collide_cell(particles, cell, slots, volume, context, law, stress):
-    """Make the collisions of one step in a cell, whose particles are in the slots from slots[0] to
-    slots[1]. The stress is that of the algorithm: what passes has passed between two places of the cell."""
+    """Perform the collisions of one step in a cell.
+
+    The particles of the cell are in the slots from slots[0] to slots[1]. In the stress of the algorithm,
+    momentum is transferred between two points of the cell.
+    """
     first, end = slots
     d, number, key, step = (
         len(context.space.lengths),
@@ -436,7 +475,7 @@ def collide_cell(particles, cell, slots, volume, context, law, stress):
 
 @inner_kernel
 def collide_cells(particles, cells, grid, context, law, stress):
-    """Make the collisions of one step in one thread's cells, from cells[0] to cells[1]."""
+    """Perform the collisions of one step in the cells of one thread, from cells[0] to cells[1]."""
     for cell in range(cells[0], cells[1]):
         slots = np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])
         if slots[1] - slots[0] > 1:

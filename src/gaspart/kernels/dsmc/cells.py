@@ -1,8 +1,8 @@
-"""The cells, and bringing the particles in memory into their order.
+"""Cells, and the sort of particles in memory by cell.
 
-A counting sort by threads: each counts the particles of its slots in each cell, and puts them into the cell
-behind those of the threads before it. So the order within a cell is that of the slots before, whatever the
-number of threads.
+A counting sort by threads: each thread counts the particles of its slots in each cell, and puts them into the
+cell after the particles of the threads before it. So the order within a cell is the order of the previous
+slots, for any number of threads.
 """
 
 import numpy as np
@@ -15,13 +15,13 @@ _ONE = np.uint32(1)  # whole numbers of this type index arrays without a test fo
 
 @inner_helper
 def coordinate(x, origin, inverse, per_side):
-    """Which cell along an axis holds coordinate x; the outermost one for x outside."""
+    """Return the index along an axis of the cell that contains x; outside, the outermost cell."""
     return min(max(np.int32((x - origin) * inverse), np.int32(0)), np.int32(per_side - 1))
 
 
 @inner_kernel
 def add_coordinates(x, origin, inverse, per_side, stride, cell):
-    """Add to the cells (n,) of particles the term of their coordinates x (n,) along one axis."""
+    """Add the contribution of one axis to the cell numbers (n,) of particles at x (n,)."""
     for n in range(len(x)):
         cell[n] += np.uint32(coordinate(x[n], origin, inverse, per_side) * stride)
 
@@ -39,7 +39,7 @@ def locate(particles, first, end, grid):
 
 @inner_kernel
 def count(first, end, part, grid):
-    """Count one thread's slots, from `first` to `end`, in each cell."""
+    """Count the slots of one thread, from `first` to `end`, in each cell."""
     counts = grid.counts[part]
     counts[:] = 0
     for cell in grid.cell[first:end]:
@@ -48,7 +48,7 @@ def count(first, end, part, grid):
 
 @inner_kernel
 def find_starts(grid):
-    """Find where each cell's slots begin, and in `counts` where those of each thread do."""
+    """Find the first slot of each cell, and in `counts` of each thread in a cell."""
     counts, starts = grid.counts, grid.starts
     place = np.uint32(0)
     for cell in range(counts.shape[1]):
@@ -62,7 +62,7 @@ def find_starts(grid):
 
 @inner_kernel
 def put_in_order(first, end, part, grid):
-    """Write into `order` the slots from `first` to `end`, one thread's, each at its new place."""
+    """Write one thread's slots, from `first` to `end`, to their new positions in `order`."""
     counts, order = grid.counts[part], grid.order
     for slot in range(first, end):
         cell = grid.cell[slot]
@@ -73,15 +73,17 @@ def put_in_order(first, end, part, grid):
 
 @inner_kernel
 def gather(values, order, permuted):
-    """permuted[n] becomes values[order[n]]."""
+    """Set permuted[n] to values[order[n]] for all n."""
     for n in range(len(order)):
         permuted[n] = values[order[n]]
 
 
 @inner_helper
 def gather_row(particles, row, first, end, grid):
-    """Write one of the rows of positions and velocities into the spare row, in the new order, for the new
-    slots from `first` to `end`."""
+    """Write a row of positions or velocities in the new order to the spare row.
+
+    Only the new slots from `first` to `end` are written.
+    """
     rows = particles.rows
     spare = particles.data[rows[len(rows) - 2]]
     gather(particles.data[rows[row]], grid.order[first:end], spare[first:end])
@@ -89,7 +91,7 @@ def gather_row(particles, row, first, end, grid):
 
 @inner_helper
 def gather_numbers(particles, first, end, grid):
-    """The same for the particles' numbers."""
+    """Write the particles' numbers in the new order to the other row, from `first` to `end`."""
     row = number_row(particles)
     other = particles.numbers[1 - row]
     gather(particles.numbers[row], grid.order[first:end], other[first:end])
@@ -97,7 +99,7 @@ def gather_numbers(particles, first, end, grid):
 
 @inner_helper
 def swap_row(particles, row):
-    """Let the spare row be one of the rows, and that the spare one."""
+    """Exchange the spare row with a row of positions or velocities."""
     rows = particles.rows
     spare = rows[len(rows) - 2]
     rows[len(rows) - 2] = rows[row]
@@ -106,8 +108,10 @@ def swap_row(particles, row):
 
 @inner_kernel
 def share_cells(grid, shares):
-    """Divide the cells among threads, shares[n] to shares[n + 1] (threads + 1,) each, with about as many
-    particles."""
+    """Divide the cells among threads so that each has about the same number of particles.
+
+    shares : (threads + 1,), cells shares[n] to shares[n + 1] belong to thread n
+    """
     parts, cells = len(shares) - 1, len(grid.starts) - 1
     total = np.int64(grid.starts[cells])
     shares[0], shares[parts] = 0, cells

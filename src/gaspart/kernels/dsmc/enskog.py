@@ -1,18 +1,19 @@
-"""Collisions of a dense gas: pairs a diameter apart, more frequent by the contact value of the local density.
+"""Collisions of a dense gas between pairs a diameter apart.
 
-The scheme of Montanero & Santos, Phys. Rev. E 54, 438 (1996), and Phys. Fluids 9, 2057 (1997), for the Enskog
-equation: a particle draws a unit vector e, and its partner in the cell that holds the point a diameter away
-along e; they collide with the impulse along e at a rate proportional to their approach along it. Momentum
-and energy are conserved in each collision, and what passes has passed over a diameter. Trials follow one
-another as in `boltzmann`, cell by cell: the bound of a cell comes from the most particles and the highest
-speeds in any cell within reach, and is raised by a collision that exceeds it.
+The collision rate is multiplied by the contact value at the local density. The scheme is by Montanero &
+Santos, Phys. Rev. E 54, 438 (1996), and Phys. Fluids 9, 2057 (1997), for the Enskog equation: a particle
+draws a unit vector e, and its partner in the cell that holds the point a diameter away along e; they collide
+with the impulse along e at a rate proportional to their approach along it. Momentum and energy are conserved
+in each collision, and both are transferred over a diameter. Trials follow one another as in `boltzmann`, cell
+by cell: the bound of a cell comes from the largest number of particles and the highest speeds in any cell
+within reach, and is raised by a collision that exceeds it.
 
-A trial in a cell changes particles up to a reach away, so that threads cannot take any cells they like. The
-cells are in slabs along one axis, an even number of them, each at least two reaches wide: what trials in one
-slab change is out of reach of the next slab but one. All even slabs come first, at the same time, and then
-all odd ones; within a slab cell follows cell. This order is the same for any number of threads. A trial lets
-the bounds of its own slab know of higher speeds at once; those of the other slabs are found again before
-these have their turn.
+A trial in a cell changes particles up to a reach away, so that threads cannot work on arbitrary cells. The
+cells are in slabs along one axis, an even number of them, each at least two reaches wide: a trial in one slab
+changes no particle within reach of the next slab but one. All even slabs come first, at the same time, and
+then all odd ones; within a slab cell follows cell. This order is the same for any number of threads. A trial
+updates the bounds of its own slab at once if a speed increases; the bounds of the other slabs are found again
+before their trials begin.
 """
 
 from math import sqrt
@@ -47,20 +48,31 @@ from gaspart.kernels.dsmc.model import (
 from gaspart.kernels.physics.exact_sum import add_exact
 
 FILLED, SURFACE = range(2)
-KIND_BLOCK = 255  # of a trial's random words: the partner's kind
+KIND_BLOCK = 255  # block of a trial's random words for the partner's kind
 _FULLEST = 0.7  # packing fraction up to which contact values are evaluated
-_ROUNDED = 1.0 + 1e-12  # a chance above 1 by more than rounding
+_ROUNDED = 1.0 + 1e-12  # probability above 1 by more than rounding
 
 
 class Dense(NamedTuple):
-    """Of each cell (cells,): fields (2, cells), the sums of r^d and r^(d-1) of its particles per volume,
-    times the volume of a unit ball, smoothed in time; speed, the highest of its particles beside `drift`
-    (d,); near_speed, the highest in any cell within reach, `reach` (d,) cells along each axis; near_count,
-    the most particles in any of these; room, for the search of these. wraps (d,): whether the first and the
-    last cell along an axis are neighbours. slabs (slabs + 1,): the first cell of each along `axis`, and the
-    number of cells there. ball: the volume of a unit ball; weight: of a step in the smoothed
-    fields, 0 if these are known. slope, bend: of the contact value, see `contact_value`. highest (1,): the
-    highest contact value of any two particles.
+    """Local density, bounds and slabs of the cells of a dense gas.
+
+    Attributes
+    ----------
+    fields : (2, cells), sums of r^d and r^(d-1) of the particles of a cell per volume, times the volume of a
+        unit ball, smoothed in time
+    speed : (cells,), highest speed of the particles of a cell, relative to `drift`
+    near_speed : (cells,), highest speed in any cell within reach
+    near_count : (cells,), largest number of particles in any cell within reach
+    room : (cells,), workspace for the search of these maxima
+    reach : (d,), reach in cells along each axis
+    wraps : (d,), whether the first and the last cell along an axis are neighbours
+    axis : axis along which the cells are divided into slabs
+    slabs : (slabs + 1,), first cell of each slab along `axis`, and the number of cells there
+    drift : (d,), velocity of the centre of mass
+    ball : volume of a unit ball
+    weight : weight of a step in the smoothed fields, 0 if the fields are known
+    slope, bend : coefficients of the contact value, see `contact_value`
+    highest : (1,), highest contact value of any two particles
     """
 
     fields: np.ndarray
@@ -82,8 +94,11 @@ class Dense(NamedTuple):
 
 @inner_helper
 def contact_value(filled, surface, radius, dense):
-    """The pair distribution at contact 1/f + slope X/f^2 + bend X^2/f^3, f = 1 - filled, X = 2 surface
-    `radius`, with `radius` the product of two radii over their sum. See `engines.dsmc.defaults`."""
+    """Return the contact value of the pair distribution, 1/f + slope X/f^2 + bend X^2/f^3.
+
+    Here f = 1 - filled and X = 2 surface `radius`, with `radius` the product of two radii divided by their
+    sum. See `engines.dsmc.defaults`.
+    """
     free = 1.0 - min(filled, _FULLEST)
     ratio = 2.0 * surface * radius / free
     return (1.0 + ratio * (dense.slope + dense.bend * ratio)) / free
@@ -91,7 +106,7 @@ def contact_value(filled, surface, radius, dense):
 
 @inner_kernel
 def sliding_maximum(values, room, reach, stride, per_side, wraps):
-    """Along one axis: values become the highest of those within reach, by way of `room`."""
+    """Replace values by the maximum within reach along one axis, with `room` as workspace."""
     number = len(values)
     for n in range(number):
         room[n] = values[n]
@@ -113,8 +128,10 @@ def sliding_maximum(values, room, reach, stride, per_side, wraps):
 
 @inner_kernel
 def look_at_cells(particles, cells, grid, workspace, dense):
-    """Find the highest speed and the number of particles of each of some cells, from cells[0] to cells[1],
-    and smooth their fields."""
+    """Find highest speed and number of particles of the cells from cells[0] to cells[1].
+
+    The fields of these cells are smoothed if the weight is positive.
+    """
     d = len(particles.images)
     if dense.weight > 0.0:
         smooth(particles, cells, grid, workspace, dense)
@@ -133,7 +150,7 @@ def look_at_cells(particles, cells, grid, workspace, dense):
 
 @inner_kernel
 def find_bounds(grid, workspace, dense):
-    """Find what bounds the trials of each cell, after `look_at_cells`."""
+    """Find the bounds of the trials of each cell, after `look_at_cells`."""
     filled = surface = 0.0
     for cell in range(len(grid.starts) - 1):
         filled = max(filled, dense.fields[FILLED, cell])
@@ -147,7 +164,7 @@ def find_bounds(grid, workspace, dense):
 
 @inner_kernel
 def find_near_speeds(grid, dense):
-    """Find the highest speed in any cell within reach of each."""
+    """Find the highest speed in any cell within reach of each cell."""
     for cell in range(len(grid.starts) - 1):
         dense.near_speed[cell] = dense.speed[cell]
     for k in range(len(grid.per_side)):
@@ -157,7 +174,7 @@ def find_near_speeds(grid, dense):
 
 @inner_kernel
 def smooth(particles, cells, grid, workspace, dense):
-    """Let the fields of some cells follow what is in them now."""
+    """Update the smoothed fields of some cells by their present particles."""
     d = len(particles.images)
     factor = dense.ball / grid.volume
     for cell in range(cells[0], cells[1]):
@@ -173,7 +190,7 @@ def smooth(particles, cells, grid, workspace, dense):
 
 @inner_helper
 def cell_at(particles, slot, sigma, direction, grid, context, dense):
-    """The cell at a distance from the particle in a slot; -1 outside the container."""
+    """Return the cell at a distance from the particle in a slot; -1 outside the container."""
     found, lengths = 0, context.space.lengths
     for k in range(len(lengths)):
         x = particles.data[position_row(particles, k), slot] + sigma * direction[k]
@@ -193,7 +210,7 @@ def cell_at(particles, slot, sigma, direction, grid, context, dense):
 
 @inner_kernel
 def raise_speed(cell, slab, speed, grid, dense):
-    """Note a speed in a cell that is above those before, and let the cells of a slab within reach know."""
+    """Store a higher speed of a cell, and update the cells of a slab within reach."""
     dense.speed[cell] = speed
     d = len(dense.reach)
     first, count = (0, 0, 0), (1, 1, 1)
@@ -224,7 +241,7 @@ def raise_speed(cell, slab, speed, grid, dense):
 
 @inner_helper
 def note_speed(particles, slot, cell, slab, grid, dense):
-    """Let the bounds of a slab hold for a particle whose velocity has changed."""
+    """Update the bounds of a slab after a change of a particle's velocity."""
     square = 0.0
     for k in range(len(particles.images)):
         v = particles.data[velocity_row(particles, k), slot] - dense.drift[k]
@@ -235,7 +252,11 @@ def note_speed(particles, slot, cell, slab, grid, dense):
 
 @inner_helper
 def collide_at(particles, pair, kinds, direction, sigma, context, law, stress):
-    """A contact of the particles in two slots, of these kinds, along a direction. Counts |r . dp|."""
+    """Apply a collision along a direction to two particles, and count |r . dp|.
+
+    pair : slots of the particles
+    kinds : kinds of the particles
+    """
     workspace = context.workspace
     if stress is not None:
         note_pair(particles, pair, context, stress, law)
@@ -257,7 +278,10 @@ def collide_at(particles, pair, kinds, direction, sigma, context, law, stress):
 
 @inner_helper
 def approach_along(particles, pair, direction):
-    """How fast the particles in two slots approach each other along a direction, from the first on."""
+    """Return the speed at which two particles approach along a direction.
+
+    The direction points from the first particle to the second.
+    """
     approach = 0.0
     for k in range(len(particles.images)):
         row = velocity_row(particles, k)
@@ -267,7 +291,7 @@ def approach_along(particles, pair, direction):
 
 @inner_helper
 def partner_of(particles, slot, sigma, direction, pick, grid, context, dense):
-    """The partner of the particle in a slot: (its slot, its cell); -1 if the draw finds none."""
+    """Return slot and cell of the partner drawn for a particle, or -1."""
     cell = cell_at(particles, slot, sigma, direction, grid, context, dense)
     if cell < 0:
         return np.int64(-1), np.int64(-1)
@@ -279,8 +303,10 @@ def partner_of(particles, slot, sigma, direction, pick, grid, context, dense):
 
 @inner_helper
 def relative_chance(pair, cells, kinds, largest, dense, workspace, dimension):
-    """What sizes and density let two particles of these kinds in two cells collide, over what is possible at
-    most."""
+    """Return the probability factor of size and density, divided by its largest possible value.
+
+    The particles are in two cells; `kinds` are their kinds.
+    """
     one, other = workspace.radius[kinds[0]], workspace.radius[kinds[1]]
     size = (one + other) / (2.0 * workspace.largest)
     filled = 0.5 * (dense.fields[FILLED, cells[0]] + dense.fields[FILLED, cells[1]])
@@ -291,8 +317,11 @@ def relative_chance(pair, cells, kinds, largest, dense, workspace, dimension):
 
 @inner_helper
 def try_once(particles, counter, words, bound, grid, context, dense, options):
-    """One trial. counter: key, step, cell and trial; options: the law, the sums of the stress, and the slab.
-    Returns whether it is a collision, and whether its chance exceeded 1."""
+    """Perform one trial; return whether it is a collision, and whether its probability exceeded 1.
+
+    counter : key, step, cell and trial
+    options : the law, the sums of the stress, and the slab
+    """
     key, step, cell, trial = counter
     law, stress, slab = options
     workspace, d = context.workspace, len(context.space.lengths)
@@ -324,8 +353,12 @@ def try_once(particles, counter, words, bound, grid, context, dense, options):
 
 @inner_helper
 def collide_dense_cell(particles, cell, rate, grid, context, dense, options):
-    """Make the collisions of one step in a cell. rate: of trials, per particle in the cell, most of them in
-    one within reach and bound of speed; options: as of `try_once`."""
+    """Perform the collisions of one step in a cell.
+
+    rate : rate of trials divided by the number of particles in the cell, by the largest number of particles
+        in a cell within reach, and by the bound of the speed
+    options : the options of `try_once`
+    """
     workspace = context.workspace
     counts, key, step = workspace.counts[context.part], workspace.key, workspace.clock[0]
     number = np.int64(grid.starts[cell + 1]) - np.int64(grid.starts[cell])
@@ -347,7 +380,7 @@ def collide_dense_cell(particles, cell, rate, grid, context, dense, options):
 
 @inner_kernel
 def collide_slab(particles, slab, grid, context, dense, law, stress):
-    """Make the collisions of one step in a slab, cell after cell."""
+    """Perform the collisions of one step in a slab, cell after cell."""
     workspace, d = context.workspace, len(context.space.lengths)
     sigma = 2.0 * workspace.largest
     around = 6.283185307179586 * (sigma if d == 2 else 2.0 * sigma * sigma)

@@ -1,8 +1,8 @@
-"""One step after another: motion, sort into cells, collisions.
+"""Sequence of the steps: motion, sort into cells, collisions.
 
-The parts of a step that threads share are in functions of their own; with `threads` None there is one thread,
-and machine code in which others do not exist. numba passes no tuples in tuples to threads: a `ThreadContext`
-is put together there. What a particle meets does not depend on which thread works on it.
+The parts of a step that threads share are functions of their own; with `threads` None there is one thread,
+and the machine code has no other threads. numba passes no nested tuples to threads, so each thread makes its
+own `ThreadContext`. The result for a particle does not depend on the thread that works on it.
 """
 
 import numpy as np
@@ -32,14 +32,14 @@ from gaspart.kernels.step.model import part_of
 
 @inner_helper
 def move_part(particles, grid, context, parts, gravity, faces, law):
-    """Make the motion of one step for one of all parts of the slots."""
+    """Perform the motion of one step for one part of the slots."""
     slots = part_of(context.part, parts, particles.data.shape[1])
     move(particles, slots, grid, context, gravity, faces, law)
 
 
 @inner_parallel_kernel
 def move_shared(particles, grid, workspace, lengths, periodic, gravity, faces, law):
-    """`move_part` for all parts."""
+    """Perform `move_part` for all parts."""
     parts = len(grid.counts)
     for part in prange(parts):
         context = ThreadContext(Space(lengths, periodic, workspace.margin), workspace, part)
@@ -48,7 +48,7 @@ def move_shared(particles, grid, workspace, lengths, periodic, gravity, faces, l
 
 @inner_parallel_kernel
 def order_shared(particles, grid):
-    """`put_in_order` for all parts."""
+    """Perform `put_in_order` for all parts."""
     parts = len(grid.counts)
     for part in prange(parts):
         slots = part_of(part, parts, particles.data.shape[1])
@@ -57,7 +57,7 @@ def order_shared(particles, grid):
 
 @inner_parallel_kernel
 def gather_shared(particles, row, grid):
-    """`gather_row`, or for row -1 `gather_numbers`, for all parts."""
+    """Perform `gather_row`, or for row -1 `gather_numbers`, for all parts."""
     parts = len(grid.counts)
     for part in prange(parts):
         slots = part_of(part, parts, particles.data.shape[1])
@@ -69,7 +69,7 @@ def gather_shared(particles, row, grid):
 
 @inner_helper
 def collide_part(particles, cells, grid, context, law, stress):
-    """Make the collisions of one step in one thread's cells, from cells[0] to cells[1]."""
+    """Perform the collisions of one step in the cells of one thread, from cells[0] to cells[1]."""
     if stress is not None:
         add_flights(particles, cells, grid, context, stress, law)
     collide_cells(particles, cells, grid, context, law, stress)
@@ -77,7 +77,7 @@ def collide_part(particles, cells, grid, context, law, stress):
 
 @inner_parallel_kernel
 def collide_shared(particles, shares, grid, workspace, lengths, periodic, law, stress):
-    """`collide_part` for all parts."""
+    """Perform `collide_part` for all parts."""
     for part in prange(len(shares) - 1):
         context = ThreadContext(Space(lengths, periodic, workspace.margin), workspace, part)
         collide_part(particles, (shares[part], shares[part + 1]), grid, context, law, stress)
@@ -85,7 +85,10 @@ def collide_shared(particles, shares, grid, workspace, lengths, periodic, law, s
 
 @inner_helper
 def look_at_part(particles, cells, grid, context, dense, law, stress):
-    """Find what one thread's cells, from cells[0] to cells[1], have before the collisions of a dense gas."""
+    """Prepare the cells of one thread for the collisions of a dense gas.
+
+    The cells are those from cells[0] to cells[1].
+    """
     if stress is not None:
         add_flights(particles, cells, grid, context, stress, law)
     look_at_cells(particles, cells, grid, context.workspace, dense)
@@ -93,7 +96,7 @@ def look_at_part(particles, cells, grid, context, dense, law, stress):
 
 @inner_parallel_kernel
 def look_at_shared(particles, shares, grid, workspace, lengths, dense, law, stress):
-    """`look_at_part` for all parts."""
+    """Perform `look_at_part` for all parts."""
     for part in prange(len(shares) - 1):
         context = ThreadContext(open_space(lengths), workspace, part)
         look_at_part(particles, (shares[part], shares[part + 1]), grid, context, dense, law, stress)
@@ -101,7 +104,10 @@ def look_at_shared(particles, shares, grid, workspace, lengths, dense, law, stre
 
 @inner_helper
 def collide_slabs(particles, turn, parts, grid, context, dense, law, stress):
-    """Make the collisions of one step in one thread's slabs, of every second one from `turn` on."""
+    """Perform the collisions of one step in one thread's slabs.
+
+    Every second slab is used, beginning with slab `turn`.
+    """
     slabs = part_of(context.part, parts, (len(dense.slabs) - turn) // 2)
     for n in range(slabs[0], slabs[1]):
         collide_slab(particles, turn + 2 * n, grid, context, dense, law, stress)
@@ -109,7 +115,7 @@ def collide_slabs(particles, turn, parts, grid, context, dense, law, stress):
 
 @inner_parallel_kernel
 def collide_slabs_shared(particles, turn, grid, workspace, lengths, dense, law, stress):
-    """`collide_slabs` for all parts."""
+    """Perform `collide_slabs` for all parts."""
     parts = len(grid.counts)
     for part in prange(parts):
         context = ThreadContext(open_space(lengths), workspace, part)
@@ -118,7 +124,7 @@ def collide_slabs_shared(particles, turn, grid, workspace, lengths, dense, law, 
 
 @inner_allocating_kernel
 def collide_dense(particles, grid, context, threads, law, dense, stress):
-    """Make the collisions of one step of a dense gas."""
+    """Perform the collisions of one step of a dense gas."""
     lengths, workspace = context.space.lengths, context.workspace
     if threads is None:
         look_at_part(particles, (0, len(grid.starts) - 1), grid, context, dense, law, stress)
@@ -138,7 +144,7 @@ def collide_dense(particles, grid, context, threads, law, dense, stress):
 
 @inner_helper
 def move_all(particles, grid, context, threads, gravity, faces, law):
-    """Make the motion of one step."""
+    """Perform the motion of one step."""
     space, workspace = context.space, context.workspace
     if threads is None:
         move_part(particles, grid, context, 1, gravity, faces, law)
@@ -148,7 +154,7 @@ def move_all(particles, grid, context, threads, gravity, faces, law):
 
 @inner_helper
 def sort_all(particles, grid, threads):
-    """Bring the particles in memory into the order of their cells."""
+    """Sort the particles in memory by their cells."""
     count = particles.data.shape[1]
     find_starts(grid)
     if threads is None:
@@ -170,7 +176,7 @@ def sort_all(particles, grid, threads):
 
 @inner_allocating_kernel
 def collide_all(particles, grid, context, threads, law, dense, stress):
-    """Make the collisions of one step."""
+    """Perform the collisions of one step."""
     space, workspace = context.space, context.workspace
     if dense is not None:
         collide_dense(particles, grid, context, threads, law, dense, stress)
@@ -184,9 +190,14 @@ def collide_all(particles, grid, context, threads, law, dense, stress):
 
 @allocating_kernel
 def run_steps(particles, grid, context, steps, threads, options):
-    """Make so many steps, or fewer if their length no longer fits. threads: their number, or None for one;
-    options: gravity (d,), the faces with a kind, the law, what a dense gas needs, the sums of the stress, and
-    the lengths that fit; each may be None. Returns how many steps it has made, at least one."""
+    """Perform a number of steps, or fewer if the length of a step no longer fits.
+
+    Returns the number of steps performed, at least one.
+
+    threads : number of threads, or None for one thread
+    options : gravity (d,), the faces with a kind, the law, the data of a dense gas, the sums of the stress,
+        and the lengths that fit; each may be None
+    """
     gravity, faces, law, dense, stress, pace = options
     for n in range(steps):
         if n > 0 and not still_fits(particles, pace):

@@ -1,9 +1,9 @@
-"""What the DSMC engine's kernels pass to one another: particles, grid, kinds, room, tally.
+"""Data structures of the DSMC engine's kernels: particles, grid, kinds, workspace, tally.
 
-A *slot* is a particle's present place in memory, the slots being in the order of the cells; `numbers` gives
-the particle's number. What several threads add up is exact (`physics.exact_sum`), so that the sums
-do not depend on the order of adding. The structures hold arrays and plain numbers only, because numba
-passes nothing else to threads.
+A *slot* is a particle's present position in memory; the slots are in the order of the cells, and `numbers`
+gives the particle's number. Sums of several threads are exact (`physics.exact_sum`), so that they do not
+depend on the order of addition. The structures hold only arrays and plain numbers, because numba passes no
+other types to threads.
 """
 
 from __future__ import annotations
@@ -20,13 +20,20 @@ from gaspart.kernels.physics.rng import normal_pair
 from gaspart.kernels.physics.running_sum import add
 
 COLLISIONS, TRIALS, EXCEEDED, UNFINISHED, FAR = range(5)
-PADDED = 8  # counts of a thread, a cache line
+PADDED = 8  # number of counts of a thread, a cache line
 
 
 class Particles(NamedTuple):
-    """By slot: data (2d + 1, N), rows of positions, velocities and one that is spare; numbers (2, N), of the
-    particles, in one row of them. rows (2d + 2,): in which rows of `data` the positions, the velocities and
-    the spare one are, and in which row the numbers. By particle: images (d, N)."""
+    """Particles by slot, and their periodic images by particle number.
+
+    Attributes
+    ----------
+    data : (2d + 1, N), rows of positions, of velocities, and one spare row, by slot
+    rows : (2d + 2,), row of `data` of each position, each velocity and the spare row, then the row of
+        `numbers` in use
+    numbers : (2, N), numbers of the particles by slot, in one of the two rows
+    images : (d, N), periodic images by particle
+    """
 
     data: np.ndarray
     rows: np.ndarray
@@ -35,10 +42,20 @@ class Particles(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """The cells: per_side (d,) along each axis; origin (d,), where the first begins; inverse (d,) of their
-    widths; strides (d,) of their index; volume of one. cell (N,), that of the particle in each slot; order
-    (N,): room for the sort; counts (threads, cells): of each thread's slots; starts (cells + 1,): the first
-    slot of each."""
+    """Grid of cells, and the sort of particles into them.
+
+    Attributes
+    ----------
+    per_side : (d,), number of cells along each axis
+    origin : (d,), lower end of the first cell
+    inverse : (d,), inverse widths of the cells
+    strides : (d,), strides of the index of a cell
+    volume : volume of a cell
+    cell : (N,), cell of the particle in each slot
+    order : (N,), workspace of the sort
+    counts : (threads, cells), number of each thread's slots in each cell
+    starts : (cells + 1,), first slot of each cell
+    """
 
     per_side: np.ndarray
     origin: np.ndarray
@@ -52,22 +69,31 @@ class Grid(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Constants and working arrays of a step. margin: 1 if walls stop surfaces, 0 if they stop centres; dt:
-    the length of a step; clock (1,): its number, counted from 0.
+    """Constants, working arrays and tally of a step.
 
-    By particle: kind (N,), or (0,) if all are alike; by kind (K,): radius, mass, inertia (moment of);
-    largest: the largest radius. key (2,): words of 32 bits for the random numbers of collisions; wall_key
-    (2,): of 64 bits, for those of thermal faces.
-
-    Of each thread, room for two particles as the event-driven engine's physics takes them: flights
-    (threads, 2), see `kernels.model.flight_dtype`; inverse_mass, inverse_inertia (threads, 2); pair_spins
-    (threads, 2, 3); sums (threads, 2, 2).
-
-    The tally, by thread: counts (threads, 8), see the names at the module's top; virial and loss (threads,
-    WIDTH); wall_hits (threads, 2d); wall_impulse and wall_heat (threads, 2d, WIDTH), see `exact_sum`;
-    per_area (threads, 2d, d + 1, WIDTH), the momentum that each face is given along each axis and the energy,
-    each per area that centres of particles of the kind can reach. inverse_area (K, 2d): one divided by that
-    area. Both have no entry unless these areas differ.
+    Attributes
+    ----------
+    margin : 1 if walls stop surfaces, 0 if they stop centres
+    dt : length of a step
+    clock : (1,), number of the step, counted from 0
+    kind : (N,), kind of each particle, or (0,) if all are alike
+    radius, mass, inertia : (K,), by kind; `inertia` is the moment of inertia
+    largest : largest radius
+    key : (2,), words of 32 bits for the random numbers of collisions
+    wall_key : (2,), words of 64 bits for the random numbers of thermal faces
+    flights : (threads, 2), two particles in the form of the event-driven engine's physics, see
+        `kernels.model.flight_dtype`
+    inverse_mass, inverse_inertia : (threads, 2), inverses for these particles
+    pair_spins : (threads, 2, 3), spins of these particles
+    sums : (threads, 2, 2), sums of the collision law
+    counts : (threads, 8), see the names at the top of the module
+    virial, loss : (threads, WIDTH), exact sums, see `physics.exact_sum`
+    wall_hits : (threads, 2d), number of hits of each face
+    wall_impulse, wall_heat : (threads, 2d, WIDTH), exact sums of momentum and energy given to each face
+    inverse_area : (K, 2d), inverse of the area of a face that centres of particles of a kind can reach;
+        without entries unless these areas differ
+    per_area : (threads, 2d, d + 1, WIDTH), momentum along each axis and energy given to each face, divided by
+        that area; without entries unless these areas differ
     """
 
     margin: float
@@ -96,9 +122,15 @@ class Workspace(NamedTuple):
 
 
 class Faces(NamedTuple):
-    """Of the container's faces (2d,): kind and temperature of those that are thermal, see `kernels.model`,
-    as for accommodation and ramp; velocity (2d, d), and by thread shear (threads, 2d, d, WIDTH), the momentum
-    that they were given along each axis, both None if no face slides."""
+    """Thermal and sliding faces of the container.
+
+    Attributes
+    ----------
+    kind, level : (2d,), kind and temperature of the thermal faces, see `kernels.model`
+    velocity : (2d, d), velocities of the faces, or None if no face slides
+    shear : (threads, 2d, d, WIDTH), momentum given to each face along each axis, or None if no face slides
+    accommodation, ramp : see `kernels.model`
+    """
 
     kind: np.ndarray
     level: np.ndarray
@@ -109,7 +141,14 @@ class Faces(NamedTuple):
 
 
 class Law(NamedTuple):
-    """normal, tangential: restitution; spins (N, 3) by particle; viscous: see `kernels.model.ContactLaw`."""
+    """Collision law of particles with restitution and spins.
+
+    Attributes
+    ----------
+    normal, tangential : coefficients of restitution
+    spins : (N, 3), by particle
+    viscous : see `kernels.model.ContactLaw`
+    """
 
     normal: float
     tangential: float
@@ -118,7 +157,7 @@ class Law(NamedTuple):
 
 
 class ThreadContext(NamedTuple):
-    """The arguments of one thread of a step, number `part`."""
+    """Arguments of one thread of a step; `part` is its number."""
 
     space: Space
     workspace: Workspace
@@ -127,31 +166,31 @@ class ThreadContext(NamedTuple):
 
 @inner_helper
 def position_row(particles, axis):
-    """The row of `data` that holds the coordinates along an axis."""
+    """Return the row of `data` that holds the coordinates along an axis."""
     return particles.rows[axis]
 
 
 @inner_helper
 def velocity_row(particles, axis):
-    """The row of `data` that holds the velocities along an axis."""
+    """Return the row of `data` that holds the velocities along an axis."""
     return particles.rows[len(particles.images) + axis]
 
 
 @inner_helper
 def number_row(particles):
-    """The row of `numbers` that holds them."""
+    """Return the row of `numbers` that is in use."""
     return particles.rows[len(particles.rows) - 1]
 
 
 @inner_helper
 def number_at(particles, slot):
-    """The number of the particle in a slot."""
+    """Return the number of the particle in a slot."""
     return np.int64(particles.numbers[number_row(particles), slot])
 
 
 @inner_helper
 def kind_in(particles, slot, workspace):
-    """The kind of the particle in a slot."""
+    """Return the kind of the particle in a slot."""
     if len(workspace.kind) == 0:
         return np.int64(0)
     return np.int64(workspace.kind[number_at(particles, slot)])
@@ -159,26 +198,25 @@ def kind_in(particles, slot, workspace):
 
 @inner_helper
 def open_space(lengths):
-    """A space without faces."""
+    """Return a space without faces."""
     if len(lengths) == 3:
         return Space(lengths, (False, False, False), 0.0)
     return Space(lengths, (False, False), 0.0)
 
 
-# Random numbers of the collisions: a function of a key, the step, the cell and the trial, and of nothing
-# else.
+# Random numbers of the collisions: a function of a key, the step, the cell and the trial alone.
 
 
 _M0, _M1 = np.uint64(0xD2511F53), np.uint64(0xCD9E8D57)
 _W0, _W1 = np.uint64(0x9E3779B9), np.uint64(0xBB67AE85)
 _LOW, _HALF, _ROUNDS = np.uint64(0xFFFFFFFF), np.uint64(32), 10
-_BLOCK_BITS = np.uint64(8)  # of the counter's last word; what is above counts steps
+_BLOCK_BITS = np.uint64(8)  # bits of the block in the counter's last word; the higher bits count steps
 _TABLE_BITS = 7
 _WORD = 2.0**-32
 
 
 def _natural_log(x: float) -> float:
-    """ln x of a number near 1, by +, -, x and / alone."""
+    """Compute ln x of a number near 1 with +, -, x and / alone."""
     s = (x - 1.0) / (x + 1.0)
     total = 0.0
     for coefficient in reversed(LOG_SERIES):
@@ -194,9 +232,12 @@ _LOGS = np.array([_natural_log(x / 1.5) + _natural_log(1.2) + _natural_log(1.25)
 
 @inner_helper
 def words_of(key, step, cell, trial, block):
-    """Four random words of 32 bits, each in 64: Philox4x32-10 (Salmon, Moraes, Dror & Shaw, SC11 (2011)).
+    """Return four random words of 32 bits, each in a word of 64 bits.
 
-    key: (2,) words of 32 bits; step below 2^53, cell and trial below 2^32, block below 2^8: the counter.
+    The generator is Philox4x32-10 (Salmon, Moraes, Dror & Shaw, SC11 (2011)).
+
+    key : (2,), words of 32 bits
+    step, cell, trial, block : counter; step below 2^53, cell and trial below 2^32, block below 2^8
     """
     number = np.uint64(step)
     c0, c1, c2 = np.uint64(trial), np.uint64(cell), number & _LOW
@@ -213,21 +254,25 @@ def words_of(key, step, cell, trial, block):
 
 @inner_helper
 def fraction(word):
-    """A number above 0 and below 1, from a word of 32 bits."""
+    """Convert a word of 32 bits to a number above 0 and below 1."""
     return (np.float64(word) + 0.5) * _WORD
 
 
 @inner_helper
 def below(word, count):
-    """A whole number from 0 to count - 1, from a word of 32 bits; the chances differ by count / 2^32."""
+    """Convert a word of 32 bits to a whole number from 0 to count - 1.
+
+    The probabilities of these numbers differ by count / 2^32.
+    """
     return np.int64((word * np.uint64(count)) >> _HALF)
 
 
 @inner_helper
 def waiting_time(word):
-    """An exponential random number of mean 1, from a word of 32 bits: -ln of `fraction`, to 1e-12.
+    """Convert a word of 32 bits to an exponential random number of mean 1.
 
-    The word's leading bits choose an entry of a table, and a series does the rest.
+    The result is -ln of `fraction`, to 1e-12. The leading bits of the word choose an entry of a table; a
+    series gives the rest.
     """
     bits = np.float64(np.float64(word) + 0.5).view(np.int64)
     exponent = (bits >> 52) - 1023
@@ -238,16 +283,23 @@ def waiting_time(word):
     return (32 - exponent) * LN2 - (_LOGS[entry] + series)
 
 
-# How fast the particles are, and what length of a step fits that.
+# Mean speed of the particles, and the length of a step that fits it.
 #
-# A step can be divided into 2^level parts. A level fits if the mean speed is within its limits: not so high
-# that particles fly too far in a part, nor so low that the kicks of a part would change the speeds too
-# much.
+# A step can be divided into 2^level parts. A level fits if the mean speed is within its limits: below the
+# upper limit particles do not fly too far in a part, and above the lower limit the kicks of a part do not
+# change the speeds too much.
 
 
 class Pace(NamedTuple):
-    """low, high (levels,): the limits of the mean speed of each level; level: the present one; drifts (d,):
-    along which axes only the motion about the mean counts; fastest (1,): the highest mean speed found."""
+    """Lengths of a step and the speeds that they fit.
+
+    Attributes
+    ----------
+    low, high : (levels,), limits of the mean speed of each level
+    level : present level
+    drifts : (d,), whether only the motion relative to the mean counts along an axis
+    fastest : (1,), highest mean speed found
+    """
 
     low: np.ndarray
     high: np.ndarray
@@ -258,7 +310,7 @@ class Pace(NamedTuple):
 
 @inner_helper
 def drift_along(particles, axis, drifts):
-    """The mean velocity along an axis, if it does not count."""
+    """Return the mean velocity along an axis if it does not count as motion, otherwise 0."""
     total = 0.0
     if drifts[axis]:
         v = particles.data[velocity_row(particles, axis)]
@@ -270,7 +322,7 @@ def drift_along(particles, axis, drifts):
 
 @inner_helper
 def mean_speed(particles, drifts):
-    """That of all particles, 0 of none."""
+    """Return the mean speed of all particles; 0 if there are no particles."""
     d, count = len(particles.images), particles.data.shape[1]
     u = particles.data[velocity_row(particles, 0)]
     v = particles.data[velocity_row(particles, 1)]
@@ -287,7 +339,7 @@ def mean_speed(particles, drifts):
 
 @kernel
 def fitting_level(particles, pace):
-    """The first level that fits the particles; their number if none does."""
+    """Return the first level that fits the particles, or the number of levels."""
     speed = mean_speed(particles, pace.drifts)
     pace.fastest[0] = max(pace.fastest[0], speed)
     for level in range(len(pace.low)):
@@ -298,7 +350,7 @@ def fitting_level(particles, pace):
 
 @inner_helper
 def still_fits(particles, pace):
-    """Whether the present level does."""
+    """Return True if the present level fits the particles."""
     if pace is None:
         return True
     return fitting_level(particles, pace) == pace.level
@@ -318,8 +370,10 @@ def _energy(particles, slot, mass):
 
 @inner_helper
 def _kick(particles, slot, width, counter, mass, momentum):
-    """Kick one particle, and add to `momentum` (3,) what it takes. counter: the key and the number of the
-    kick."""
+    """Kick one particle, and add its change of momentum to `momentum` (3,).
+
+    counter : key and number of the kick
+    """
     key, number = counter
     i = number_at(particles, slot)
     one, other, block = normal_pair(key, i, number, 1)
@@ -336,8 +390,12 @@ def _kick(particles, slot, width, counter, mass, momentum):
 
 @kernel
 def kick_all(particles, workspace, width, counter, given):
-    """Kick all particles, with a width of `width` for mass 1, without changing the total momentum. counter:
-    see `_kick`; given (1, 2): the energy that they have been given, see `running_sum.add`."""
+    """Kick all particles without a change of the total momentum.
+
+    width : width of the distribution of kicks for mass 1
+    counter : see `_kick`
+    given : (1, 2), energy given to the particles, see `physics.running_sum.add`
+    """
     momentum, total = (0.0, 0.0, 0.0), 0.0
     for slot in range(particles.data.shape[1]):
         mass = workspace.mass[kind_in(particles, slot, workspace)]

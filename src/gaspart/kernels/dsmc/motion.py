@@ -1,7 +1,6 @@
-"""How particles move in one step: freely, then back into the container through its faces, and which cell they
-are in then.
+"""Motion of the particles in one step: free flight, return through faces, and the new cells.
 
-The free flight is a loop without branches; the particles of a block are looked at one by one only if any of
+The free flight is a loop without branches; the particles of a block are examined one by one only if one of
 them has left the container.
 """
 
@@ -19,8 +18,10 @@ _FURTHEST = 2.0**31  # periodic images are counted in 32 bits
 
 @inner_helper
 def wrap(particles, slot, axis, length, context):
-    """Bring a particle back into the container on a periodic axis. Notes one that is too far away to be
-    counted."""
+    """Move a particle back into the container on a periodic axis.
+
+    A particle is counted as FAR if its number of periodic images is too large to be stored.
+    """
     x = particles.data[position_row(particles, axis), slot]
     images = np.floor(x / length)
     if images != 0.0:
@@ -38,7 +39,7 @@ def wrap(particles, slot, axis, length, context):
 
 @inner_helper
 def is_beyond(particles, slot, radius, space):
-    """Whether a particle is beyond a wall."""
+    """Return True if a particle is beyond a wall."""
     beyond = False
     for k in range(len(space.lengths)):
         if not space.periodic[k]:
@@ -50,7 +51,10 @@ def is_beyond(particles, slot, radius, space):
 
 @inner_kernel
 def redo_flight_with_faces(particles, slot, which, context, gravity, faces, law):
-    """Make the step of a particle of a kind anew that has come beyond a wall."""
+    """Repeat the step of a particle that has crossed a wall, now with the faces.
+
+    which : kind of the particle
+    """
     dt, flights = context.workspace.dt, context.workspace.flights[context.part]
     for k in range(len(context.space.lengths)):
         x = particles.data[position_row(particles, k), slot]
@@ -70,8 +74,10 @@ def redo_flight_with_faces(particles, slot, which, context, gravity, faces, law)
 
 @inner_helper
 def bring_back_from_walls(particles, slots, context, gravity, faces, law):
-    """Make the step anew of the particles in some slots that have come beyond a wall. Returns their
-    number."""
+    """Repeat the step of the particles that have crossed a wall; return their number.
+
+    slots : first slot, and the end of the slots
+    """
     number = 0
     for slot in range(slots[0], slots[1]):
         which = kind_in(particles, slot, context.workspace)
@@ -83,7 +89,7 @@ def bring_back_from_walls(particles, slots, context, gravity, faces, law):
 
 @inner_helper
 def wrap_all(particles, slots, axis, length, context):
-    """Bring the particles in some slots back into the container on a periodic axis."""
+    """Move the particles in some slots back into the container on a periodic axis."""
     row = position_row(particles, axis)
     for slot in range(slots[0], slots[1]):
         if not 0.0 <= particles.data[row, slot] < length:
@@ -92,8 +98,7 @@ def wrap_all(particles, slots, axis, length, context):
 
 @inner_helper
 def advance_axis(particles, slots, axis, limits, dt, gravity):
-    """Move the particles in some slots along one axis; the number that are not within the limits (2,)
-    then."""
+    """Move the particles in some slots along one axis; return the number outside the limits."""
     first, end = slots
     x = particles.data[position_row(particles, axis), first:end]
     v = particles.data[velocity_row(particles, axis), first:end]
@@ -104,8 +109,10 @@ def advance_axis(particles, slots, axis, limits, dt, gravity):
 
 @inner_kernel
 def move(particles, slots, grid, context, gravity, faces, law):
-    """Make the motion of one step for one thread's slots, from slots[0] to slots[1], and count them in their
-    cells."""
+    """Perform the motion of one step for one thread's slots, and count them in their cells.
+
+    slots : first slot, and the end of the slots
+    """
     space, dt = context.space, context.workspace.dt
     inset = space.margin * context.workspace.largest
     for start in range(slots[0], slots[1], _BLOCK):

@@ -1,9 +1,9 @@
-"""Particles at the container's faces: hard by the law of contacts, or thermal.
+"""Hits of particles at the container's faces, which are hard, by the collision law, or thermal.
 
-Only a particle that a step has brought beyond a face comes here. It is put back to where the step began and
-flies from face to face until the step ends, under gravity on parabolas. However many hits that takes, all are
-made: those of smooth, elastic particles by whole periods if they are many, and bounces of others on a floor
-until they are too short to matter.
+This code is only used for a particle that a step has moved beyond a face. The particle returns to its
+position at the begin of the step and flies from face to face until the step ends, under gravity on parabolas.
+All hits are performed, whatever their number: the hits of smooth, elastic particles by whole periods if they
+are many, and the bounces of other particles on a floor until they are too short to matter.
 """
 
 from math import floor, inf, sqrt
@@ -21,18 +21,20 @@ from gaspart.kernels.physics.exact_sum import add_exact
 from gaspart.kernels.physics.rng import flux_speed, normal_pair
 
 _FEW = 64
-"""Hits of a particle in a step that are made one by one in any case, and have draws of their own."""
+"""Number of hits of a particle in a step that are always performed singly, with their own random numbers."""
 _MOST = 2**24
-"""At most so many hits that have no closed form; a step in which a particle has more is not finished."""
+"""Maximum number of hits without a closed form; a step with more hits of a particle is not finished."""
 _REST = 2.0**-20
-"""Of a step: the longest bounce of an inelastic or rough particle on a face that is taken for rest there."""
+"""Longest bounce of an inelastic or rough particle that counts as rest at a face, as a fraction of a step."""
 
 
 @inner_helper
 def time_to_face(y, u, a):
-    """Time until a particle at a height y over a face, with a speed u and an acceleration a, all inward,
-    comes to it, and the speed with which it does: the root of y + u t + a t^2/2 in the forms that do not
-    cancel. inf if it never does."""
+    """Return the time until a particle reaches a face, and its speed there.
+
+    The height y over the face, the speed u and the acceleration a are all directed inwards. The time is the
+    root of y + u t + a t^2/2 in the forms that do not cancel; inf if the particle never reaches the face.
+    """
     y = max(y, 0.0)
     square = u * u - 2.0 * y * a
     if square >= 0.0:
@@ -46,7 +48,7 @@ def time_to_face(y, u, a):
 
 @inner_helper
 def along(axis, upper, flights, radius, space, gravity):
-    """Height of a particle over a face, its speed and its acceleration, all inward."""
+    """Return height of a particle over a face, speed and acceleration, all directed inwards."""
     inset = space.margin * radius
     x, v, a = flights[0].position[axis], flights[0].velocity[axis], 0.0
     if gravity is not None:
@@ -58,8 +60,12 @@ def along(axis, upper, flights, radius, space, gravity):
 
 @inner_helper
 def next_face(flights, radius, space, gravity, resting):
-    """The next face that a particle comes to: (time from now, face, speed towards it); NONE if there is
-    none. resting: bits of the axes along which it rests."""
+    """Return the next face that a particle reaches: (time from now, face, speed towards it).
+
+    Without such a face, the time is infinite and the face NONE.
+
+    resting : bits of the axes along which the particle rests
+    """
     first, face, speed = inf, NONE, 0.0
     for k in range(len(space.lengths)):
         if space.periodic[k] or resting >> k & 1:
@@ -85,7 +91,7 @@ def fly_along(axis, flights, time, gravity):
 
 @inner_helper
 def fly(flights, time, space, gravity, resting):
-    """Move a particle along its flight."""
+    """Move a particle along its flight, except along axes on which it rests."""
     for k in range(len(space.lengths)):
         if not resting >> k & 1:
             fly_along(k, flights, time, gravity)
@@ -93,7 +99,7 @@ def fly(flights, time, space, gravity, resting):
 
 @inner_helper
 def put_at_face(face, speed, flights, radius, space):
-    """Put a particle at a face, with its speed towards it."""
+    """Place a particle at a face, with its speed towards the face."""
     axis, upper, inset = face // 2, face % 2 == 1, space.margin * radius
     flights[0].position[axis] = space.lengths[axis] - inset if upper else inset
     flights[0].velocity[axis] = speed if upper else -speed
@@ -101,9 +107,13 @@ def put_at_face(face, speed, flights, radius, space):
 
 @inner_kernel
 def draw_spin(i, level, inertia, key, counter, spins):
-    """Draw the spin of particle i, with `counter` its number of components, at a temperature `level`.
-    counter: besides, the number of the draw and the first block of random words that it may use. Returns the
-    energy that the face is given."""
+    """Draw the spin of a particle; return the energy given to the face.
+
+    i : number of the particle
+    level : temperature
+    counter : number of components of the spin, number of the draw, and first block of random words that the
+        draw may use
+    """
     components, number, block = counter
     width, given = sqrt(level / inertia), 0.0
     for k in range(3 - components, 3):
@@ -116,8 +126,10 @@ def draw_spin(i, level, inertia, key, counter, spins):
 
 @inner_helper
 def add_shear(face, mass, context, shear):
-    """Add the momentum along a face of the particle in a thread's room to what the face was given. mass:
-    negative where the particle takes it."""
+    """Add the particle's momentum along a face to the momentum given to the face.
+
+    mass : negative if the particle takes the momentum
+    """
     if shear is not None:
         workspace, part = context.workspace, context.part
         for k in range(shear.shape[2]):
@@ -128,7 +140,7 @@ def add_shear(face, mass, context, shear):
 
 @inner_helper
 def drag(face, mass, context, velocity, shear):
-    """Let the particle in a thread's room, which leaves a face, share its motion."""
+    """Add the velocity of a sliding face to the particle that leaves it."""
     if velocity is not None:
         for k in range(velocity.shape[1]):
             context.workspace.flights[context.part, 0].velocity[k] += velocity[face, k]
@@ -146,7 +158,10 @@ def press(face, which, impulse, context):
 
 @inner_helper
 def warm(face, which, heat, shear, context):
-    """Count the energy, and the momentum (3,) along a thermal face, that a particle of a kind gives to it."""
+    """Count the energy and the tangential momentum (3,) that a particle gives to a thermal face.
+
+    which : kind of the particle
+    """
     workspace, part = context.workspace, context.part
     add_exact(workspace.wall_heat[part, face], heat)
     if len(workspace.inverse_area) > 0:
@@ -159,15 +174,23 @@ def warm(face, which, heat, shear, context):
 
 @inner_helper
 def momentum_of(mass, flights):
-    """Return the momentum (3,) of the particle in a thread's room, with 0 for a third component in 2D."""
+    """Return the momentum (3,) of the particle in a thread's workspace.
+
+    The third component is 0 in two dimensions.
+    """
     velocity = flights[0].velocity
     return mass * velocity[0], mass * velocity[1], mass * velocity[2] if len(velocity) == 3 else 0.0
 
 
 @inner_kernel
 def leave_thermal(i, face, which, number, context, faces, law):
-    """Give particle i, of a kind, at a thermal face, the velocity of one that leaves it: the draw with this
-    number of its own. See `obstacles.thermal`."""
+    """Give a particle at a thermal face the velocity with which it leaves.
+
+    The velocity is random; see `obstacles.thermal`.
+
+    i, which : number and kind of the particle
+    number : number of the draw for this particle
+    """
     part, workspace, key = context.part, context.workspace, context.workspace.wall_key
     flights, mass, inertia = workspace.flights[part], workspace.mass[which], workspace.inertia[which]
     d, axis, side = len(context.space.lengths), face // 2, 1.0 if face % 2 else -1.0
@@ -204,7 +227,10 @@ def leave_thermal(i, face, which, number, context, faces, law):
 
 @inner_kernel
 def bounce(i, face, which, context, law):
-    """Reflect particle i, of a kind, in its place in a thread's room, at a hard face."""
+    """Reflect the particle in a thread's workspace at a hard face.
+
+    i, which : number and kind of the particle
+    """
     axis, side = face // 2, 1.0 if face % 2 else -1.0
     flights = context.workspace.flights[context.part]
     if law is None:
@@ -224,7 +250,10 @@ def bounce(i, face, which, context, law):
 
 @inner_helper
 def bounce_often(face, times, speed, which, context):
-    """Count that many elastic bounces of a smooth particle of a kind at a face, at one speed."""
+    """Count a number of elastic bounces of a smooth particle at a face, at one speed.
+
+    which : kind of the particle
+    """
     workspace = context.workspace
     workspace.wall_hits[context.part, face] += np.int64(times)
     press(face, which, 2.0 * workspace.mass[which] * speed * times, context)
@@ -232,7 +261,11 @@ def bounce_often(face, times, speed, which, context):
 
 @inner_helper
 def lean(face, which, left, context, gravity):
-    """Let a particle of a kind rest at a face for a time: the face carries its weight."""
+    """Put a particle to rest at a face for a time; the face carries its weight.
+
+    left : time
+    which : kind of the particle
+    """
     axis = face // 2
     context.workspace.flights[context.part, 0].velocity[axis] = 0.0
     press(face, which, context.workspace.mass[which] * abs(gravity[axis]) * left, context)
@@ -240,8 +273,11 @@ def lean(face, which, left, context, gravity):
 
 @inner_kernel
 def finish_axis(axis, left, which, context, gravity):
-    """Let a smooth, elastic particle in a thread's room fly along one axis, on which nothing depends, for a
-    time. Between the first bounce and the last ones whole periods of its motion are made at once."""
+    """Move a smooth, elastic particle along one axis for a time, with all its bounces.
+
+    The axes are independent. Between the first bounce and the last ones whole periods of the motion are
+    performed at once.
+    """
     space, workspace = context.space, context.workspace
     flights, radius = workspace.flights[context.part], workspace.radius[which]
     skipped = False
@@ -264,7 +300,7 @@ def finish_axis(axis, left, which, context, gravity):
         time, w = time_to_face(y, u, a)  # to the face across
         across, period = time < inf, 2.0 * time
         if not across:
-            period = 2.0 * speed / a  # the pull is towards this face, away from that one
+            period = 2.0 * speed / a  # the acceleration is towards this face, away from the face across
         if gravity is not None:
             if not period > left * 2.0**-53:
                 lean(face, which, left, context, gravity)
@@ -279,7 +315,7 @@ def finish_axis(axis, left, which, context, gravity):
 
 @inner_helper
 def finish_axes(left, which, context, gravity, resting):
-    """The same along all axes."""
+    """Move a smooth, elastic particle along all axes for a time, with all its bounces."""
     space = context.space
     for k in range(len(space.lengths)):
         if space.periodic[k]:
@@ -290,8 +326,10 @@ def finish_axes(left, which, context, gravity, resting):
 
 @inner_helper
 def comes_to_rest(face, speed, left, which, context, gravity, law):
-    """Whether a particle in a thread's room that comes to a hard face with a speed rests there: its bounces
-    are too short, and would be shorter still. Counts what it loses and what the face carries."""
+    """Return True if a particle rests at a hard face, and count its loss and weight.
+
+    A particle that hits a face rests there if its bounces are too short; later ones would be shorter still.
+    """
     workspace, axis = context.workspace, face // 2
     pull = gravity[axis] if face % 2 else -gravity[axis]  # towards the face
     shortest = 0.0
@@ -308,7 +346,10 @@ def comes_to_rest(face, speed, left, which, context, gravity, law):
 
 @inner_kernel
 def fly_among_faces(i, which, context, gravity, faces, law):
-    """Let particle i, of a kind, in its place in a thread's room, fly for a step."""
+    """Move the particle in a thread's workspace for a step, with all its hits.
+
+    i, which : number and kind of the particle
+    """
     space, workspace, part = context.space, context.workspace, context.part
     flights, radius, left = workspace.flights[part], workspace.radius[which], workspace.dt
     resting, clock = 0, np.int64(workspace.clock[0])

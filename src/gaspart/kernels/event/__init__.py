@@ -1,1 +1,1 @@
-"""The event-driven engine: loop, queue, searches, growth."""
+"""Event-driven engine: loop, queue, searches, growth."""

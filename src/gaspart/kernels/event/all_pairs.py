@@ -1,5 +1,7 @@
-"""The search of all pairs before every event (Spencer 2021, section 3.1): the referee of the other
-searches."""
+"""Search of all pairs before every event (Spencer 2021, section 3.1).
+
+The other searches are tested against it.
+"""
 
 from math import inf
 
@@ -13,7 +15,7 @@ from gaspart.kernels.physics.lees_edwards import FLOW, GRADIENT, time_of_sheared
 
 @inner_helper
 def image_offset(image, space):
-    """(3,) the displacement of one of the 3^d images of the container, and whether there is this one."""
+    """Return the displacement (3,) of one of the 3^d images, and whether it exists."""
     x, y, z = image % 3 - 1, image // 3 % 3 - 1, image // 9 - 1 if len(space.lengths) == 3 else 0
     last = len(space.lengths) - 1
     absent = (x != 0 and not space.periodic[0]) or (y != 0 and not space.periodic[1])
@@ -23,8 +25,11 @@ def image_offset(image, space):
 
 @inner_helper
 def time_in_image(flights, i, j, offset, space, gravity, shear):
-    """When particles i and j touch, j displaced by `offset` (3,), and across sheared faces also by as much as
-    they are: there each image is that of all along the flow."""
+    """Return the time at which two particles touch, the second displaced by `offset` (3,).
+
+    Across sheared faces particle j is also displaced by their displacement: there each image stands for all
+    images along the flow.
+    """
     if shear is not None:
         if offset[GRADIENT] != 0.0:
             if offset[FLOW] != 0.0:
@@ -36,8 +41,11 @@ def time_in_image(flights, i, j, offset, space, gravity, shear):
 
 @inner_helper
 def first_of_all(particles, boxes, model, tally):
-    """The earliest of all events: (time, particle, partner, face code), NONE for what there is not. `boxes`
-    is one box, and nothing is predicted, so nothing can be outdated."""
+    """Return the earliest of all events: (time, particle, partner, face code).
+
+    NONE stands for an absent particle, partner or face. `boxes` is one box, and there are no predictions, so
+    no prediction can be outdated.
+    """
     flights, space, gravity = particles.flights, model.space, model.gravity
     soon = inf
     first = second = face = NONE

@@ -1,8 +1,8 @@
-"""The earliest contact of a particle: the search of the boxes about it.
+"""Search of the earliest contact of a particle in the boxes around it.
 
-First all particles there are listed, then the times of all their contacts are computed, eight at once
-(`simd`): with hardly a branch, so that the processor has little to predict. Indices are unsigned, since for
-signed ones numba checks at every access whether it counts from the end.
+All particles in these boxes are listed first, then the times of all their contacts are computed, eight at
+once (`simd`). There is hardly a branch, so that the processor has little to predict. Indices are unsigned,
+since for signed ones numba checks at every access whether it counts from the end.
 """
 
 from __future__ import annotations
@@ -20,21 +20,30 @@ from gaspart.kernels.model import BOX_VISITS, IMAGE_BITS, NUMBER_BITS, PAIR_TEST
 from gaspart.kernels.physics.flight import time_of_contact
 from gaspart.kernels.simd import WIDTH, lowest
 
-# Which particles are in which box: the first few in places of its own, any others in a linked list.
+# Particles of each box: the first few in positions of the box, the others in a linked list.
 #
-# Nearly all boxes hold a few particles only, and a search then reads each in one go, whatever their number.
+# Nearly all boxes hold few particles, and a search reads them at once, for any number of particles.
 
 
-CANDIDATES = 64  # gathered by a search before they are tested: a bit of a word for each
+CANDIDATES = 64  # candidates gathered before a test: a bit of a word for each
 _EMPTY = np.uint32(0xFFFFFFFF)
 
 
 class BoxLists(NamedTuple):
-    """The grid of boxes (see `state.boxes.Boxes`): per_side, widths, strides (3,), neighbour, shift. How many
-    particles each box holds, filled (boxes,), the first of them, places (boxes, PLACES), and of the others
-    the first, head (boxes,), and the next after each particle, following (N,). candidates (M,), room for
-    those of a search; resting (N,), which particles gravity may not pull, see `flight.mark_resting`. lists:
-    `NeighbourLists`, which are searched instead, or None."""
+    """Grid of boxes (see `state.boxes.Boxes`) and the particles in each box.
+
+    Attributes
+    ----------
+    per_side, widths, strides : (3,), number, widths and index strides of the boxes along each axis
+    neighbour, shift : neighbours of a box along each axis, and their periodic images
+    filled : (boxes,), number of particles in each box
+    places : (boxes, PLACES), first particles of each box
+    head : (boxes,), first of the other particles of each box, which are a linked list
+    following : (N,), next particle of the linked list after each particle
+    candidates : (M,), workspace for the candidates of a search
+    resting : (N,), particles that gravity may not accelerate, see `flight.mark_resting`
+    lists : `NeighbourLists`, which are searched instead, or None
+    """
 
     per_side: np.ndarray
     widths: np.ndarray
@@ -51,7 +60,7 @@ class BoxLists(NamedTuple):
 
 
 def empty_lists(boxes, count, lists=None):
-    """The lists of these `state.boxes.Boxes` for `count` particles, with none in them."""
+    """Return lists without particles for `state.boxes.Boxes` and `count` particles."""
     return BoxLists(
         boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour, boxes.shift,
         filled=np.zeros(boxes.count, dtype=np.uint32),
@@ -66,14 +75,17 @@ def empty_lists(boxes, count, lists=None):
 
 @inner_helper
 def box_of(predictions, boxes, i):
-    """The linear index of a particle's box."""
+    """Return the linear index of a particle's box."""
     at = predictions[i].box
     return at[0] * boxes.strides[0] + at[1] * boxes.strides[1] + at[2] * boxes.strides[2]
 
 
 @inner_helper
 def member(boxes, box, n, other):
-    """The n-th particle of a box that holds more; `other` is the one before it."""
+    """Return the n-th particle of a box; `other` is the particle before it.
+
+    The box must have more than n particles.
+    """
     if n < PLACES:
         return boxes.places[box, n]
     return boxes.head[box] if n == PLACES else boxes.following[other]
@@ -81,7 +93,7 @@ def member(boxes, box, n, other):
 
 @inner_helper
 def insert(predictions, boxes, i):
-    """Put a particle into its box."""
+    """Insert a particle into its box."""
     box = np.uint64(box_of(predictions, boxes, i))
     filled = boxes.filled[box]
     if filled < PLACES:
@@ -94,7 +106,7 @@ def insert(predictions, boxes, i):
 
 @inner_helper
 def remove(predictions, boxes, i):
-    """Take a particle out of its box; another of the same box fills its place."""
+    """Remove a particle from its box; another particle of the box takes its position."""
     box = np.uint64(box_of(predictions, boxes, i))
     places, head, following = boxes.places, boxes.head, boxes.following
     last = np.uint64(boxes.filled[box]) - np.uint64(1)
@@ -120,7 +132,7 @@ def remove(predictions, boxes, i):
 
 @inner_helper
 def withdraw(predictions, boxes, i, opened):
-    """Take a particle that is no longer in the container, where faces are open, out of its box."""
+    """Remove a particle from its box if it has left the container through an open face."""
     if opened is not None:
         if not opened.present[i]:
             remove(predictions, boxes, i)
@@ -128,7 +140,7 @@ def withdraw(predictions, boxes, i, opened):
 
 @inner_helper
 def move(predictions, boxes, i, axis, to):
-    """Take a particle to another box along an axis."""
+    """Move a particle to another box along an axis."""
     remove(predictions, boxes, i)
     predictions[i].box[axis] = to
     insert(predictions, boxes, i)
@@ -136,45 +148,48 @@ def move(predictions, boxes, i, axis, to):
 
 @inner_kernel
 def sort_in(predictions, boxes):
-    """Put all particles into their boxes."""
+    """Insert all particles into their boxes."""
     boxes.filled[:] = 0
     boxes.places[:] = _EMPTY
     for i in range(len(predictions)):
         insert(predictions, boxes, i)
 
 
-# A candidate of a search: the number of a particle and, in the bits above it, its image along each axis.
+# Candidates of a search: the number of a particle and, in the bits above it, its image along each axis.
 #
-# Words are unsigned, since numba makes reals of signed ones that meet these.
+# Words are unsigned: numba converts signed words that are combined with these to real numbers.
 
 
-NUMBER = uint64((1 << NUMBER_BITS) - 1)  # the bits of a candidate that name the particle
-X, Y, Z = (uint64(NUMBER_BITS + IMAGE_BITS * k) for k in range(3))  # the first bit of the image along an axis
+NUMBER = uint64((1 << NUMBER_BITS) - 1)  # bits of a candidate with the number of the particle
+X, Y, Z = (uint64(NUMBER_BITS + IMAGE_BITS * k) for k in range(3))  # first bit of the image along an axis
 _IMAGE, _ONE = uint64((1 << IMAGE_BITS) - 1), uint64(1)
 _LOW = (_ONE << X) | (_ONE << Y) | (_ONE << Z)
 
 
 @inner_helper
 def number_of(candidate):
-    """The number of the particle."""
+    """Return the number of the particle."""
     return int64(candidate & NUMBER)
 
 
 @inner_helper
 def image_bits(image, first):
-    """The bits, from `first` on, that stand for the image -1, 0 or 1 of a candidate along an axis."""
+    """Return the bits that represent an image, -1, 0 or 1, along an axis.
+
+    first : position of the first of these bits
+    """
     return (uint64(image) & _IMAGE) << first
 
 
 @inner_helper
 def image_of(candidate, first):
-    """The image that the bits of a candidate from `first` on stand for."""
+    """Return the image that the bits of a candidate represent, beginning with bit `first`."""
     return (int64((candidate >> first) & _IMAGE) ^ 2) - 2
 
 
 @inner_helper
 def offset_of(candidate, space):
-    """(3,) the displacement of the image of a candidate."""
+    """Return the displacement (3,) of the image of a candidate."""
     lengths = space.lengths
     return (
         image_of(candidate, X) * lengths[0],
@@ -185,7 +200,10 @@ def offset_of(candidate, space):
 
 @inner_helper
 def opposite(image):
-    """The image bits of one particle seen from another, of which `image` is seen from the first."""
+    """Return the image bits of the first particle as seen from the second.
+
+    image : image bits of the second particle as seen from the first
+    """
     return image ^ (image & _LOW) << _ONE
 
 
@@ -194,7 +212,7 @@ _WIDTH, _PLACES, _FULL = uint64(WIDTH), uint64(PLACES), uint64(CANDIDATES - 3 * 
 
 @inner_helper
 def test_candidates(particles, i, count, boxes, space, tally, gravity):
-    """Predict the contact with one of the first `count` candidates, if it is earlier than that predicted."""
+    """Predict the contact with one of the first `count` candidates if it is the earliest."""
     flights, predictions, candidates = particles.flights, particles.predictions, boxes.candidates
     tally.counts[PAIR_TESTS] += int64(count)
     for n in range(_WIDTH):
@@ -217,9 +235,13 @@ def test_candidates(particles, i, count, boxes, space, tally, gravity):
 
 @inner_kernel
 def list_others(particles, i, count, row, boxes, space, tally, gravity):
-    """List the particles of a row of boxes that have no place, and test the candidates whenever there may be
-    no room for another row's. row: its first box, its image, the first step and end along it. Returns how
-    many candidates are left."""
+    """List the particles in the linked lists of a row of boxes.
+
+    Returns the new number of candidates. The candidates are tested, and the list emptied, whenever another
+    row might not fit.
+
+    row : first box of the row, its image, first step and end along it
+    """
     first, image_yz, low, end = row
     x = uint64(particles.predictions[i].box[0])
     for step in range(low, end):
@@ -244,8 +266,11 @@ def list_others(particles, i, count, row, boxes, space, tally, gravity):
 
 @inner_helper
 def span(boxes, axis, at, crossed, dimension):
-    """Which boxes to search along an axis, about that at a coordinate: first step and end (0..3), how many
-    there are, and how many of them are that box itself. Discs have one box along the third axis."""
+    """Return the boxes to be searched along an axis around a box.
+
+    The result has the first step, the end (0..3), the number of these boxes, and how many of them are the box
+    itself. Discs have one box along the third axis.
+    """
     if axis >= dimension:
         return uint64(1), uint64(2), 1, 1
     low, end = uint64(0), uint64(3)
@@ -263,8 +288,11 @@ def span(boxes, axis, at, crossed, dimension):
 
 @inner_helper
 def list_places(boxes, count, box, image, most):
-    """List the particles that have a place in a box, after `count` others: how many there are then, and how
-    many particles the fullest box so far holds, `most`."""
+    """List the particles in the positions of a box; return the new number of candidates.
+
+    count : number of candidates before
+    most : largest number of particles of a box so far; it is returned too, updated
+    """
     list_box(boxes.candidates, count, boxes.places, box, image)
     filled = uint64(boxes.filled[box])
     return count + min(filled, _PLACES), max(most, filled)
@@ -272,10 +300,12 @@ def list_places(boxes, count, box, image, most):
 
 @inner_helper
 def find_contact(particles, number, boxes, space, tally, crossed, gravity):
-    """Search for an earlier contact of a particle in the boxes about its own; if it has just `crossed` (3,)
-    into this one, in those only that were not neighbours before.
+    """Search for an earlier contact of a particle in the boxes around its box.
 
-    All places of a box are listed whether they are filled or not, which costs less than to test it.
+    If the particle has just crossed into this box, only boxes are searched that were not neighbours before.
+    All positions of a box are listed whether they are filled or not, which costs less than a test.
+
+    crossed : (3,), direction of the crossing along each axis
     """
     i = uint64(number)
     at = particles.predictions[i].box
@@ -286,7 +316,7 @@ def find_contact(particles, number, boxes, space, tally, crossed, gravity):
     low_z, end_z, visits_z, itself_z = span(boxes, 2, az, crossed[2], len(space.lengths))
     tally.counts[BOX_VISITS] += visits_x * visits_y * visits_z
     tally.counts[PAIR_TESTS] -= itself_x * itself_y * itself_z
-    within = crossed[0] == 0 and 0 < at[0] < boxes.per_side[0] - 1  # a row's three lie side by side
+    within = crossed[0] == 0 and 0 < at[0] < boxes.per_side[0] - 1  # the boxes of a row are contiguous
     count = uint64(0)
     for dz in range(low_z, end_z):
         beside_z = neighbour[2, az, dz]

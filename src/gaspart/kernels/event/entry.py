@@ -1,8 +1,8 @@
 """Particles of reservoirs outside of open faces, which try to enter.
 
-All attempts at all faces are one Poisson process. Attempt n has the random words of the counter n: where it
-happens, how fast, and how long after it the next one happens depend on nothing else. Whether it succeeds
-depends on what is inside.
+All attempts at all faces are one Poisson process. Attempt n has the random words of the counter n, which
+alone determine its position, its velocity, and the time to the next attempt. Whether it succeeds depends on
+the particles inside.
 """
 
 from math import inf
@@ -19,12 +19,12 @@ from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.rng import flux_speed, log_of, normal_pair, random_words, uniform
 from gaspart.kernels.physics.running_sum import add
 
-_PLACE, _VELOCITY = 0, 1  # which random words of an attempt
+_PLACE, _VELOCITY = 0, 1  # random words of an attempt
 
 
 @inner_helper
 def waiting_time(word, rate):
-    """Return a time of the exponential distribution of this rate."""
+    """Draw a time from the exponential distribution with a given rate."""
     return -log_of(uniform(word)) / rate
 
 
@@ -55,7 +55,7 @@ def face_of(word, reservoirs):
 
 @inner_helper
 def place_on(place, face, words, lengths):
-    """Set a place on a face, by two random `words`."""
+    """Set a random position on a face from two random `words`."""
     axis, n = face // 2, 0
     for k in range(len(lengths)):
         if k == axis:
@@ -67,7 +67,10 @@ def place_on(place, face, words, lengths):
 
 @inner_helper
 def overlaps(flights, place, j, time, space):
-    """Return True if particle j, which is not moved, overlaps a new one at a place and a `time`."""
+    """Return True if particle j overlaps a new particle at a position and `time`.
+
+    Particle j need not have been advanced to that time.
+    """
     late, sigma, square = time - flights[j].clock, 2.0 * flights[j].radius, 0.0
     for k in range(len(space.lengths)):
         x = flights[j].position[k] + flights[j].velocity[k] * late
@@ -80,7 +83,7 @@ def overlaps(flights, place, j, time, space):
 
 @inner_kernel
 def is_free_of_all(flights, place, time, space, present):
-    """Return True if a new particle overlaps none that is inside."""
+    """Return True if a new particle overlaps no particle inside."""
     for j in range(len(flights)):
         if present[j]:
             if overlaps(flights, place, j, time, space):
@@ -96,7 +99,7 @@ def coordinate(boxes, axis, x):
 
 @inner_kernel
 def is_free_of_neighbours(flights, place, time, space, boxes):
-    """Return True if a new particle overlaps none in the boxes about it."""
+    """Return True if a new particle overlaps no particle in the boxes around it."""
     x, y, z = coordinate(boxes, 0, place[0]), coordinate(boxes, 1, place[1]), coordinate(boxes, 2, place[2])
     for dz in range(3):
         beside_z = boxes.neighbour[2, z, dz]
@@ -120,7 +123,10 @@ def is_free_of_neighbours(flights, place, time, space, boxes):
 
 @inner_helper
 def is_free(particles, time, queue, boxes, space, reservoirs):
-    """Return True if the particle of the present attempt overlaps none; without a queue boxes are empty."""
+    """Return True if the particle of the present attempt overlaps no other particle.
+
+    Without a queue the boxes are empty, and all particles are tested.
+    """
     if queue is not None:
         return is_free_of_neighbours(particles.flights, reservoirs.place, time, space, boxes)
     return is_free_of_all(particles.flights, reservoirs.place, time, space, reservoirs.opened.present)
@@ -128,7 +134,7 @@ def is_free(particles, time, queue, boxes, space, reservoirs):
 
 @inner_kernel
 def send_in(flights, i, face, reservoirs, model, tally):
-    """Give a particle the place and the velocity with which it enters, and count what it brings."""
+    """Set position and velocity of an entering particle, and count momentum and energy."""
     axis, d, width = face // 2, len(model.space.lengths), reservoirs.width[face]
     number, key = reservoirs.number[0], reservoirs.key
     mass, inwards = mass_of(i, model.masses, model.law), -1.0 if face % 2 else 1.0
@@ -148,7 +154,7 @@ def send_in(flights, i, face, reservoirs, model, tally):
 
 @inner_helper
 def predict_entered(particles, i, time, queue, boxes, model, tally):
-    """Put a particle into its box, and predict its next events, where there is a queue."""
+    """Insert a particle into its box, and predict its next events, if there is a queue."""
     if queue is not None:
         for k in range(len(model.space.lengths)):
             particles.predictions[i].box[k] = coordinate(boxes, k, particles.flights[i].position[k])
@@ -159,10 +165,12 @@ def predict_entered(particles, i, time, queue, boxes, model, tally):
 
 @inner_kernel
 def admit(particles, queue, boxes, model, tally, limits, reservoirs):
-    """Process attempts to enter, up to the first that succeeds.
+    """Process attempts to enter, up to the first success.
 
-    limits (3,): the time of the next event of the particles inside, the time at which to stop, and the most
-    attempts. Returns (number of attempts, time of the last one, whether all numbers of particles are taken).
+    Returns (number of attempts, time of the last one, whether all numbers of particles are in use).
+
+    limits : (3,), time of the next event of the particles inside, time at which to stop, and maximum number
+        of attempts
     """
     soonest, stop, most = limits
     attempts, last, time, entered = 0, -inf, reservoirs.time[0], False
@@ -190,7 +198,7 @@ def admit(particles, queue, boxes, model, tally, limits, reservoirs):
 
 @inner_helper
 def admit_before(particles, queue, boxes, model, tally, limits, reservoirs):
-    """Process attempts to enter, if there are reservoirs. Arguments and result are those of `admit`."""
+    """Process attempts to enter by `admit`, if there are reservoirs."""
     if reservoirs is not None:
         return admit(particles, queue, boxes, model, tally, limits, reservoirs)
     return 0, -inf, False

@@ -1,8 +1,8 @@
-"""Particles that grow while they fly and collide: the kernels of a compression (`state.insertion`).
+"""Kernels of a compression (`state.insertion`): particles that grow while they fly and collide.
 
-Smooth particles of mass 1, all growing in proportion, in a container of hard or periodic faces: a flight's
-radius is that at time 0 of the clocks, and 1 + rate t times that at time t. Queue, boxes and flights are
-those of `loop`; here every event predicts its particles anew.
+The particles are smooth, of mass 1, and grow in proportion, in a container of hard or periodic faces: the
+radius of a flight is the radius at clock time 0; at time t it is multiplied by 1 + rate t. Queue, boxes and
+flights are the structures of `loop`; here every event predicts its particles anew.
 """
 
 from math import inf, sqrt
@@ -24,12 +24,15 @@ from gaspart.kernels.physics.contact import time_to_growing_contact, time_to_pla
 from gaspart.kernels.physics.flight import advance, encounter
 from gaspart.kernels.physics.running_sum import add
 
-_PART = 2.0**-30  # of the rate of growth: particles part at least so fast
+_PART = 2.0**-30  # minimum speed of separation, as a fraction of the rate of growth
 
 
 @inner_helper
 def time_of_contact(flights, i, j, offset, space, rate):
-    """When two growing particles touch, the second displaced by `offset` (d,); inf if they do not."""
+    """Return the time at which two growing particles touch; inf if they do not.
+
+    offset : (d,), displacement of the second particle
+    """
     start, rr, rv, vv, _, _, _ = encounter(flights, i, j, offset, space, None)
     sigma = flights[i].radius + flights[j].radius
     return start + time_to_growing_contact(rr, rv, vv, sigma * (1.0 + rate * start), sigma * rate)
@@ -37,7 +40,10 @@ def time_of_contact(flights, i, j, offset, space, rate):
 
 @inner_kernel
 def next_face(particles, i, boxes, space, rate):
-    """The next face of its box or of the container that a particle comes to: (time, 2 axis + side)."""
+    """Return the next face that a particle reaches: (time, 2 axis + side).
+
+    The face belongs to its box or to the container.
+    """
     flight, at = particles.flights[i], particles.predictions[i].box
     growth = space.margin * flight.radius * rate
     radius = space.margin * flight.radius * (1.0 + rate * flight.clock)
@@ -54,7 +60,7 @@ def next_face(particles, i, boxes, space, rate):
             elif (v > 0.0) if upper else (v < 0.0):
                 plane = (at[k] + upper) * boxes.widths[k]
                 if at[k] + upper == boxes.per_side[k]:
-                    plane = space.lengths[k]  # exactly, whatever rounding makes of the boxes
+                    plane = space.lengths[k]  # exactly, for any rounding of the boxes
                 time = max(0.0, time_to_plane(x, v, plane))
             if flight.clock + time < soon:
                 soon = flight.clock + time
@@ -64,8 +70,13 @@ def next_face(particles, i, boxes, space, rate):
 
 @inner_helper
 def box_near(boxes, at, n, space):
-    """Number n of the 27 boxes about that at coordinates (3,), -1 if there is none, and the displacement (3,)
-    of its image."""
+    """Return one of the 27 boxes around a box, and the displacement (3,) of its image.
+
+    The box is -1 if it does not exist.
+
+    at : (3,), coordinates of the box in the middle
+    n : number of the neighbour
+    """
     a, b, c = n % 3, n // 3 % 3, n // 9
     x, y, z = boxes.neighbour[0, at[0], a], boxes.neighbour[1, at[1], b], boxes.neighbour[2, at[2], c]
     offset = (
@@ -78,7 +89,10 @@ def box_near(boxes, at, n, space):
 
 @inner_kernel
 def predict(particles, i, boxes, space, rate, number):
-    """Predict the next events of a particle anew. number: of the present event."""
+    """Predict the next events of a particle anew.
+
+    number : number of the present event
+    """
     predictions = particles.predictions
     best = inf
     partner = NONE
@@ -102,7 +116,7 @@ def predict(particles, i, boxes, space, rate, number):
 
 @kernel
 def start(particles, queue, boxes, space, rate):
-    """Bring the temperature back to 1 and the centre of mass to rest, and predict all events."""
+    """Rescale the temperature to 1, stop the centre of mass, and predict all events."""
     flights = particles.flights
     d, count = len(space.lengths), len(flights)
     square = 0.0
@@ -125,8 +139,10 @@ def start(particles, queue, boxes, space, rate):
 
 @inner_kernel
 def meet_face(particles, i, face, time, boxes, space, rate):
-    """Let a particle pass into the next box, or reflect it at a wall that its growing surface touches.
-    Returns whether its flight has changed."""
+    """Move a particle into the next box, or reflect its growing surface at a wall.
+
+    Returns whether its flight has changed.
+    """
     flights, predictions = particles.flights, particles.predictions
     axis, upper = face // 2, face % 2
     outermost = predictions[i].box[axis] == (boxes.per_side[axis] - 1 if upper else 0)
@@ -148,7 +164,7 @@ def meet_face(particles, i, face, time, boxes, space, rate):
 
 @inner_kernel
 def collide(flights, i, j, time, space, rate, tally):
-    """Advance two particles to their contact and let their growing surfaces push them apart."""
+    """Advance two particles to their contact; their growing surfaces push them apart."""
     advance(flights, i, time, space, None)
     advance(flights, j, time, space, None)
     rr = rv = 0.0
@@ -169,7 +185,7 @@ def collide(flights, i, j, time, space, rate, tally):
 
 @kernel
 def run(particles, queue, boxes, space, tally, rate, stop, most):
-    """Process all events up to time `stop`, or `most` collisions. Returns the time that is reached."""
+    """Process all events up to time `stop`, or `most` collisions; return the time reached."""
     predictions = particles.predictions
     last = 0.0
     while tally.counts[COLLISIONS] < most:
@@ -195,7 +211,10 @@ def run(particles, queue, boxes, space, tally, rate, stop, most):
 
 @kernel
 def closest(particles, boxes, space):
-    """The least r^2/sigma^2 of all pairs in neighbouring boxes, all at one time; inf if there is none."""
+    """Return the minimum of r^2/sigma^2 over all pairs in neighbouring boxes, all at one time.
+
+    Without such pairs it is inf.
+    """
     flights = particles.flights
     least = inf
     for i in range(len(flights)):

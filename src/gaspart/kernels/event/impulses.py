@@ -1,5 +1,6 @@
-"""Impulses by the place where a particle receives them, along one axis (`kernels.physics.flight`): what makes
-densities accurate.
+"""Impulses along one axis by the position of the particle that receives them.
+
+They make densities accurate (`kernels.physics.flight`).
 """
 
 from __future__ import annotations
@@ -25,8 +26,15 @@ from gaspart.kernels.simd import WIDTH, Lanes, fields
 
 
 class Impulses(NamedTuple):
-    """sums (rows, bins + 1), as in `planes`, in the kernels' unit of mass; axis; per_length: bins in a unit
-    of length; row (N,), that of each particle, or None if there is one."""
+    """Tally of impulses along an axis by position.
+
+    Attributes
+    ----------
+    sums : (rows, bins + 1), as in `planes`, in the kernels' unit of mass
+    axis : axis
+    per_length : number of bins in a unit of length
+    row : (N,), row of each particle, or None if there is one row
+    """
 
     sums: np.ndarray
     axis: int
@@ -36,7 +44,7 @@ class Impulses(NamedTuple):
 
 @inner_helper
 def add_at(sums, row, place, impulse):
-    """Add an impulse at a place, in bins."""
+    """Add an impulse at a position, which is given in bins."""
     bin_, part = bin_at(place, sums.shape[1] - 1)
     upper = impulse * part
     sums[row, bin_] += impulse - upper
@@ -45,7 +53,7 @@ def add_at(sums, row, place, impulse):
 
 @inner_helper
 def speed_before(flights, i, impulses):
-    """The velocity of a particle along the axis, before an impulse; 0 if none are tallied."""
+    """Return a particle's velocity along the axis before an impulse; 0 without a tally."""
     if impulses is not None:
         return flights[i].velocity[impulses.axis]
     return 0.0
@@ -53,7 +61,10 @@ def speed_before(flights, i, impulses):
 
 @inner_helper
 def speed_on_arrival(flights, i, time, model, gravity, impulses):
-    """The velocity at a later time of a particle that has not been advanced to it."""
+    """Return the velocity along the axis at a later time; 0 without a tally.
+
+    The particle need not be advanced to that time.
+    """
     if impulses is not None:
         axis = impulses.axis
         if gravity is None:
@@ -68,7 +79,7 @@ def tally_impulse(flights, i, before, model, impulses):
     """Add the impulse that has changed the velocity of a particle from `before`."""
     if impulses is not None:
         change = flights[i].velocity[impulses.axis] - before
-        if change != 0.0:  # one of infinite mass keeps its velocity
+        if change != 0.0:  # a particle of infinite mass keeps its velocity
             place = flights[i].position[impulses.axis] * impulses.per_length
             impulse = mass_of(i, model.masses, model.law) * change
             add_at(impulses.sums, row_of(i, impulses.row), place, impulse)
@@ -76,7 +87,7 @@ def tally_impulse(flights, i, before, model, impulses):
 
 @kernel
 def add_momenta(flights, sign, model, impulses):
-    """Add `sign` times the momentum that each particle now has, at its place."""
+    """Add `sign` times the present momentum of each particle at its position."""
     for i in range(len(flights)):
         velocity = flights[i].velocity[impulses.axis]
         if velocity != 0.0:
@@ -85,7 +96,7 @@ def add_momenta(flights, sign, model, impulses):
             add_at(impulses.sums, row_of(i, impulses.row), place, momentum)
 
 
-# Eight pairs at once: how far apart they are, and how much of a vector lies along that, in vector
+# Eight pairs at once: their distances, and the projection of a vector on their separations, in vector
 # instructions.
 
 
@@ -93,7 +104,7 @@ _DOUBLE, _WORD = ir.DoubleType(), ir.IntType(64)
 
 
 def nearest(gap: Lanes, length: ir.Value) -> Lanes:
-    """Differences along a periodic axis by the nearest image, as in `physics.flight`."""
+    """Return differences along a periodic axis by the nearest image, as in `physics.flight`."""
     side = gap.all(length)
     lower = (gap + side).where(gap + gap < gap.all(0.0) - side, gap)
     return (gap - side).where(gap + gap > side, lower)
@@ -101,9 +112,12 @@ def nearest(gap: Lanes, length: ir.Value) -> Lanes:
 
 @intrinsic
 def separate(typingctx, flights, i, first, listed, vector, space, found):
-    """Of particle i, at the time of its clock, and each of the eight that are listed from number `first` on:
-    found[0] the distance r, by the nearest image in a periodic space, and found[1] r.v / |r|^d with a vector
-    v (d,) and r from the other to i; NaN at a distance of 0."""
+    """Compute distances and projections of particle i and eight listed particles.
+
+    The eight are listed from number `first` on, and i is at the time of its clock. found[0] becomes the
+    distance r, by the nearest image in a periodic space, and found[1] becomes r.v / |r|^d with a vector v
+    (d,) and r from the other particle to i; NaN at a distance of 0.
+    """
 
     def generate(context, builder, signature, arguments):
         flights, i, first, listed, vector, space, found = arguments
@@ -135,27 +149,38 @@ def separate(typingctx, flights, i, first, listed, vector, space, found):
     return types.none(flights, word, word, listed, vector, space, found), generate
 
 
-# Impulses by the distance of a pair of particles: what makes the radial distribution function accurate.
+# Impulses by the distance of a pair of particles, which make the radial distribution function accurate.
 #
-# An impulse dp on a particle, at r from another one, changes the relative momentum (p - p') / 2 of the
-# pair, and gives dp.r / (2 r^d) to all distances above r (docs/estimators.md). At a contact this is so
-# of the two that meet, and of each of them with all others. Of the shells, the mean over that of the pair
-# itself has the part 1 - f, with f the part of its volume below r, and all higher ones have all: the shell
-# is given 1 - f, the next one f, and the mean over a shell is the sum of all up to it.
+# An impulse dp on a particle, at r from another particle, changes the relative momentum (p - p') / 2 of the
+# pair, and gives dp.r / (2 r^d) to all distances above r (docs/estimators.md). A collision does so for the
+# colliding pair, and for each of its particles with all others. The value is averaged over each shell. The
+# shell of the pair itself gets the part 1 - f, with f the fraction of its volume below r, and all higher
+# shells get the whole: 1 - f is added to the shell, f to the next one, and the mean over a shell is the sum
+# of all shells up to it.
 #
 # The others of a pair are found in an order that depends on the search, so whole numbers are summed.
 
 
 MEETING, OTHERS = range(2)
-_SLACK = 1.0 + 1e-9  # by which the search reaches farther, so that rounding hides no pair
+_SLACK = 1.0 + 1e-9  # extension of the search, so that rounding hides no pair
 
 
 class PairImpulses(NamedTuple):
-    """sums (2, shells + 1), those of the pairs that meet and of the others, in units of 1 / `per_unit` of the
-    kernels' units; impulse (d,), room for that of a contact; furthest: the largest distance; per_length:
-    shells in a unit of length; per_volume (shells,): one over the volume of each in that of the first;
-    share: of contacts at which the others count; listed, room for the numbers of all particles; found (2, 8),
-    for what `separate` finds."""
+    """Tally of impulses by the distance of a pair.
+
+    Attributes
+    ----------
+    sums : (2, shells + 1), sums of the colliding pairs and of the other pairs, in units of 1 / `per_unit` of
+        the kernels' units
+    impulse : (d,), workspace for the impulse of a collision
+    furthest : largest distance
+    per_length : number of shells in a unit of length
+    per_volume : (shells,), volume of the first shell divided by the volume of each shell
+    per_unit : see `sums`
+    share : fraction of the collisions at which the other pairs count
+    listed : workspace for the numbers of all particles
+    found : (2, 8), workspace for the results of `separate`
+    """
 
     sums: np.ndarray
     impulse: np.ndarray
@@ -170,7 +195,7 @@ class PairImpulses(NamedTuple):
 
 @inner_helper
 def note_velocity(flights, i, pairs):
-    """Keep the velocity of a particle that is about to collide."""
+    """Store the velocity of a particle that is about to collide."""
     if pairs is not None:
         for k in range(len(pairs.impulse)):
             pairs.impulse[k] = flights[i].velocity[k]
@@ -178,8 +203,10 @@ def note_velocity(flights, i, pairs):
 
 @inner_helper
 def tally_pairs(particles, i, j, queue, boxes, model, tally, pairs):
-    """Add what a contact gives to pairs: that of particles i and j, i with the velocity that `note_velocity`
-    has kept."""
+    """Add the contribution of a collision of particles i and j to the pairs.
+
+    The velocity of i before the collision is the one stored by `note_velocity`.
+    """
     if pairs is not None:
         mass = mass_of(i, model.masses, model.law)
         _add_contact(particles.flights, i, j, mass, model.space, pairs)
@@ -207,7 +234,7 @@ def _add_at(row, distance, product, pairs):
 
 @inner_helper
 def _add_contact(flights, i, j, mass, space, pairs):
-    """Turn the velocity that was kept into the impulse, and add what the contact gives to its own pair."""
+    """Compute the impulse from the stored velocity, and add the contribution of the colliding pair."""
     square = product = 0.0
     for k in range(len(space.lengths)):
         pairs.impulse[k] = mass * (flights[i].velocity[k] - pairs.impulse[k])
@@ -222,8 +249,10 @@ def _add_contact(flights, i, j, mass, space, pairs):
 
 @inner_helper
 def _add_listed(flights, i, j, count, factor, space, pairs):
-    """Add what `factor` times the impulse gives to the pairs of particle i with those that are listed, unless
-    that is i itself, or j, which it has met."""
+    """Add the contribution of `factor` times the impulse to the pairs of i with listed particles.
+
+    Particle i itself is left out, and its collision partner j.
+    """
     for n in range(uint64(WIDTH)):
         pairs.listed[count + n] = i
     for first in range(uint64(0), count, uint64(WIDTH)):
@@ -236,7 +265,7 @@ def _add_listed(flights, i, j, count, factor, space, pairs):
 
 @inner_kernel
 def _add_others(flights, i, j, factor, queue, boxes, space, pairs):
-    """The same for all others."""
+    """Add the contribution of `factor` times the impulse to the pairs of i with all others."""
     i, j = uint64(i), uint64(j)
     if queue is None:
         count = uint64(len(flights))
@@ -249,7 +278,7 @@ def _add_others(flights, i, j, factor, queue, boxes, space, pairs):
 
 @inner_helper
 def _grid(boxes, axis, lists):
-    """How many cells there are along an axis, and one over their width."""
+    """Return the number of cells along an axis, and the inverse of their width."""
     if lists is None:
         return boxes.per_side[axis], 1.0 / boxes.widths[axis]
     return lists.per_side[axis], lists.per_length[axis]
@@ -257,7 +286,7 @@ def _grid(boxes, axis, lists):
 
 @inner_helper
 def _list_cell(cell, count, boxes, pairs, lists):
-    """List the particles of a cell, after `count` others: how many there are then."""
+    """List the particles of a cell after `count` others; return the new number."""
     other = uint64(0)
     if lists is None:
         filled = uint64(boxes.filled[cell])
@@ -275,8 +304,10 @@ def _list_cell(cell, count, boxes, pairs, lists):
 
 @inner_helper
 def _reach(furthest, lists):
-    """How far the cell of a particle within a distance may be: one in a neighbour list has moved by a
-    margin."""
+    """Return the largest distance of the cell of a particle within a distance.
+
+    A particle in a neighbour list has moved by at most a margin.
+    """
     if lists is None:
         return furthest * _SLACK
     return furthest * _SLACK + lists.margin
@@ -284,7 +315,10 @@ def _reach(furthest, lists):
 
 @inner_helper
 def _span(x, reach, count, per_length):
-    """The cells along an axis within a distance of x, first and end; they go on beyond the container."""
+    """Return first and end of the cells along an axis within a distance of x.
+
+    The numbers continue beyond the container.
+    """
     low, end = int64(floor((x - reach) * per_length)), int64(floor((x + reach) * per_length)) + 1
     if end - low >= count:
         return int64(0), int64(count)
@@ -293,7 +327,10 @@ def _span(x, reach, count, per_length):
 
 @inner_helper
 def _gap_square(x, cell, span, count, per_length):
-    """The square of the distance of x from a cell along an axis; 0 if all cells are within reach."""
+    """Return the squared distance of x from a cell along an axis.
+
+    It is 0 if all cells are within reach.
+    """
     if span[1] - span[0] >= count:
         return 0.0
     gap = max(cell - x * per_length, x * per_length - (cell + 1), 0.0) / per_length
@@ -302,7 +339,7 @@ def _gap_square(x, cell, span, count, per_length):
 
 @inner_helper
 def _wrapped(cell, count):
-    """A cell along a periodic axis, within the container."""
+    """Map a cell along a periodic axis into the container."""
     if cell < 0:
         return cell + count
     return cell - count if cell >= count else cell
@@ -310,7 +347,7 @@ def _wrapped(cell, count):
 
 @inner_helper
 def _list_near(flights, i, boxes, space, pairs, lists):
-    """List all particles in the cells that may hold some within reach of particle i: how many there are."""
+    """List all particles in the cells within reach of particle i; return their number."""
     count = uint64(0)
     place, d = flights[i].position, len(space.lengths)
     x, y, z = place[0], place[1], place[2] if d == 3 else 0.0

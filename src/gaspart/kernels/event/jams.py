@@ -1,17 +1,18 @@
-"""Jams: particles pressed together between supports, as a row that exactly fills the room between two walls.
+"""Jams: particles pressed together between supports.
 
-The room x that a force F leaves to a row with a kinetic energy E along it is 2 E/F. So the less energy it has
-the more often its particles meet: at a rate that grows as E^(-1/2), or as E^(-3/2) where gravity presses the
-row straight, so that F grows as x^(-1/2). In the TC model these contacts keep their energy; the rate grows
-without end while particles that move beside the row keep it from being an island at rest.
+A jam is like a row that exactly fills the space between two walls. The space x that a force F leaves to a row
+with a kinetic energy E along it is 2 E/F. So the less energy it has, the more often its particles collide: at
+a rate that grows as E^(-1/2), or as E^(-3/2) where gravity presses the row straight, so that F grows as
+x^(-1/2). In the TC model these contacts conserve their energy; the rate grows without limit while moving
+particles next to the row keep it from being an island at rest.
 
-The particles of a jam are fixed. None of them has left its place, nor would it if gravity were tilted: what
-it touches, and stays, holds it (`keep_stable`). So a slow contact could not move it far either. A contact
-with a particle that moves always dissipates, and
+The particles of a jam are fixed. None of them has left its position, nor would it if gravity were tilted: the
+particles that it touches, and that stay, hold it (`keep_stable`). So a slow contact could not move it far
+either. A contact with a moving particle always dissipates, and
 
 - frees the particle of the jam, if it can give it more than a speed `ContactDuration.moving`;
 - frees the whole jam, as an island, if it can give it `_FAR` times as much;
-- makes the other one belong to the jam, if the two meet so often that it is squeezed.
+- adds the other particle to the jam, if the two meet so often that it is squeezed.
 """
 
 from __future__ import annotations
@@ -29,16 +30,16 @@ from gaspart.kernels.physics.contact import SHORTEST
 from gaspart.kernels.physics.flight import acceleration_of, advance, flown, mark_resting, nearest
 from gaspart.kernels.physics.running_sum import add
 
-# Which particles of a scene under gravity have come to rest.
+# Search for the particles of a scene under gravity that have come to rest.
 
 
-TOUCHES, MOVES, RESTS = range(3)  # what `find_resting` marks
-_PAUSE = 4.0  # contact durations: the longest time without a contact of a particle that others support
+TOUCHES, MOVES, RESTS = range(3)  # rows of marks of `find_resting`
+_PAUSE = 4.0  # longest time between contacts of a supported particle, in contact durations
 
 
 @inner_helper
 def _lies(flights, i, space, gravity):
-    """Whether a particle is at rest on faces or interior walls, or fixed."""
+    """Return True if a particle is at rest on faces or interior walls, or fixed."""
     found = True
     for k in range(len(space.lengths)):
         found &= flights[i].velocity[k] == 0.0 and acceleration_of(flights, i, k, space, gravity) == 0.0
@@ -47,9 +48,11 @@ def _lies(flights, i, space, gravity):
 
 @kernel
 def find_resting(flights, before, time, most, model, marks):
-    """Mark (3, N) which particles touch, by contacts that last; which move: they are further than `most` from
-    their places `before` (N, d), which become the places now; and which rest: those that do not move, and
-    touch or lie on a wall."""
+    """Mark (3, N) the particles that touch others, that move, and that rest.
+
+    A particle touches if its contacts last. It moves if it is farther than `most` from its position `before`
+    (N, d), which becomes the present position. It rests if it does not move, and touches or lies on a wall.
+    """
     space, gravity, duration = model.space, model.gravity, model.law.duration
     for i in range(len(flights)):
         marks[TOUCHES, i] = time - duration.latest[i] < _PAUSE * duration.length
@@ -67,7 +70,7 @@ def find_resting(flights, before, time, most, model, marks):
 
 @inner_kernel
 def stop(flights, i, time, model, tally):
-    """Advance a particle to `time` and take its velocity, whose energy is counted as lost."""
+    """Advance a particle to `time` and stop it; its energy is counted as lost."""
     advance(flights, i, time, model.space, model.gravity)
     square = 0.0
     for k in range(len(model.space.lengths)):
@@ -86,13 +89,13 @@ def stop_all(flights, time, model, tally):
 
 # Islands: particles that lean on one another and are at rest, while others move elsewhere.
 #
-# With a contact duration a pile that has settled goes on with tiny elastic contacts for ever. An island
-# has no events: gravity does not act on it until another particle meets one of it.
+# With a contact duration a settled pile has tiny elastic contacts for ever. An island has no events: gravity
+# does not act on it until another particle collides with one of its particles.
 
 
 @inner_helper
 def root_of(parent, i):
-    """The root of a particle's tree, with shorter ways to it for the next search."""
+    """Return the root of a particle's tree, with paths shortened for the next search."""
     while parent[i] != i:
         parent[i] = parent[parent[i]]
         i = parent[i]
@@ -101,7 +104,7 @@ def root_of(parent, i):
 
 @inner_kernel
 def gap_between(flights, places, i, j, space):
-    """Between the surfaces of two particles at their places (N, d)."""
+    """Return the gap between the surfaces of two particles at their positions (N, d)."""
     square = 0.0
     for k in range(len(space.lengths)):
         part = nearest(places[j, k] - places[i, k], space.lengths[k], space.periodic[k])
@@ -111,8 +114,10 @@ def gap_between(flights, places, i, j, space):
 
 @kernel
 def join(flights, order, places, axis, reach, space, parent):
-    """Join particles whose gaps are at most `reach` in trees with the parents (N,). order (M,): these
-    particles, by their coordinate along an axis that is not periodic."""
+    """Join particles with gaps of at most `reach` in trees with the parents (N,).
+
+    order : (M,), these particles, sorted by their coordinate along an axis that is not periodic
+    """
     largest = 0.0
     for i in order:
         parent[i] = i
@@ -130,8 +135,12 @@ def join(flights, order, places, axis, reach, space, parent):
 
 @kernel
 def hold(flights, order, time, marks, parent, model, tally):
-    """Hold those of these particles that belong to a tree of which all rest, and some touch others: `marks`
-    (3, N), see `scene_at_rest.find_resting`, which become those of the trees. Returns whether there are any.
+    """Hold the particles of each tree whose particles all rest and some touch others.
+
+    Returns whether there are any such trees.
+
+    order : particles
+    marks : (3, N), see `find_resting`; they become the marks of the trees
     """
     touches, rests = marks[TOUCHES], marks[RESTS]
     island, found = model.law.duration.island, False
@@ -151,7 +160,7 @@ def hold(flights, order, time, marks, parent, model, tally):
 
 @inner_kernel
 def wake_island(flights, number, time, boxes, model, gravity, law):
-    """Let gravity act again on the particles of an island, and contacts move them."""
+    """Free the particles of an island: gravity acts on them again, and contacts move them."""
     if gravity is not None:
         for i in range(len(flights)):
             if law.duration.island[i] == number:
@@ -162,13 +171,19 @@ def wake_island(flights, number, time, boxes, model, gravity, law):
 
 
 STAYS, HELD, PRESSED = range(3)  # marks (3, N): has not moved or is fixed; may be held; has many contacts
-_FAR = 8.0  # the speed of a contact that frees a jam, over that which frees a particle; heights are 64 times
-_OFTEN = 2.0**-3 * SHORTEST  # contact durations: a particle squeezed by a jam meets it sooner again
+_FAR = 8.0  # speed that frees a jam divided by the speed that frees a particle; heights: 64
+_OFTEN = 2.0**-3 * SHORTEST  # longest time between contacts of a squeezed particle, in contact durations
 
 
 class Line(NamedTuple):
-    """Particles in a line: their numbers `order` (M,), by their coordinate along an `axis` that is not
-    periodic, at the places (N, d)."""
+    """Particles in a line along an axis that is not periodic.
+
+    Attributes
+    ----------
+    order : (M,), their numbers, sorted by the coordinate along the axis
+    places : (N, d), positions
+    axis : axis
+    """
 
     order: np.ndarray
     places: np.ndarray
@@ -176,8 +191,15 @@ class Line(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """What a stable particle withstands: accelerations `pulls` (P, 3), of which less than `least` may remain.
-    reach: the largest gap of particles that touch; support: of one particle, to work with."""
+    """Disturbances that a stable particle withstands.
+
+    Attributes
+    ----------
+    pulls : (P, 3), accelerations
+    least : the part of an acceleration that remains must be smaller
+    reach : largest gap of particles that touch
+    support : workspace for the support of one particle
+    """
 
     pulls: np.ndarray
     least: float
@@ -187,13 +209,13 @@ class Limits(NamedTuple):
 
 @inner_helper
 def is_jammed(duration, i):
-    """Whether a particle belongs to a jam, which is an island with a number from N on."""
+    """Return True if a particle belongs to a jam, an island numbered N or higher."""
     return duration.island[i] >= len(duration.island)
 
 
 @inner_helper
 def free(i, gravity, law):
-    """Let a particle belong to no jam any more."""
+    """Remove a particle from its jam."""
     law.inverse_mass[i] = law.duration.inverse_mass[i]
     gravity.fixed[i] = False
     law.duration.island[i] = NONE
@@ -201,8 +223,10 @@ def free(i, gravity, law):
 
 @inner_helper
 def free_if_moved(i, j, rr, rv, gravity, law):
-    """Free those of two particles that a jam holds, if their contact can move them. rr, rv: the products of
-    their separation and relative velocity."""
+    """Free the particles of a jam among two particles, if their contact can move them.
+
+    rr, rv : products of their separation and relative velocity
+    """
     if gravity is not None:
         if law is not None:
             _free_if_moved(i, j, rr, rv, gravity, law, law.duration)
@@ -224,8 +248,10 @@ def _free_if_moved(i, j, rr, rv, gravity, law, duration):
 
 @inner_helper
 def squeezed(flights, i, j, law):
-    """That of two particles, advanced to their contact, which a jam squeezes to which the other one belongs;
-    NONE if there is none."""
+    """Return the particle that is pressed by the jam of the other particle, or NONE.
+
+    The two particles have been advanced to their contact.
+    """
     if law is not None:
         return _squeezed(flights, i, j, law, law.duration)
     return NONE
@@ -245,7 +271,7 @@ def _squeezed(flights, i, j, law, duration):
 
 @inner_helper
 def join_jam(flights, i, j, model, tally, gravity, law):
-    """Let particle i, if it is not NONE, belong to the jam of particle j, with which it has collided."""
+    """Add particle i to the jam of particle j after their collision; NONE is ignored."""
     if gravity is not None:
         if law is not None:
             _join_jam(flights, i, j, model, tally, gravity, law, law.duration)
@@ -261,7 +287,7 @@ def _join_jam(flights, i, j, model, tally, gravity, law, duration):
 
 @inner_helper
 def _fix(i, number, gravity, law):
-    """Let a particle at rest belong to the jam with this number."""
+    """Add a particle at rest to the jam with this number."""
     law.inverse_mass[i] = 0.0
     gravity.fixed[i] = True
     law.duration.island[i] = number
@@ -269,7 +295,7 @@ def _fix(i, number, gravity, law):
 
 @inner_helper
 def _add(support, x, y, z):
-    """Add a plane with this unit vector towards the particle; what is too many is left out."""
+    """Add a plane, given by its unit vector towards the particle; planes in excess are omitted."""
     n = support.number[0]
     if n < support.normal.shape[1]:
         support.normal[0, n, 0], support.normal[0, n, 1], support.normal[0, n, 2] = x, y, z
@@ -278,7 +304,7 @@ def _add(support, x, y, z):
 
 @inner_helper
 def _add_particle(flights, places, i, j, space, limits):
-    """Add the particle j to what particle i touches, if it does."""
+    """Add particle j to the support of particle i, if they touch."""
     if gap_between(flights, places, i, j, space) <= limits.reach:
         x = y = z = 0.0
         for k in range(len(space.lengths)):
@@ -290,7 +316,7 @@ def _add_particle(flights, places, i, j, space, limits):
 
 @inner_helper
 def _add_faces(flights, places, i, space, limits):
-    """Add the container's faces that it touches."""
+    """Add the container's faces that the particle touches."""
     near = space.margin * flights[i].radius + limits.reach
     for k in range(len(space.lengths)):
         x, y, z = 1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0
@@ -302,7 +328,7 @@ def _add_faces(flights, places, i, space, limits):
 
 @inner_helper
 def _add_walls(flights, places, i, space, limits, walls):
-    """Add the interior walls that it touches."""
+    """Add the interior walls that the particle touches."""
     if walls is not None:
         for m in range(len(walls.rows)):
             x, y, z = to_wall(walls.rows, m, places[i], space.lengths)
@@ -313,8 +339,11 @@ def _add_walls(flights, places, i, space, limits, walls):
 
 @inner_kernel
 def _is_stable(flights, n, largest, line, limits, model, stays):
-    """Whether what the n-th particle of a line touches, and stays, leaves little of every pull. largest: the
-    largest radius."""
+    """Return True if the supports that stay leave little of every acceleration of a particle.
+
+    n : number of the particle in its line
+    largest : largest radius
+    """
     order, places, axis = line
     i, support = order[n], limits.support
     support.number[0] = 0
@@ -336,8 +365,11 @@ def _is_stable(flights, n, largest, line, limits, model, stays):
 
 @kernel
 def keep_stable(flights, line, limits, model, marks):
-    """Take from the particles of a line that may be held, marks[HELD], those which the others, fixed ones and
-    walls do not hold in their places."""
+    """Unmark the particles of a line, marks[HELD], that nothing holds in their positions.
+
+    Supports are the other held particles, fixed particles and walls. The search repeats until no mark
+    changes.
+    """
     stays, held, largest, changed = marks[STAYS], marks[HELD], 0.0, True
     for i in line.order:
         largest = max(largest, flights[i].radius)
@@ -352,7 +384,7 @@ def keep_stable(flights, line, limits, model, marks):
 
 @kernel
 def free_unstable(flights, time, marks, model):
-    """Free the particles of jams that are held in their places no more. Returns whether there are any."""
+    """Free the particles of jams that are no longer held; return whether there are any."""
     found = False
     for i in range(len(flights)):
         if is_jammed(model.law.duration, i) and not marks[HELD, i]:
@@ -364,8 +396,10 @@ def free_unstable(flights, time, marks, model):
 
 @kernel
 def jam(flights, order, time, marks, parent, model, tally):
-    """Hold those of these particles (M,) that belong to a tree with one that is pressed or has been held.
-    Returns whether there are any new ones."""
+    """Hold the particles (M,) of each tree with a particle that is pressed or already held.
+
+    Returns whether there are any new ones.
+    """
     pressed, duration, found = marks[PRESSED], model.law.duration, False
     for i in order:
         pressed[root_of(parent, i)] |= pressed[i] or is_jammed(duration, i)

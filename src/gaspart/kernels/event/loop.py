@@ -1,13 +1,13 @@
-"""The loop of the event-driven engine: take the next event, process it, predict the new events of its
-particles.
+"""Loop of the event-driven engine: process the next event, then predict anew for its particles.
 
-So that no bit depends on how events are searched for:
+No bit depends on how events are searched for:
 
-- the time of a pair's contact is always computed from the later of the two clocks, never from "now";
-- crossing into another box changes what is searched, never the flight;
+- the time of a pair's contact is always computed from the later of the two clocks, never from the present
+  time;
+- crossing into another box changes the searched boxes, never the flight;
 - crossing a periodic face is an event: the particle is advanced to the face and moved to the opposite one.
 
-Events come in the order of their time; simultaneous ones faces first, by particle, then pairs by the lower
+Events are ordered by time; among simultaneous events faces come first, by particle, then pairs by the lower
 and the higher index.
 """
 
@@ -46,15 +46,20 @@ STOP, EVENTS, FULL, COLLAPSE, NO_ROOM, CROSSED, CROWDED = range(7)
 
 @inner_helper
 def without_obstacles(model):
-    """What all contacts depend on. Their functions need not be translated again for each kind of obstacle."""
+    """Return the model without obstacles.
+
+    Contact functions are then compiled once, not once per kind of obstacle.
+    """
     return Model(model.space, model.masses, model.gravity, model.law, None, None, None, model.shear, None)
 
 
 @inner_helper
 def meet_obstacle(particles, i, face, time, model, tally):
-    """Let a particle meet a face of the container, the edge of a well, or an interior wall. Returns -1 - the
-    number of the face or wall, and False if that is no event of the model: at a periodic face, or where the
-    particle leaves a wall along which it has slid."""
+    """Process the hit of a particle at a face, a well's edge, or an interior wall.
+
+    Returns -1 - the number of the face or wall, and whether this is an event of the model. It is no such
+    event at a periodic face, or where the particle leaves a wall along which it has slid.
+    """
     bare = without_obstacles(model)
     before = speed_on_arrival(particles.flights, i, time, bare, model.gravity, tally.impulses)
     met, happens = _meet(particles, i, face, time, bare, model, tally)
@@ -64,7 +69,7 @@ def meet_obstacle(particles, i, face, time, model, tally):
 
 @inner_helper
 def _meet(particles, i, face, time, bare, model, tally):
-    """`meet_obstacle`, without the tally of the impulse."""
+    """Process a hit like `meet_obstacle`, without the tally of the impulse."""
     if face >= WALLS:
         wall = meet_wall(particles.flights, i, face, time, bare, tally, model.walls)
         return -1 - wall, wall != NONE
@@ -76,7 +81,7 @@ def _meet(particles, i, face, time, bare, model, tally):
 
 @inner_helper
 def meet_particle(particles, i, j, time, queue, boxes, model, tally):
-    """Let two particles collide."""
+    """Process the collision of two particles."""
     bare = without_obstacles(model)
     note_velocity(particles.flights, i, tally.pair_impulses)
     collide(particles.flights, i, j, time, bare, tally)
@@ -85,8 +90,10 @@ def meet_particle(particles, i, j, time, queue, boxes, model, tally):
 
 @inner_helper
 def wake(particles, pair, queue, boxes, model, tally, event, law):
-    """Let gravity act again on the islands of two particles (2,) that have met, unless they are held in a
-    jam. event: time and number."""
+    """Free the islands of two particles (2,) that have collided, unless a jam holds them.
+
+    event : time and number
+    """
     if law is not None:
         _wake(particles, pair, queue, boxes, model, tally, event, law.duration)
 
@@ -104,8 +111,10 @@ def _wake(particles, pair, queue, boxes, model, tally, event, duration):
 
 @inner_helper
 def leave_box(particles, i, face, time, boxes, space, tally, lists):
-    """Let a particle cross into the next box, or renew its neighbour list. Returns the step (3,) into the
-    box, if any."""
+    """Move a particle into the next box, or renew its neighbour list.
+
+    Returns the step (3,) into the box, 0 if there was none.
+    """
     if lists is not None:
         renew(particles.flights, i, time, lists, space, tally)
         return NOT_CROSSED
@@ -117,7 +126,7 @@ def leave_box(particles, i, face, time, boxes, space, tally, lists):
 
 @inner_helper
 def enter_opposite_box(particles, i, face, time, boxes, model, tally, lists):
-    """Let a particle that has crossed a periodic face be found where it now is."""
+    """Update the box or neighbour list of a particle that has crossed a periodic face."""
     if lists is not None:
         renew(particles.flights, i, time, lists, model.space, tally)
     else:
@@ -128,16 +137,18 @@ def enter_opposite_box(particles, i, face, time, boxes, model, tally, lists):
 
 @inner_helper
 def empty_place(particles, i, boxes, faces):
-    """Take a particle that has left through an open face out of its box."""
+    """Remove a particle that has left through an open face from its box."""
     if faces is not None:
         withdraw(particles.predictions, boxes, i, faces.open)
 
 
 @inner_helper
 def process(particles, i, time, queue, boxes, model, tally):
-    """Process the next event of a particle. Returns the two particles it happens to, or one and -1 - a face,
-    and whether it is an event of the model: not the crossing of a box or a periodic face, nor an outdated
-    contact."""
+    """Process the next event of a particle.
+
+    Returns its two particles, or one particle and -1 - a face, and whether it is an event of the model: not
+    the crossing of a box or a periodic face, nor an outdated contact.
+    """
     predictions = particles.predictions
     face = int64(predictions[i].face)
     partner = int64(predictions[i].partner)
@@ -170,8 +181,10 @@ def process(particles, i, time, queue, boxes, model, tally):
 
 @inner_helper
 def process_first(particles, event, boxes, model, tally):
-    """Process the earliest of all events: its time, a particle, and a partner or a face. Returns as `process`
-    does."""
+    """Process the earliest of all events, found by the search of all pairs.
+
+    event : time, particle, partner and face; the result is the result of `process`
+    """
     time, i, partner, face = event
     if partner < 0:
         partner, happens = meet_obstacle(particles, i, face, time, model, tally)
@@ -184,8 +197,10 @@ def process_first(particles, event, boxes, model, tally):
 
 @inner_helper
 def fetch_ahead(particles, queue, boxes, next_bucket, lists):
-    """Prefetch what the next events will read, if the particles are too many for the nearer caches. Returns
-    the next bucket to do so for."""
+    """Prefetch the data of the next events if the nearer caches do not hold all particles.
+
+    Returns the next bucket to prefetch for.
+    """
     if lists is not None:
         if len(particles.flights) > CACHED_LISTS:
             return prefetch_lists(particles, queue, lists, next_bucket)
@@ -196,12 +211,15 @@ def fetch_ahead(particles, queue, boxes, next_bucket, lists):
 
 @kernel
 def run(particles, queue, boxes, model, tally, monitors, limits, all_pairs):
-    """Process all events up to a time, at most so many of them (collisions, wall hits, attempts to enter),
-    and at most so many crossings and outdated contacts between them: `limits` (3,).
+    """Process events up to a time or a number.
 
-    all_pairs: () for the search of all pairs before every event, without a queue; otherwise None. numba
-    leaves out only what depends on an argument that is None, so both arguments are needed. Returns (reason,
-    number of events, number of crossings and outdated contacts, time of the last of all).
+    Returns (reason, number of events, number of crossings and outdated contacts, time of the last event or
+    crossing).
+
+    limits : (3,), time, maximum number of events (collisions, wall hits, attempts to enter), and maximum
+        number of crossings and outdated contacts
+    all_pairs : () for the search of all pairs before every event, without a queue; otherwise None. numba
+        omits only code that depends on an argument of type None, so both arguments are needed.
     """
     stop, most, most_crossed = limits
     done = crossed = 0

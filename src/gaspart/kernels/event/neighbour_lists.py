@@ -1,12 +1,12 @@
-"""Neighbour lists: for each particle, which others a contact is possible with before it has moved a margin.
+"""Neighbour lists: the particles that a particle may touch before it has moved a margin.
 
-A particle's list holds all particles whose *centre*, the place at which their own list was made, is nearer
+A particle's list holds all particles whose *centre*, the position at which their own list was made, is nearer
 to its own centre than the largest diameter and two margins. Once a particle has moved a margin from its
 centre, its list is renewed: an event of its own, which changes no flight. So in a dense gas a search tests a
 dozen particles, and the cells of the centres are read once in many collisions (Verlet, Phys. Rev. 159, 98
 (1967); for events Donev, Torquato & Stillinger, J. Comput. Phys. 202, 737 (2005)).
 
-Which particles are listed follows from the centres alone, so a checkpoint need not hold the lists.
+The lists follow from the centres alone, so a checkpoint need not hold the lists.
 """
 
 from math import inf, sqrt
@@ -22,15 +22,18 @@ from gaspart.kernels.memory import aligned
 from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, PAIR_TESTS
 from gaspart.kernels.simd import WIDTH, lowest
 
-_FAR = 1e30  # an empty place of a cell
+_FAR = 1e30  # coordinate of an empty position of a cell
 _STILL = 1e-280  # squared speeds below which a particle does not move
 
 LISTED = np.dtype([("centre", "f8", 3), ("cell", "u4"), ("place", "u4")], align=True)
-"""Of a particle: where its list was made, the cell of that point, and its place in it."""
+"""Centre of a particle, at which its list was made, the cell of that point, and its position in the cell."""
 
 
 def page_dtype(dimension: int) -> np.dtype:
-    """WIDTH places of a cell, two cache lines: the centres of the particles in it, and their numbers."""
+    """Return the type of a page: WIDTH positions of a cell, in two cache lines.
+
+    A page has the centres of the particles and their numbers.
+    """
     return np.dtype(
         {
             "names": ["centres", "members"],
@@ -42,13 +45,26 @@ def page_dtype(dimension: int) -> np.dtype:
 
 
 class NeighbourLists(NamedTuple):
-    """listed (N,), see `LISTED`; candidates (N * room,), the lists: of each row the first word is its length,
-    and the unused rest names the particle itself. Of the cells of centres (see `state.boxes.Boxes`):
-    per_side, per_length (one over their widths), strides (3,), neighbour, shift; filled (cells,), how many
-    each holds; pages (cells * per_cell,), see `page_dtype`. margin, reach: the distance a particle may move,
-    and that within which centres are listed. clearance (3,): along each axis, the distance of a centre from a
-    face beyond which the particle cannot touch it before its list is renewed. full (2,): whether a list or a
-    cell had no room."""
+    """Neighbour lists, and the cells of the centres (see `state.boxes.Boxes`).
+
+    Attributes
+    ----------
+    listed : (N,), see `LISTED`
+    candidates : (N * room,), the lists; the first word of each row is its length, and the unused rest names
+        the particle itself
+    room : length of a row
+    per_side, strides : (3,), number and index strides of the cells along each axis
+    per_length : (3,), inverse widths of the cells
+    neighbour, shift : neighbours of a cell along each axis, and their periodic images
+    filled : (cells,), number of particles in each cell
+    pages : (cells * per_cell,), see `page_dtype`
+    per_cell : number of pages of a cell
+    margin : distance that a particle may move
+    reach : distance within which centres are listed
+    clearance : (3,), along each axis, the distance of a centre from a face beyond which the particle cannot
+        touch it before its list is renewed
+    full : (2,), whether a list or a cell had no space
+    """
 
     listed: np.ndarray
     candidates: np.ndarray
@@ -68,8 +84,13 @@ class NeighbourLists(NamedTuple):
 
 
 def empty_neighbour_lists(cells, count, dimension, distances, room, per_cell):
-    """Lists of less than `room` entries for `count` particles, and cells (see `state.boxes.Boxes`) of
-    `per_cell` pages, with none in them. distances: margin, reach, clearance (3,)."""
+    """Return neighbour lists for `count` particles, without entries.
+
+    cells : `state.boxes.Boxes`
+    distances : margin, reach, clearance (3,)
+    room : length of a row; a list has fewer entries
+    per_cell : number of pages of a cell
+    """
     return NeighbourLists(
         listed=aligned((count,), LISTED),
         candidates=aligned((count * room + 2 * WIDTH,), np.uint32),
@@ -88,7 +109,7 @@ def empty_neighbour_lists(cells, count, dimension, distances, room, per_cell):
 
 @inner_helper
 def write_place(lists, cell, place, i, centre):
-    """Let a place of a cell hold a particle with this centre (d,)."""
+    """Write a particle and its centre (d,) to a position of a cell."""
     page, lane = cell * uint64(lists.per_cell) + place // uint64(WIDTH), place % uint64(WIDTH)
     lists.pages[page].members[lane] = i
     for k in range(lists.pages[page].centres.shape[0]):
@@ -97,13 +118,13 @@ def write_place(lists, cell, place, i, centre):
 
 @inner_helper
 def cell_along(lists, axis, x):
-    """The coordinate along an axis of the cell of a point; of the outermost one for a point outside."""
+    """Return the coordinate of the cell of a point; outside, of the outermost cell."""
     return min(max(int64(x * lists.per_length[axis]), int64(0)), lists.per_side[axis] - 1)
 
 
 @inner_helper
 def enter_cell(lists, i):
-    """Put a particle into the cell of its centre."""
+    """Insert a particle into the cell of its centre."""
     listed = lists.listed[i]
     cell = int64(0)
     for k in range(lists.pages[0].centres.shape[0]):
@@ -119,7 +140,7 @@ def enter_cell(lists, i):
 
 @inner_helper
 def leave_cell(lists, i):
-    """Take a particle out of its cell; the last one there fills its place."""
+    """Remove a particle from its cell; the last particle there takes its position."""
     cell, place = uint64(lists.listed[i].cell), uint64(lists.listed[i].place)
     last = uint64(lists.filled[cell]) - uint64(1)
     page = cell * uint64(lists.per_cell) + last // uint64(WIDTH)
@@ -132,7 +153,7 @@ def leave_cell(lists, i):
 
 @inner_helper
 def append(lists, i, entry):
-    """Add an entry, a particle and its image, to a list."""
+    """Append an entry, a particle and its image, to a list."""
     row = uint64(i) * uint64(lists.room)
     count = uint64(lists.candidates[row]) + uint64(1)
     if count == uint64(lists.room):
@@ -168,8 +189,12 @@ def strike(lists, i, other):
 
 @inner_helper
 def list_found(lists, i, page, found, image, both):
-    """List particles whose centres are near that of a particle: `found`, a bit for each place of the pages
-    from one on, WIDTH each."""
+    """List particles whose centres are near the centre of a particle.
+
+    page : first page
+    found : a bit for each position of the pages, WIDTH bits per page
+    both : True to list the particle in their lists too
+    """
     while found:
         place = lowest(found)
         found &= found - uint64(1)
@@ -182,8 +207,11 @@ def list_found(lists, i, page, found, image, both):
 
 @inner_helper
 def list_cell(lists, i, point, cell, offset, image, both):
-    """List the particles in a cell whose centres are near that of a particle, `point` (3,); the cell is
-    displaced by `offset` (3,) into an image of the container."""
+    """List the particles in a cell whose centres are near the centre of a particle.
+
+    point : (3,), centre of the particle
+    offset : (3,), displacement of the cell into an image of the container
+    """
     page = cell * uint64(lists.per_cell)
     end = page + max((uint64(lists.filled[cell]) + uint64(WIDTH - 1)) // uint64(WIDTH), uint64(1))
     while page < end:
@@ -194,8 +222,11 @@ def list_cell(lists, i, point, cell, offset, image, both):
 
 @inner_helper
 def list_row(lists, i, point, first, offset, image, both):
-    """The same for three cells, one after another, which mostly have a page each: what is found in all of
-    them is listed in one loop, since no processor predicts the ends of many short ones."""
+    """List near particles in three consecutive cells, which mostly have a page each.
+
+    The results of all three cells are listed in one loop, since processors do not predict the ends of many
+    short loops.
+    """
     if lists.per_cell > 1:
         for cell in range(first, first + uint64(3)):
             list_cell(lists, i, point, cell, offset, image, both)
@@ -209,12 +240,15 @@ def list_row(lists, i, point, first, offset, image, both):
 
 @inner_kernel
 def list_near(lists, i, lengths, both):
-    """List the particles whose centres are near that of a particle. both: also list it in theirs."""
+    """List the particles whose centres are near the centre of a particle.
+
+    both : True to list the particle in their lists too
+    """
     number, centre, neighbour, shift = uint64(i), lists.listed[i].centre, lists.neighbour, lists.shift
     point = centre[0], centre[1], centre[2]
     ax, ay = uint64(cell_along(lists, 0, point[0])), uint64(cell_along(lists, 1, point[1]))
     az = uint64(cell_along(lists, 2, point[2])) if len(lengths) == 3 else uint64(0)
-    within = 0 < ax < lists.per_side[0] - 1  # a row's three cells lie side by side
+    within = 0 < ax < lists.per_side[0] - 1  # the three cells of a row are adjacent in memory
     for dz in range(uint64(0), uint64(3)):
         z, shift_z = neighbour[2, az, dz], shift[2, az, dz]
         if z < 0:
@@ -238,7 +272,7 @@ def list_near(lists, i, lengths, both):
 
 @inner_helper
 def centre_on(lists, flights, i, time, lengths):
-    """Let the place of a particle at a time be its centre."""
+    """Set the centre of a particle to its position at a time."""
     late = time - flights[i].clock
     for k in range(len(lengths)):
         lists.listed[i].centre[k] = flights[i].position[k] + flights[i].velocity[k] * late
@@ -246,7 +280,10 @@ def centre_on(lists, flights, i, time, lengths):
 
 @inner_kernel
 def renew(flights, i, time, lists, space, tally):
-    """Renew the list of a particle at a time, and its entries in those of others."""
+    """Renew the list of a particle, and its entries in the lists of others.
+
+    time : present time
+    """
     tally.counts[CROSSINGS] += 1
     row = i * lists.room
     for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
@@ -260,7 +297,7 @@ def renew(flights, i, time, lists, space, tally):
 
 @kernel
 def make_lists(lists, lengths):
-    """Make all lists from the centres. `full` if there was no room."""
+    """Make all lists from the centres; `full` is set if there was no space."""
     lists.full[:] = 0
     lists.filled[:] = 0
     for page in range(len(lists.pages)):
@@ -274,14 +311,14 @@ def make_lists(lists, lengths):
 
 @kernel
 def centre_all(lists, flights, time, lengths):
-    """Let the place of each particle at a time be its centre."""
+    """Set the centre of each particle to its position at a time."""
     for i in range(len(flights)):
         centre_on(lists, flights, i, time, lengths)
 
 
 @inner_helper
 def search_list(particles, i, lists, space, tally):
-    """Predict the contact with one of the particles in a list, if it is earlier than that predicted."""
+    """Predict the contact with a particle of the list, if it is the earliest."""
     row = uint64(i) * uint64(lists.room)
     count = uint64(lists.candidates[row])
     tally.counts[PAIR_TESTS] += int64(count)
@@ -294,7 +331,7 @@ def search_list(particles, i, lists, space, tally):
 
 @inner_helper
 def next_renewal(flights, i, lists):
-    """When a particle will have moved a margin from its centre: (time, face code)."""
+    """Return the time at which a particle has moved a margin: (time, face code)."""
     if lists is not None:
         flight, centre = flights[i], lists.listed[i].centre
         rr = rv = vv = 0.0
@@ -311,8 +348,11 @@ def next_renewal(flights, i, lists):
 
 @inner_helper
 def is_renewed_first(i, time, lists, space, faces):
-    """Whether the list of a particle is renewed, at a `time` or never, before it can come to a face: all
-    faces are at rest and farther from its centre than a margin."""
+    """Return True if a particle's list is renewed before the particle can reach a face.
+
+    The renewal is at `time`, which must be finite; all faces are at rest and farther from its centre than a
+    margin.
+    """
     if lists is None or faces is not None:
         return False
     centre, far = lists.listed[i].centre, time < inf
@@ -323,7 +363,7 @@ def is_renewed_first(i, time, lists, space, faces):
 
 @inner_helper
 def is_room_lacking(lists):
-    """Whether a list or cell had no room for a particle, so that the lists are not complete."""
+    """Return True if a list or cell had no space, so that the lists are incomplete."""
     if lists is None:
         return False
     return lists.full[0] + lists.full[1] > 0

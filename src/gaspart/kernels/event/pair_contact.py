@@ -1,4 +1,4 @@
-"""The contact of two particles in the event-driven engine."""
+"""Contact of two particles in the event-driven engine."""
 
 from __future__ import annotations
 
@@ -23,17 +23,19 @@ from gaspart.kernels.physics.running_sum import add
 
 # Contacts of two particles that gravity presses together, as in a stack at rest.
 #
-# The lower one rests on a floor, on a wall, or is fixed, so that the upper one falls relative to it and
-# would meet it infinitely often. Or both are in a row that others press: the slower they are, the more
-# often they meet, as their momentum times this rate is the force. With a contact duration they part at
-# least so fast that gravity lets them meet again after a small part of it; this energy, far below that of
-# a fall through a diameter, is counted as a negative loss.
+# The lower particle rests on a floor, on a wall, or is fixed, so that the upper one falls relative to it and
+# would hit it infinitely often. Or both are in a row that others press: the slower they are, the more often
+# they meet, as their momentum times this rate is the force. With a contact duration their speed of separation
+# has a lower bound, so that gravity brings them together again after a small part of this duration. The added
+# energy, far below the energy of a fall through a diameter, is counted as a negative loss.
 
 
 @inner_helper
 def least_parting(flights, i, j, space, gravity, law):
-    """The least speed at which two particles that touch, and have been advanced to the present time, part; 0
-    if nothing presses them together."""
+    """Return the minimum speed of separation of two touching particles; 0 if nothing presses them.
+
+    Both particles have been advanced to the present time.
+    """
     if gravity is not None:
         if law is not None:
             return _pressed_parting(flights, i, j, space, gravity, law.duration)
@@ -60,7 +62,7 @@ def _pressed_parting(flights, i, j, space, gravity, duration):
 
 @inner_kernel
 def direction(flights, i, j, space):
-    """(3,) the unit vector from a particle to another one."""
+    """Return the unit vector (3,) from a particle to another one."""
     x, y = gap_along(flights, i, j, 0, space), gap_along(flights, i, j, 1, space)
     z = gap_along(flights, i, j, 2, space)
     distance = sqrt(x * x + y * y + z * z)
@@ -69,7 +71,7 @@ def direction(flights, i, j, space):
 
 @inner_helper
 def part(flights, i, j, least, model, tally, law):
-    """Let two particles that have collided part at least so fast."""
+    """Apply the minimum speed of separation to two particles that have collided."""
     if law is not None:
         _part_pressed(flights, i, j, least, model.space, tally, law, law.duration)
 
@@ -92,7 +94,10 @@ def _part_pressed(flights, i, j, least, space, tally, law, duration):
 
 @inner_helper
 def release_pair(flights, i, j, model, tally, gravity, law):
-    """Let gravity act in full on two particles that have collided, unless one rests below a fixed one."""
+    """Release two particles after their collision, unless one rests below a fixed one.
+
+    Gravity acts in full on released particles.
+    """
     if gravity is not None:
         _release_from(flights, i, j, model, tally, gravity, law)
         _release_from(flights, j, i, model, tally, gravity, law)
@@ -100,15 +105,17 @@ def release_pair(flights, i, j, model, tally, gravity, law):
 
 @inner_helper
 def _release_from(flights, i, j, model, tally, gravity, law):
-    """The same of the first of two particles."""
+    """Release the first of two particles, unless it rests below the second."""
     if not _rests_below(flights, i, j, model.space, tally, gravity, law):
         release(flights, i, model.space, gravity.support)
 
 
 @inner_helper
 def _rests_below(flights, i, j, space, tally, gravity, law):
-    """Let the first of two particles rest in the wedge between what it rests on and a fixed second one.
-    Returns whether it does."""
+    """Put the first of two particles to rest in the wedge below a fixed second one.
+
+    Returns whether it rests between its support and the second particle.
+    """
     if law is not None:
         if law.inverse_mass[j] == 0.0:
             return _rests_below_fixed(flights, i, j, space, tally, gravity, law, law.duration)
@@ -183,9 +190,12 @@ def _kick(flights, i, width, key, number, space):
 
 @kernel
 def kick_all(flights, time, width, counter, model, given):
-    """Advance all particles to `time` and kick them, with a width of `width` for mass 1, without changing the
-    total momentum. counter: the (2,) words of the key, and the number of the kick. given (1, 2): the energy
-    that they have been given, see `running_sum.add`."""
+    """Advance all particles to `time` and kick them without a change of the total momentum.
+
+    width : width of the distribution of kicks for mass 1
+    counter : words (2,) of the key, and number of the kick
+    given : (1, 2), energy given to the particles, see `physics.running_sum.add`
+    """
     (key, number), space = counter, model.space
     total = px = py = pz = 0.0
     last = len(space.lengths) - 1
@@ -210,12 +220,20 @@ def kick_all(flights, time, width, counter, model, given):
             add(given, 0, _energy(flights, i, mass, space))
 
 
-# What observes events while they happen: the record of events, and the detection of a collapse.
+# Observers of events while they happen: the record of events, and the detection of a collapse.
 
 
 class Record(NamedTuple):
-    """Room for events: filled (1,), time (M,), particles (M, 2), their indices, positions and velocities
-    (M, 2, d), spins (M, 2, 3), which only a `ContactLaw` fills in."""
+    """Record of events with space for M of them.
+
+    Attributes
+    ----------
+    filled : (1,), number of recorded events
+    time : (M,), times
+    particles : (M, 2), indices
+    positions, velocities : (M, 2, d)
+    spins : (M, 2, 3), only recorded with a `ContactLaw`
+    """
 
     filled: np.ndarray
     time: np.ndarray
@@ -226,7 +244,15 @@ class Record(NamedTuple):
 
 
 class CollapseWatch(NamedTuple):
-    """For each particle, how many contacts (N,) it has had since (N,) within `interval`, at most `most`."""
+    """Counts of contacts of each particle, which reveal a collapse.
+
+    Attributes
+    ----------
+    since : (N,), time of the first counted contact
+    contacts : (N,), number of contacts within `interval`
+    interval : length of time in which contacts are counted
+    most : maximum number of contacts in it
+    """
 
     since: np.ndarray
     contacts: np.ndarray
@@ -235,7 +261,7 @@ class CollapseWatch(NamedTuple):
 
 
 class Monitors(NamedTuple):
-    """record, collapse: a `Record` and a `CollapseWatch`, or None."""
+    """Record of events and watch for a collapse; each may be None."""
 
     record: Record | None
     collapse: CollapseWatch | None
@@ -243,7 +269,7 @@ class Monitors(NamedTuple):
 
 @inner_helper
 def is_full(record):
-    """Whether the record has no room for another event."""
+    """Return True if the record has no space for another event."""
     if record is None:
         return False
     return record.filled[0] == len(record.time)
@@ -277,7 +303,7 @@ def record_event(flights, i, j, time, model, record):
 
 @inner_kernel
 def has_collapsed(collapse, i, time):
-    """Count a contact of a particle. True if it has had too many of them in too short a time."""
+    """Count a contact of a particle; return True for too many contacts within the interval."""
     if time - collapse.since[i] > collapse.interval:
         collapse.since[i] = time
         collapse.contacts[i] = 0
@@ -287,8 +313,11 @@ def has_collapsed(collapse, i, time):
 
 @inner_helper
 def collapse_detected(i, j, time, faces, collapse):
-    """Whether an event was one contact too many, of particles i and j, or of i with an interior wall; hits of
-    the container's `faces` do not count."""
+    """Return True if an event is one contact too many of its particles.
+
+    The event is a contact of i and j, or of i with an interior wall; hits of the container's `faces` do not
+    count.
+    """
     if collapse is None:
         return False
     if j >= 0 or j < -faces:

@@ -1,5 +1,6 @@
-"""What a particle does next: its contact, the face it comes to, the renewal of its neighbour list; predicted
-anew after each event of the particle, and kept in the queue.
+"""Prediction of a particle's next events: contact, face, renewal of its neighbour list.
+
+Events are predicted anew after each event of the particle, and stored in the queue.
 """
 
 from __future__ import annotations
@@ -20,43 +21,44 @@ from gaspart.kernels.obstacles.moving import next_moving, next_piston
 from gaspart.kernels.physics.flight import mark_resting, time_of_contact
 from gaspart.kernels.prefetch import fetch
 
-# Particles too large for the boxes: how they are searched for, and search.
+# Search for particles that are too large for the boxes.
 #
-# A small particle tests the oversized ones that are near its box; an oversized one tests the particles in
-# all boxes that are near its own, and all other oversized ones. Whether two boxes are near, for an
-# oversized particle, follows from their numbers alone, so it is the same seen from either; and no contact
-# can occur between particles whose boxes are not. A particle that passes into another box searches what
-# has become near.
+# A small particle tests the oversized ones that are near its box; an oversized one tests the particles in all
+# boxes that are near its own, and all other oversized ones. For an oversized particle, the numbers of two
+# boxes alone determine whether they are near, so the result is the same from either box; no contact can occur
+# between particles whose boxes are not near. A particle that passes into another box searches the boxes that
+# have become near.
 
 
-_SLACK = 1e-9  # by which neighbourhoods are drawn wider, so that rounding hides no contact
+_SLACK = 1e-9  # relative extension of neighbourhoods, so that rounding hides no contact
 
 
 @inner_helper
 def reach_square(flights, i, oversized):
-    """Square of the greatest distance between the centre of an oversized particle and of a small one that
-    touches it."""
+    """Return the squared contact distance of an oversized particle and the largest small one."""
     reach = (flights[i].radius + oversized.largest_radius) * (1.0 + _SLACK)
     return reach * reach
 
 
 @inner_helper
 def gap_square(steps, width):
-    """Square of the gap along an axis between boxes that are so many steps apart."""
+    """Return the squared gap along an axis between boxes that are a number of steps apart."""
     gap = max(abs(steps) - 1, 0) * width
     return gap * gap
 
 
 @inner_helper
 def near(x, y, z, widths, square):
-    """Whether boxes these steps apart hold points nearer than the root of `square`."""
+    """Return True if boxes these steps apart hold points nearer than the root of `square`."""
     return gap_square(x, widths[0]) + gap_square(y, widths[1]) + gap_square(z, widths[2]) < square
 
 
 @inner_helper
 def newly_near(x, y, z, crossed, widths, square):
-    """The same, but for boxes that were near before a step `crossed` (3,) into another box, if there was
-    one."""
+    """Return True if boxes are near now but were not before a step `crossed` (3,).
+
+    Without a step, all near boxes count. The step leads into another box.
+    """
     all_new = crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0
     return near(x, y, z, widths, square) and (
         all_new or not near(x + crossed[0], y + crossed[1], z + crossed[2], widths, square)
@@ -65,14 +67,16 @@ def newly_near(x, y, z, crossed, widths, square):
 
 @inner_kernel
 def images_along(axis, space):
-    """How many images of the container to search on either side along an axis."""
+    """Return the number of images of the container to search on either side along an axis."""
     return 1 if axis < len(space.lengths) and space.periodic[axis] else 0
 
 
 @inner_kernel
 def test_pair(particles, i, other, image, space, tally, gravity):
-    """Predict the contact with another particle in an image (3,) of the container, if it is the earliest so
-    far."""
+    """Predict the contact with an image of another particle if it is the earliest so far.
+
+    image : (3,), image of the container
+    """
     d = len(space.lengths)
     predictions = particles.predictions
     offset = image[0] * space.lengths[0], image[1] * space.lengths[1], image[2] * space.lengths[d - 1]
@@ -86,8 +90,11 @@ def test_pair(particles, i, other, image, space, tally, gravity):
 
 @inner_kernel
 def find_oversized(particles, i, boxes, space, tally, crossed, gravity, oversized):
-    """Search for an earlier contact of a small particle with the oversized ones near its box; if it has
-    crossed into that box by `crossed` (3,), with those only that were not near before."""
+    """Search for an earlier contact of a small particle with oversized ones near its box.
+
+    crossed : (3,), step into that box, or 0; after a step only particles are searched that were not near
+        before
+    """
     here, n, widths = particles.predictions[i].box, boxes.per_side, boxes.widths
     images_x, images_y, images_z = images_along(0, space), images_along(1, space), images_along(2, space)
     for m in range(len(oversized.particles)):
@@ -106,8 +113,10 @@ def find_oversized(particles, i, boxes, space, tally, crossed, gravity, oversize
 
 @inner_helper
 def span(here, n, width, square, periodic):
-    """The first and last coordinate of boxes along an axis that may be near; on a periodic axis they go on
-    beyond the container."""
+    """Return the first and last coordinate of boxes along an axis that may be near.
+
+    On a periodic axis they continue beyond the container.
+    """
     steps = int(sqrt(square) / width) + 2
     if periodic:
         return here - min(steps, n), here + min(steps, n)
@@ -116,14 +125,16 @@ def span(here, n, width, square, periodic):
 
 @inner_helper
 def image_of(coordinate, n):
-    """In which image of the container a box coordinate lies."""
+    """Return the image of the container in which a box coordinate lies."""
     return 1 if coordinate >= n else (-1 if coordinate < 0 else 0)
 
 
 @inner_kernel
 def find_around(particles, i, boxes, space, tally, crossed, gravity, oversized):
-    """Search for an earlier contact of an oversized particle with all the particles in boxes near its own; if
-    it has crossed into that box by `crossed` (3,), in those only that were not near before."""
+    """Search for an earlier contact of an oversized particle with particles in boxes near its own.
+
+    crossed : (3,), step into that box, or 0; after a step only boxes are searched that were not near before
+    """
     here, n, widths = particles.predictions[i].box, boxes.per_side, boxes.widths
     square = reach_square(particles.flights, i, oversized)
     first_x, last_x = span(here[0], n[0], widths[0], square, images_along(0, space) > 0)
@@ -164,8 +175,10 @@ def find_other_oversized(particles, i, space, tally, gravity, oversized):
 
 @inner_helper
 def search_oversized(particles, i, boxes, space, tally, crossed, gravity, oversized):
-    """What `find_contact` leaves to be searched where there are oversized particles; `crossed` (3,): the step
-    into the next box that the particle has just made, or none."""
+    """Search the contacts with oversized particles, which `find_contact` does not find.
+
+    crossed : (3,), step into the box that the particle has just made, or 0
+    """
     if oversized is not None:
         if particles.flights[i].radius <= oversized.largest_radius:
             find_oversized(particles, i, boxes, space, tally, crossed, gravity, oversized)
@@ -181,14 +194,17 @@ NOT_CROSSED = (int64(0), int64(0), int64(0))
 
 @inner_helper
 def without_contacts(model):
-    """Return the model without what matters at contacts only: what predictions depend on."""
+    """Return the model without the parts that matter only at contacts.
+
+    Predictions do not depend on these parts.
+    """
     obstacles = model.faces, model.walls, model.oversized
     return Model(model.space, None, model.gravity, None, *obstacles, model.shear, None)
 
 
 @inner_helper
 def predict_contact(particles, i, boxes, model, tally, crossed, lists):
-    """Predict the next contact of a particle, if it is earlier than that predicted."""
+    """Predict the next contact of a particle, if it is earlier than the present prediction."""
     if lists is not None:
         search_list(particles, i, lists, model.space, tally)
     else:
@@ -199,7 +215,7 @@ def predict_contact(particles, i, boxes, model, tally, crossed, lists):
 
 @inner_helper
 def predict_face(particles, i, boxes, model, now):
-    """Predict when a particle comes to a face or an interior wall, or its neighbour list must be renewed."""
+    """Predict the next hit of a face or interior wall, or the list's renewal."""
     predictions, space, gravity = particles.predictions, model.space, model.gravity
     time, face = next_renewal(particles.flights, i, boxes.lists)
     if not is_renewed_first(i, time, boxes.lists, space, model.faces):
@@ -213,8 +229,13 @@ def predict_face(particles, i, boxes, model, now):
 
 @inner_helper
 def predict_meeting(particles, i, boxes, model, tally, number, crossed):
-    """Predict the next contact of a particle anew; or, if it has just `crossed` (3,) into the next box,
-    search the boxes that have become neighbours. number: of the present event."""
+    """Predict the next contact of a particle anew.
+
+    If the particle has just crossed into the next box, only the new neighbours of this box are searched.
+
+    number : number of the present event
+    crossed : (3,), step into the box, or 0
+    """
     predictions = particles.predictions
     if crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0:
         predictions[i].contact_time = inf
@@ -244,8 +265,10 @@ def sort_all(predictions, boxes, faces, lists):
 
 @kernel
 def begin(particles, queue, boxes, model, tally, now, anew):
-    """Make the boxes' lists and the queue of all predictions, which are those of a checkpoint or made `anew`.
-    Neighbour lists must have been made."""
+    """Make the lists of the boxes and the queue of all predictions.
+
+    Neighbour lists must have been made. The predictions come from a checkpoint or are made `anew`.
+    """
     sort_all(particles.predictions, boxes, model.faces, boxes.lists)
     for i in range(len(particles.flights)):
         mark_resting(particles.flights, i, model.space, model.gravity, boxes.resting)
@@ -258,8 +281,11 @@ def begin(particles, queue, boxes, model, tally, now, anew):
 
 @inner_helper
 def predict_after(particles, pair, queue, boxes, model, tally, event, crossed):
-    """Predict the next events of the particles of an event, `pair` (2,), the second of which may be none.
-    event: its time, its number, and whether it changed flights."""
+    """Predict the next events of the particles of an event.
+
+    pair : (2,), the particles; the second may be NONE
+    event : time, number, and whether it changed flights
+    """
     predictions = particles.predictions
     time, number, changes = event
     first, second = pair
@@ -284,7 +310,7 @@ def predict_after(particles, pair, queue, boxes, model, tally, event, crossed):
 
 @inner_kernel
 def predict_faces(particles, time, queue, boxes, model, piston):
-    """Predict anew when particles come to a face, if that was the piston or may be now."""
+    """Predict face hits anew for particles whose next face was or may be the piston."""
     predictions = particles.predictions
     for i in range(len(predictions)):
         was = predictions[i].face == piston.face
@@ -295,7 +321,7 @@ def predict_faces(particles, time, queue, boxes, model, piston):
 
 @inner_kernel
 def predict_walls(particles, time, queue, boxes, model, moving):
-    """The same of the interior wall that moves."""
+    """Predict the hits anew for particles whose next wall was or may be the moving one."""
     predictions = particles.predictions
     for i in range(len(predictions)):
         was = predictions[i].face == WALLS
@@ -306,8 +332,10 @@ def predict_walls(particles, time, queue, boxes, model, moving):
 
 @inner_helper
 def predict_after_piston(particles, partner, time, queue, boxes, model, faces, walls):
-    """After a contact with a piston or a wall that moves, whose motion it has changed, predict that of all
-    others with it anew. partner: -1 - the number of the face or wall met."""
+    """Predict other particles' hits anew after a hit that changed a piston or moving wall.
+
+    partner : -1 - number of the face or wall that was hit
+    """
     if faces is not None:
         _predict_after_piston(particles, partner, time, queue, boxes, model, faces.piston)
     if walls is not None:
@@ -330,7 +358,7 @@ def _predict_after_wall(particles, partner, time, queue, boxes, model, moving):
 
 @inner_kernel
 def predict_island(particles, number, queue, boxes, model, tally, event, island):
-    """Predict the next events of the particles of an island, which belong to none any more."""
+    """Predict the next events of the particles of an island, and dissolve the island."""
     time, count = event
     for i in range(len(island)):
         if island[i] == number:

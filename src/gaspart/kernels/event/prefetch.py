@@ -1,10 +1,10 @@
-"""Prefetching what the next events will read, while this one is processed.
+"""Prefetch of the data that the next events will read, while the present event is processed.
 
-Particles that meet lie anywhere in memory. If they are too many for the processor's own cache, an event waits
-some ten times for what it reads, longer than it computes. But the queue holds what comes next: some buckets
-ahead, a particle's predictions are fetched; fewer buckets ahead, the lists of the boxes about it, then the
-particles in them, and the same for its partner. Nothing is changed, and what was fetched for an event that
-does not come is not used.
+Colliding particles lie anywhere in memory. If they are too many for the processor's own cache, an event waits
+some ten times for data, longer than it computes. But the queue holds the next events: some buckets ahead, a
+particle's predictions are fetched; fewer buckets ahead, the lists of the boxes around it, then the particles
+in them, and the same for its partner. The prefetch changes no data; data that were fetched for an event that
+does not occur are not used.
 """
 
 from numpy import int64, uint32, uint64
@@ -16,25 +16,32 @@ from gaspart.kernels.event.queue import BUCKET
 from gaspart.kernels.model import BOX_FACES, WELL_EDGES
 from gaspart.kernels.prefetch import TOGETHER, fetch, fetch_numbered, fetch_two
 
-CACHED = 1 << 15  # particles up to which the nearer caches suffice without,
-CACHED_LISTS = 3 << 12  # and with neighbour lists
-_STRIDE = 3  # buckets from one stage to the next: about as many events
-_MISSED = 15  # buckets that are made up for if the queue has leapt over them
-_BOTH = (int64(0), int64(0), int64(0))  # sides of each axis
-_FETCHED = 2  # places of a box whose particles are fetched: few boxes hold more
+CACHED = 1 << 15  # particles for which the nearer caches suffice, without neighbour lists
+CACHED_LISTS = 3 << 12  # the same with neighbour lists
+_STRIDE = 3  # buckets from one stage to the next, about one event each
+_MISSED = 15  # buckets that are fetched later if the queue has leapt over them
+_BOTH = (int64(0), int64(0), int64(0))  # side of each axis: both
+_FETCHED = 2  # positions of a box whose particles are fetched: few boxes hold more
 
 
 @inner_helper
 def steps(side, is_one):
-    """First step and end (0..3) of the boxes to search along an axis: all, or those on one side, or the only
-    one there is."""
+    """Return first step and end (0..3) of the boxes to search along an axis.
+
+    These are all boxes, or the boxes on one side, or the only box that exists.
+    """
     return (uint64(1 + side), uint64(2 + side)) if side or is_one else (uint64(0), uint64(3))
 
 
 @inner_helper
 def fetch_about(flights, boxes, at, side, members):
-    """Fetch the lists of the boxes about that at coordinates (3,), of an axis with a side (-1 or 1) of those
-    on that side only; or, once these are near, with `members` the particles in them."""
+    """Fetch the lists of the boxes around a box, or with `members` the particles in them.
+
+    The particles are fetched once the lists are near.
+
+    at : (3,), coordinates of the box
+    side : (3,), -1 or 1 for an axis along which only boxes on that side are fetched, otherwise 0
+    """
     neighbour = boxes.neighbour
     last_particle = uint32(len(flights) - 1)
     ax, ay, az = uint64(at[0]), uint64(at[1]), uint64(at[2])
@@ -63,15 +70,18 @@ def fetch_about(flights, boxes, at, side, members):
 
 @inner_helper
 def crossing_of(face):
-    """(3,) the step into the next box that a particle makes at the face of its own with this code."""
+    """Return the step (3,) into the next box for the code of a box's face."""
     axis, step = (face - BOX_FACES) // 2, 1 if face % 2 else -1
     return step if axis == 0 else 0, step if axis == 1 else 0, step if axis == 2 else 0
 
 
 @inner_helper
 def searched(predictions, i):
-    """The box (3,) about which a particle will search at its next event, and on which side only (3,), if any:
-    what lies in its way if it crosses into the next box."""
+    """Return the box (3,) and the side (3,) of a particle's next search.
+
+    The search is around this box. The side is not 0 for the axis along which the particle crosses into the
+    next box: only boxes on that side are searched.
+    """
     at, face = predictions[i].box, int64(predictions[i].face)
     side = _BOTH
     if predictions[i].face_time <= predictions[i].contact_time and BOX_FACES <= face < WELL_EDGES:
@@ -81,8 +91,11 @@ def searched(predictions, i):
 
 @inner_helper
 def fetch_predictions(predictions, queue, bucket):
-    """Fetch the predictions of the third particle in a bucket, the second in a later one, the first in one
-    later still: each is found by those of the one before it."""
+    """Fetch the predictions of particles in three buckets.
+
+    They are the third particle in a bucket, the second in a later one, and the first in one later still: each
+    is found by the predictions of the particle before it.
+    """
     head, mask = queue.head, len(queue.head) - 2
     first = head[(bucket + 2 * _STRIDE) & mask]
     if first >= 0:
@@ -117,8 +130,11 @@ def fetch_list(flights, lists, i):
 
 @inner_helper
 def fetch_renewal(flights, lists, i, time):
-    """Fetch what the renewal of a particle's list at a time will read: the lists of the particles in it, and
-    the cells about the place where it will be."""
+    """Fetch the data of the renewal of a particle's list at a time.
+
+    These are the lists of the particles in it, and the cells around the position of the particle at that
+    time.
+    """
     row = i * lists.room
     for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
         fetch_two(lists.candidates, number_of(lists.candidates[n]) * lists.room)
@@ -138,7 +154,7 @@ def fetch_renewal(flights, lists, i, time):
 
 @inner_helper
 def prefetch_lists(particles, queue, lists, next_bucket):
-    """The same as `prefetch` with neighbour lists."""
+    """Fetch the data of the next events like `prefetch`, with neighbour lists."""
     flights, predictions = particles.flights, particles.predictions
     head, mask = queue.head, len(queue.head) - 2
     now = queue.cursor[BUCKET]
@@ -166,8 +182,10 @@ def prefetch_lists(particles, queue, lists, next_bucket):
 
 @inner_helper
 def prefetch(particles, queue, boxes, next_bucket):
-    """Fetch what the events some buckets after the current one will read, if `next_bucket` was the next to do
-    so for. Returns which now is."""
+    """Fetch the data of the events some buckets after the current one; return the next bucket.
+
+    next_bucket : first bucket for which no data were fetched yet
+    """
     flights, predictions = particles.flights, particles.predictions
     head, mask = queue.head, len(queue.head) - 2
     now = queue.cursor[BUCKET]

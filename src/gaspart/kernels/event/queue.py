@@ -1,14 +1,14 @@
-"""The event queue: one next event per particle, in a calendar of short unsorted buckets.
+"""Event queue: one next event per particle, in a calendar of short unsorted buckets.
 
-A bucket spans about the mean time between events, so finding the soonest event means looking at one or
-two particles, whatever their number. Events beyond the calendar's horizon wait in an overflow list. The
-order is strict and does not depend on the buckets: by time, then by the tie key that the caller gives.
+A bucket spans about the mean time between events, so finding the soonest event means looking at one or two
+particles, whatever their number. Events beyond the calendar's horizon wait in an overflow list. The order is
+strict and does not depend on the buckets: by time, then by the tie key (`tie`).
 
 Many events may be simultaneous, as on a lattice whose planes are edges of boxes, or close to each other
-beside the mean time. If the current bucket is long, it is sorted: its list begins with particles in any
-order, at most MOST_UNSORTED of them, and goes on with sorted runs, each more than twice as long as the one
-before it. So k events of one bucket cost of the order of k log(k)^2 comparisons at most, and k log(k) if no
-new ones come.
+compared with the mean time. If the current bucket is long, it is sorted: its list begins with particles in
+any order, at most MOST_UNSORTED of them, and goes on with sorted runs, each more than twice as long as the
+one before it. So k events of one bucket cost of the order of k log(k)^2 comparisons at most, and k log(k) if
+no new ones come.
 """
 
 from typing import NamedTuple
@@ -17,20 +17,24 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 
-BUCKET, FILLED, RUNS, EVENT_COUNT = range(4)  # of Queue.cursor
+BUCKET, FILLED, RUNS, EVENT_COUNT = range(4)  # entries of Queue.cursor
 MOST_UNSORTED = 32
 """Largest number of particles of a bucket that are searched one by one."""
 MOST_RUNS = 32
-FIRST, LENGTH = range(2)  # of Queue.runs
+FIRST, LENGTH = range(2)  # rows of Queue.runs
 
 
 class Queue(NamedTuple):
     """Calendar of the next events of all particles.
 
-    head: first particle of each bucket, the last of which is the overflow; rate (1,): buckets per unit of
-    time; cursor (4,): the current bucket, the number of particles in buckets that are not the overflow, the
-    number of sorted runs in the current bucket, and the number of events processed; runs (2, MOST_RUNS): the
-    first particle of each run, and its length when it was made, from the last run in the list to the first.
+    Attributes
+    ----------
+    head : (buckets + 1,), first particle of each bucket; the last bucket is the overflow
+    rate : (1,), buckets per unit of time
+    cursor : (4,), current bucket, number of particles in buckets other than the overflow, number of sorted
+        runs in the current bucket, and number of processed events
+    runs : (2, MOST_RUNS), first particle of each run, and its length when it was made, from the last run in
+        the list to the first
     """
 
     head: np.ndarray
@@ -40,7 +44,7 @@ class Queue(NamedTuple):
 
 
 def empty_queue(count: int) -> Queue:
-    """A queue for `count` particles with nothing in it."""
+    """Return an empty queue for `count` particles."""
     buckets = 1 << max(4, (4 * count - 1).bit_length())
     head, runs = np.full(buckets + 1, -1, dtype=np.int32), np.zeros((2, MOST_RUNS), dtype=np.int64)
     return Queue(head, np.ones(1), np.zeros(4, dtype=np.int64), runs)
@@ -48,30 +52,30 @@ def empty_queue(count: int) -> Queue:
 
 @inner_helper
 def time_of(predictions, i):
-    """The time of a particle's next event."""
+    """Return the time of a particle's next event."""
     return min(predictions[i].contact_time, predictions[i].face_time)
 
 
 @inner_helper
 def count_event(queue):
-    """The number of this event."""
+    """Count an event; return its number."""
     queue.cursor[EVENT_COUNT] += 1
     return queue.cursor[EVENT_COUNT]
 
 
 @inner_helper
 def is_outdated(predictions, i):
-    """Whether the partner's flight has changed since the particle's contact with it was predicted."""
+    """Return True if the partner's flight has changed since the contact was predicted."""
     return predictions[predictions[i].partner].changed > predictions[i].predicted
 
 
 @inner_helper
 def tie(predictions, i):
-    """What orders simultaneous events: faces first, by particle, then pairs by lower and higher index.
+    """Return the key that orders simultaneous events.
 
-    No two predictions have the same key, though both particles of a pair may predict their contact: if one of
-    these is outdated, which comes first decides how much is searched, and a bucket's order must not decide
-    that.
+    Faces come first, by particle, then pairs by lower and higher index. No two predictions have the same key,
+    though both particles of a pair may predict their contact. If one of these is outdated, their order
+    decides how much is searched, and the order in a bucket must not decide that.
     """
     if predictions[i].face_time <= predictions[i].contact_time:
         return i - len(predictions)
@@ -81,7 +85,10 @@ def tie(predictions, i):
 
 @inner_helper
 def bucket_of(queue, predictions, i):
-    """The bucket of a particle's time: the current one at the earliest, the overflow beyond the horizon."""
+    """Return the bucket of a particle's time.
+
+    It is the current bucket at the earliest, and the overflow beyond the horizon.
+    """
     buckets = len(queue.head) - 1
     current = queue.cursor[BUCKET]
     x = time_of(predictions, i) * queue.rate[0]
@@ -93,7 +100,7 @@ def bucket_of(queue, predictions, i):
 
 @inner_helper
 def _link(queue, predictions, i):
-    """Put a particle into the bucket of its time."""
+    """Insert a particle into the bucket of its time."""
     bucket = bucket_of(queue, predictions, i)
     queue.cursor[FILLED] += bucket < len(queue.head) - 1
     first = np.int64(queue.head[bucket])
@@ -106,8 +113,11 @@ def _link(queue, predictions, i):
 
 @inner_helper
 def _unlink(queue, predictions, i):
-    """Take a particle out of its bucket. Where it has no neighbour its own entry is written instead, which
-    means nothing any more: no processor predicts a branch."""
+    """Remove a particle from its bucket.
+
+    Without a neighbour its own entry is written instead, which is no longer used: the processor then has no
+    branch to predict.
+    """
     bucket = np.int64(predictions[i].bucket)
     after, before = np.int64(predictions[i].after), np.int64(predictions[i].before)
     first = np.int64(queue.head[bucket])
@@ -121,7 +131,7 @@ def _unlink(queue, predictions, i):
 
 @inner_kernel
 def _take_from_runs(queue, i, after):
-    """Let a run that begins with a particle begin with the one after it, or end with the run."""
+    """Remove the first particle of a run from the run; an empty run is removed."""
     next_run = np.int64(-1)
     for r in range(queue.cursor[RUNS]):
         first = queue.runs[FIRST, r]
@@ -138,14 +148,14 @@ def _take_from_runs(queue, i, after):
 
 @inner_helper
 def reschedule(queue, predictions, i):
-    """Put a particle whose predictions have changed into the bucket where it now belongs."""
+    """Move a particle whose predictions have changed into its new bucket."""
     _unlink(queue, predictions, i)
     _link(queue, predictions, i)
 
 
 @inner_kernel
 def fill(queue, predictions, now):
-    """Sort all particles in, with buckets of the mean time between their events."""
+    """Sort all particles into buckets of the mean time between their events."""
     queue.head[:] = -1
     total = 0.0
     finite = 0
@@ -164,7 +174,7 @@ def fill(queue, predictions, now):
 
 @inner_kernel
 def _recall_overflow(queue, predictions):
-    """Move the particles of the overflow whose time has come within the horizon into their buckets."""
+    """Move particles of the overflow whose time is now within the horizon into their buckets."""
     buckets = len(queue.head) - 1
     i = np.int64(queue.head[buckets])
     while i >= 0:
@@ -176,7 +186,10 @@ def _recall_overflow(queue, predictions):
 
 @inner_kernel
 def _leap(queue, predictions):
-    """With all buckets empty, go straight to the first event of the overflow. False if there is none."""
+    """Advance to the first event of the overflow; return False if there are no events.
+
+    All other buckets must be empty.
+    """
     first = np.inf
     i = np.int64(queue.head[len(queue.head) - 1])
     while i >= 0:
@@ -191,14 +204,17 @@ def _leap(queue, predictions):
 
 @inner_helper
 def _is_before(predictions, i, j):
-    """Return True if the event of particle i comes before that of particle j."""
+    """Return True if the event of particle i comes before the event of particle j."""
     time, other = time_of(predictions, i), time_of(predictions, j)
     return time < other or (time == other and tie(predictions, i) < tie(predictions, j))
 
 
 @inner_kernel
 def _merge(predictions, one, other):
-    """Merge two sorted lists of particles, linked by `after` and ended by -1. Returns the first particle."""
+    """Merge two sorted lists of particles; return the first particle.
+
+    The lists are linked by `after` and end with -1.
+    """
     first = last = np.int64(-1)
     while one >= 0 or other >= 0:
         if other < 0 or (one >= 0 and _is_before(predictions, one, other)):
@@ -215,7 +231,7 @@ def _merge(predictions, one, other):
 
 @inner_kernel
 def _cut(predictions, first, count):
-    """End a list after `count` particles. Returns the first particle of the rest, or -1."""
+    """End a list after `count` particles; return the first particle of the rest, or -1."""
     last = first
     for _ in range(count - 1):
         if last >= 0:
@@ -229,7 +245,10 @@ def _cut(predictions, first, count):
 
 @inner_kernel
 def _sort(predictions, first, count):
-    """Sort a list of `count` particles, linked by `after` and ended by -1. Returns the first particle."""
+    """Sort a list of `count` particles; return the first particle.
+
+    The list is linked by `after` and ends with -1.
+    """
     length = 1
     while length < count:
         rest, last, first = first, np.int64(-1), np.int64(-1)
@@ -251,8 +270,10 @@ def _sort(predictions, first, count):
 
 @inner_kernel
 def _add_run(queue, predictions, count):
-    """Sort the first `count` particles of the current bucket, with the runs after them that are not more than
-    twice as long, into one run."""
+    """Sort the first `count` particles of the current bucket into a run.
+
+    The runs after them that are not more than twice as long are merged into it.
+    """
     bucket = queue.cursor[BUCKET] & (len(queue.head) - 2)
     runs, found, end = queue.cursor[RUNS], np.int64(-1), np.int64(-1)
     first = np.int64(queue.head[bucket])
@@ -280,7 +301,7 @@ def _add_run(queue, predictions, count):
 
 @inner_kernel
 def _soonest_of_many(queue, predictions):
-    """Return the particle of the current bucket whose event comes first, where there are many."""
+    """Return the particle of a long current bucket whose event comes first."""
     runs, count = queue.cursor[RUNS], 0
     i = np.int64(queue.head[queue.cursor[BUCKET] & (len(queue.head) - 2)])
     end = queue.runs[FIRST, runs - 1] if runs > 0 else np.int64(-1)
@@ -303,7 +324,7 @@ def _soonest_of_many(queue, predictions):
 
 @inner_helper
 def soonest(queue, predictions):
-    """The particle whose event comes first, or -1 if there are no more events."""
+    """Return the particle whose event comes first, or -1 if there are no more events."""
     buckets = len(queue.head) - 1
     while True:
         if queue.cursor[FILLED] == 0 and not _leap(queue, predictions):

@@ -1,7 +1,8 @@
-"""The search across sheared faces, whose boxes have no neighbours there: all boxes of the opposite row.
+"""Search across sheared faces, in all boxes of the opposite row.
 
-Rows slide past one another, so that any box of one comes to any of the other. Rows of a container of equal
-sides hold so few of the particles that on average this is a few boxes for a search.
+Boxes have no neighbours across sheared faces: rows slide past one another, so that any box of one comes to
+any of the other. In a container of equal sides a row holds so few of the particles that on average this is a
+few boxes for a search.
 """
 
 from __future__ import annotations
@@ -25,8 +26,11 @@ from gaspart.kernels.physics.running_sum import add
 
 @inner_kernel
 def _search_row(particles, i, row, image, boxes, space, tally, shear):
-    """Search the images above (1) or below (-1) of the boxes that have the coordinate `row` across the flow,
-    and are beside that of a particle along the third axis."""
+    """Search the images above (1) or below (-1) of a row of boxes.
+
+    The boxes have the coordinate `row` across the flow, and are neighbours of the particle's box along the
+    third axis.
+    """
     flights, predictions = particles.flights, particles.predictions
     depth = predictions[i].box[2]
     best, found = predictions[i].contact_time, predictions[i].partner
@@ -54,7 +58,7 @@ def _search_row(particles, i, row, image, boxes, space, tally, shear):
 @inner_kernel
 def _search_sheared(particles, i, boxes, space, tally, crossed, shear):
     at, last = particles.predictions[i].box[GRADIENT], boxes.per_side[GRADIENT] - 1
-    if crossed[FLOW] != 0:  # along the row, all of which was searched when the particle came into it
+    if crossed[FLOW] != 0:  # the whole row was searched when the particle came into it
         return
     if at == last:
         _search_row(particles, i, 0, 1, boxes, space, tally, shear)
@@ -64,16 +68,17 @@ def _search_sheared(particles, i, boxes, space, tally, crossed, shear):
 
 @inner_helper
 def search_sheared(particles, i, boxes, space, tally, crossed, shear):
-    """Predict the contact of a particle with one across a sheared face, if it is earlier than that predicted;
-    arguments as of `box_search.find_contact`."""
+    """Predict the contact with a particle across a sheared face, if it is the earliest.
+
+    The arguments are explained in `boxes.find_contact`.
+    """
     if shear is not None:
         _search_sheared(particles, i, boxes, space, tally, crossed, shear)
 
 
 @inner_helper
 def follow(particles, i, axis, boxes, shear):
-    """Let a particle that has crossed the periodic face of an axis be found where its image is that has
-    entered, if that is displaced."""
+    """Move a particle that has crossed a sheared face into the box of its displaced image."""
     if shear is not None:
         if axis == GRADIENT:
             x = particles.flights[i].position[FLOW]
@@ -83,13 +88,16 @@ def follow(particles, i, axis, boxes, shear):
             )  # fmt: skip
 
 
-# Contacts across sheared faces: the second particle takes part as its image, and is then put back.
+# Contacts across sheared faces: the second particle takes part as its image, and is then moved back.
 
 
 @inner_helper
 def unfold(flights, i, j, time, space, shear):
-    """Let the second of two particles at their contact be its image next to the first, if that is across a
-    sheared face. Returns whether it is above (1), below (-1), or neither (0)."""
+    """Move the second particle of a contact across a sheared face to its image.
+
+    The image is the one next to the first particle. Returns whether it is above (1), below (-1), or neither
+    (0).
+    """
     if shear is None:
         return 0
     return _unfold(flights, i, j, time, space, shear)
@@ -119,8 +127,10 @@ def _unfold(flights, i, j, time, space, shear):
 
 @inner_helper
 def fold(flights, j, image, model, tally, shear):
-    """Put it back, and add the energy that the faces take: the change of its velocity is the same, but not
-    that of its energy."""
+    """Move the second particle back, and add the energy that the faces take.
+
+    The change of its velocity is the same as for its image, but the change of its energy is not.
+    """
     if shear is not None:
         _fold(flights, j, image, model, tally, shear)
 

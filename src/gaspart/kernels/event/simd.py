@@ -1,7 +1,7 @@
 """Eight pairs at once: the times of their contacts, in vector instructions.
 
-What a compiler does not find by itself: eight rows, each a vector of eight numbers, are transposed into
-vectors of one number of eight particles, and the times are worked out in these, in the same arithmetic and
+A compiler does not find this by itself: eight rows, each a vector of eight numbers, are transposed into
+vectors of one number of eight particles, and the times are computed from these, in the same arithmetic and
 order as in `flight.time_of_contact`, to the same bits.
 """
 
@@ -20,7 +20,7 @@ from gaspart.kernels.simd import WIDTH, Lanes, fields, mask_of
 
 PLACES = 4  # particles of a box that are listed at once
 _DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
-_STAGES = (  # of a transposition: pairs of rows, shuffled within their quarters, or by quarters
+_STAGES = (  # stages of a transposition: pairs of rows, shuffled within their quarters, or by quarters
     (1, [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]),
     (2, [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]),
     (4, [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]),
@@ -28,7 +28,7 @@ _STAGES = (  # of a transposition: pairs of rows, shuffled within their quarters
 
 
 def load_rows(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> list[Lanes]:
-    """The rows of eight particles as eight columns."""
+    """Load the rows of eight particles as eight columns."""
     vector = ir.VectorType(_DOUBLE, WIDTH)
     rows = []
     for index in indices:
@@ -46,23 +46,25 @@ def load_rows(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) ->
 
 
 def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lanes]:
-    """The row of one particle, in every lane."""
+    """Load the row of one particle into every lane."""
     start = builder.mul(index, _WORD(WIDTH))
     values = (builder.load(builder.gep(data, [builder.add(start, _WORD(k))])) for k in range(WIDTH))
     return [Lanes(builder, value).all(value) for value in values]
 
 
 def flown(x: Lanes, v: Lanes, pull: Lanes | None, late: Lanes) -> tuple[Lanes, Lanes]:
-    """A coordinate and its velocity some time later, as in `flight.encounter`."""
+    """Return a coordinate and its velocity some time later, as in `flight.encounter`."""
     if not pull:
         return x + v * late, v
     return x + (v + pull * 0.5 * late) * late, v + pull * late
 
 
 def bring_to_start(one: list[Lanes], clocks: Lanes, pull: list) -> tuple[Lanes, list[tuple]]:
-    """The later of one particle's clock and those of eight others; and each of its coordinates and velocities
-    then, under a pull (d,). Where no clock is later than its own, which is so whenever it has just had an
-    event, these are known already."""
+    """Return the later of the clocks of one particle and eight others, and its flight then.
+
+    The flight consists of coordinates and velocities, under an acceleration `pull` (d,). If no other clock is
+    later than its own, as always just after its event, these are known already.
+    """
     builder, d = clocks.builder, len(pull)
     clock = one[2 * d]
     later = clocks > clock
@@ -82,9 +84,13 @@ def bring_to_start(one: list[Lanes], clocks: Lanes, pull: list) -> tuple[Lanes, 
 
 
 def contact_times(one: list[Lanes], other: list[Lanes], images: list, lengths: list, pull: list) -> Lanes:
-    """`flight.time_of_contact` in columns of rows, of one particle and eight others in some images (d,) of a
-    container with sides `lengths` (d,), which all fall alike under a `pull` (d,), or, without any, not at
-    all."""
+    """Return the contact times of one particle and eight others in images (d,) of a container.
+
+    This is `flight.time_of_contact` in columns of rows. All particles fall alike under an acceleration `pull`
+    (d,), or not at all without it.
+
+    lengths : (d,), sides of the container
+    """
     d = len(lengths)
     pull = [one[0].all(component) for component in pull] or [None] * d
     start, flights = bring_to_start(one, other[2 * d], pull)
@@ -104,7 +110,7 @@ def contact_times(one: list[Lanes], other: list[Lanes], images: list, lengths: l
 
 
 def images_of(candidates: Lanes, axes: int) -> list[Lanes]:
-    """In which image of the container each candidate stands along each axis: -1, 0 or 1."""
+    """Return the image of the container, -1, 0 or 1 along each axis, for each candidate."""
     builder = candidates.builder
     images = []
     for axis in range(axes):
@@ -116,7 +122,7 @@ def images_of(candidates: Lanes, axes: int) -> list[Lanes]:
 
 
 def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.Value:
-    """A bit for each particle, from an array with a byte of 0 or 1 for each."""
+    """Return a bit for each particle, from an array of bytes 0 or 1."""
     found = ir.IntType(WIDTH)(0)
     for n, index in enumerate(indices):
         mark = builder.load(builder.gep(data, [index]))
@@ -125,7 +131,7 @@ def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.
 
 
 def sooner(time: Lanes, number: Lanes, other_time: Lanes, other_number: Lanes) -> tuple[Lanes, Lanes]:
-    """Of two contacts the sooner, of simultaneous ones that with the lower number."""
+    """Return the earlier of two contacts; of simultaneous ones, the lower index."""
     build = time.builder
     sooner = other_time < time
     lower = Lanes(build, build.icmp_signed("<", other_number.value, number.value))
@@ -134,7 +140,7 @@ def sooner(time: Lanes, number: Lanes, other_time: Lanes, other_number: Lanes) -
 
 
 def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
-    """The soonest of eight contacts, of simultaneous ones that with the lowest number."""
+    """Return the earliest of eight contacts; of simultaneous ones, the lowest index."""
     build = time.builder
     first = time
     for step in (4, 2, 1):
@@ -159,8 +165,10 @@ def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
 
 
 def load_candidates(builder: ir.IRBuilder, place: ir.Value) -> tuple[Lanes, Lanes, list[ir.Value]]:
-    """Eight candidates from a place on; and their numbers, together, and one by one: the units that compute
-    with vectors have enough to do."""
+    """Load eight candidates, and their numbers in a vector and one by one.
+
+    The numbers are also loaded one by one because the units that compute with vectors have enough to do.
+    """
     mask, numbers = (1 << NUMBER_BITS) - 1, []
     for n in range(WIDTH):
         candidate = builder.load(builder.gep(place, [_WORD(n)]))
@@ -173,11 +181,14 @@ def load_candidates(builder: ir.IRBuilder, place: ir.Value) -> tuple[Lanes, Lane
 
 @intrinsic
 def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
-    """The earliest contact of a particle with a `span` of candidates, (first, how many), of `boxes`, if it is
-    sooner than `present`, (time, partner): (time, partner, a bit for each candidate of which nothing is
-    known, since it or the particle may not fall, see `flight.mark_resting`).
+    """Return the earliest contact of a particle with candidates if it is sooner than `present`.
 
-    boxes: a named tuple with `candidates` and, under gravity, `resting`.
+    The result is (time, partner, bits), with a bit for each candidate whose contact is not computed, since it
+    or the particle may not fall, see `flight.mark_resting`.
+
+    span : first candidate and number of candidates
+    present : time and partner
+    boxes : named tuple with `candidates` and, under gravity, `resting`
     """
 
     def generate(context, builder, signature, arguments):
@@ -228,9 +239,14 @@ def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
 
 @intrinsic
 def nearer(typingctx, pages, page, point, offset, square):
-    """A bit for each of the WIDTH points of a page (see `neighbour_lists.page_dtype`) whose distance from a
-    point (3,), once the page is displaced by `offset` (3,), has a square below `square`; in single
-    precision, and the same seen from either point."""
+    """Return a bit for each of the WIDTH points of a page near a point.
+
+    A point is near if the square of its distance is below `square`. The arithmetic is in single precision,
+    and the result is the same from either point. The page is described in `neighbour_lists.page_dtype`.
+
+    point : (3,)
+    offset : (3,), displacement of the page
+    """
 
     def generate(context, builder, signature, arguments):
         pages, page, point, offset, square = arguments
@@ -258,8 +274,10 @@ def nearer(typingctx, pages, page, point, offset, square):
 
 @intrinsic
 def equal(typingctx, numbers, start, number, mask):
-    """A bit for each of 2 WIDTH numbers of an array of 32 bits, from `start` on, that is `number` once only
-    the bits of `mask` are left."""
+    """Return a bit for each of 2 WIDTH numbers that equals `number` after masking.
+
+    The numbers are words of 32 bits of an array, beginning at `start`; only the bits of `mask` are compared.
+    """
 
     def generate(context, builder, signature, arguments):
         numbers, start, number, mask = arguments
@@ -283,8 +301,10 @@ def equal(typingctx, numbers, start, number, mask):
 
 @intrinsic
 def list_box(typingctx, candidates, count, places, box, image):
-    """Write all places of a box, filled or not, as candidates of an image into `candidates` from number
-    `count` on."""
+    """Write all positions of a box as candidates of an image into `candidates`.
+
+    The positions are written whether they are filled or not, beginning at index `count`.
+    """
 
     def generate(context, builder, signature, arguments):
         near, count, places, box, image = arguments

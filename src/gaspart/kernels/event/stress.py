@@ -1,14 +1,16 @@
-"""Time integrals of the stress tensor and of the heat flux (Helfand, Phys. Rev. 119, 1 (1960)).
+"""Time integrals of the stress tensor and of the heat flux.
 
-The stress sum S (d, d) grows by m v v dt while particles fly, and by r dp at a contact, with r the vector
-from the second particle to the first and dp what that gains. The heat sum Q (d,) grows by E v dt and by r
-times half of the difference of what the two particles gain in energy E, with spins also that of rotation.
-Velocities v are about that of the centre of mass, which is conserved, so that a gas that moves as a whole has
-the sums of one at rest.
+They follow Helfand, Phys. Rev. 119, 1 (1960). The stress sum S (d, d) grows by m v v dt during flight, and by
+r dp at a collision, with r the vector from the second particle to the first and dp the momentum gained by the
+first. The heat sum Q (d,) grows by E v dt, and at a collision by r times half of the difference of the energy
+gains of the two particles. The energy E includes rotation if there are spins. Velocities v are relative to
+the velocity of the centre of mass, which is conserved: a gas that moves as a whole has the sums of a gas at
+rest.
 
-Between contacts m v v summed over all particles, K, is constant, so that its integral until the time t is
-K(t) t minus the sum over contacts of their time and of the change of K: a contact adds what concerns its two
-particles, and K is summed when S is read. The contacts' part of S is summed by itself too.
+Between collisions the sum K of m v v over all particles is constant. So its integral until the time t is K(t)
+t minus the sum over collisions of their time multiplied by the change of K. Each collision adds the
+contribution of its two particles, and K is summed when S is read. The collisional part of S is also summed
+separately.
 """
 
 from __future__ import annotations
@@ -25,9 +27,15 @@ from gaspart.kernels.physics.running_sum import add
 
 
 class Stress(NamedTuple):
-    """sums (2 d^2 + d, 2), those of S, by rows, and of its part from contacts, and of Q, without K(t) t, see
-    `running_sum.add`; before (2, d + 1), velocity and energy of two particles before their contact; drift
-    (d,), the velocity of the centre of mass."""
+    """Sums of the stress tensor and of the heat flux.
+
+    Attributes
+    ----------
+    sums : (2 d^2 + d, 2), sums of S by rows, of its collisional part, and of Q, without K(t) t, see
+        `physics.running_sum.add`
+    before : (2, d + 1), velocity and energy of two particles before their collision
+    drift : (d,), velocity of the centre of mass
+    """
 
     sums: np.ndarray
     before: np.ndarray
@@ -36,7 +44,7 @@ class Stress(NamedTuple):
 
 @inner_helper
 def rotational_energy(i, law):
-    """Half of the moment of inertia times the square of the spin."""
+    """Return half of the moment of inertia multiplied by the squared spin."""
     if law is not None:
         spin = 0.0
         for k in range(3):
@@ -48,13 +56,13 @@ def rotational_energy(i, law):
 
 @inner_helper
 def velocity_about(flights, i, axis, stress):
-    """A component of a particle's velocity about that of the centre of mass."""
+    """Return a component of a particle's velocity relative to the centre of mass."""
     return flights[i].velocity[axis] - stress.drift[axis]
 
 
 @inner_helper
 def energy_of(flights, i, space, masses, law, stress):
-    """The kinetic energy of a particle, likewise."""
+    """Return the kinetic energy of a particle relative to the centre of mass."""
     square = 0.0
     for k in range(len(space.lengths)):
         v = velocity_about(flights, i, k, stress)
@@ -64,7 +72,7 @@ def energy_of(flights, i, space, masses, law, stress):
 
 @inner_helper
 def note_pair(flights, i, j, space, masses, law, stress):
-    """Keep velocities and energies of two particles, which are about to collide."""
+    """Store velocities and energies of two particles before their collision."""
     if stress is not None:
         d = len(space.lengths)
         for k in range(d):
@@ -76,7 +84,7 @@ def note_pair(flights, i, j, space, masses, law, stress):
 
 @inner_helper
 def add_contact(flights, i, j, time, space, masses, law, stress):
-    """Add what two particles have exchanged at their contact since `note_pair`."""
+    """Add the transfer between two particles at their collision since `note_pair`."""
     if stress is not None:
         d, sums, before = len(space.lengths), stress.sums, stress.before
         mass, other = mass_of(i, masses, law), mass_of(j, masses, law)
@@ -112,11 +120,12 @@ def add_flights(flights, time, space, masses, law, stress):
 
 # Time integrals of the stress tensor and of the heat flux of a sheared gas.
 #
-# They are those of `stress`, with velocities relative to the flow, c. The flow is that about the centre of
-# mass: if this moves across it at a speed w, it moves along it as the flow does where it is, so that all
-# is as in a gas at rest that is w t lower. A flight of constant velocity changes c_x steadily, so what it
-# carries, polynomials of at most third order, is integrated by Simpson's rule, which is exact: before each
-# event of a particle, from the time of the last one.
+# These are the integrals at the top of this module, with velocities c relative to the flow. The flow is
+# relative to the centre of mass: if this moves across the flow at a speed w, it moves along it with the flow
+# at its position, so that the gas is equivalent to a gas at rest that is w t lower. A flight of constant
+# velocity changes c_x steadily, so its transport consists of polynomials of at most third order and is
+# integrated by Simpson's rule, which is exact: before each event of a particle, from the time of its last
+# event.
 
 
 _SIMPSON = 1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0
@@ -124,20 +133,20 @@ _SIMPSON = 1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0
 
 @inner_helper
 def flow_about(height, time, space, stress, shear):
-    """The flow's velocity at a height at a time, about the centre of mass."""
+    """Return the flow's velocity at a height and a time, relative to the centre of mass."""
     return flow_at(height, space, shear) - shear.rate * stress.drift[GRADIENT] * time
 
 
 @inner_helper
 def relative(flights, i, axis, flow, stress):
-    """A component of a particle's velocity relative to the flow."""
+    """Return a component of a particle's velocity relative to the flow."""
     v = velocity_about(flights, i, axis, stress)
     return v - flow if axis == FLOW else v
 
 
 @inner_kernel
 def add_flight(flights, i, time, sign, model, stress, shear):
-    """Add, with a sign, what a particle carries from its clock to `time`."""
+    """Add, with a sign, the transport by a particle from its clock to `time`."""
     space, sums = model.space, stress.sums
     d, late = len(space.lengths), time - flights[i].clock
     mass, turning = mass_of(i, model.masses, model.law), rotational_energy(i, model.law)
@@ -159,14 +168,17 @@ def add_flight(flights, i, time, sign, model, stress, shear):
 
 @kernel
 def add_sheared_flights(flights, time, sign, model, stress):
-    """The same for all particles."""
+    """Add, with a sign, the transport by all particles from their clocks to `time`."""
     for i in range(len(flights)):
         add_flight(flights, i, time, sign, model, stress, model.shear)
 
 
 @inner_helper
 def end_flight(flights, i, time, model, stress, shear):
-    """Add what a particle has carried until an event, to which it has not been advanced yet."""
+    """Add the transport by a particle until an event.
+
+    The particle has not been advanced to this event yet.
+    """
     if shear is not None:
         _end_flight(flights, i, time, model, stress, shear)
 
@@ -179,7 +191,7 @@ def _end_flight(flights, i, time, model, stress, shear):
 
 @inner_kernel
 def _add_exchange(flights, i, j, model, stress, shear):
-    """Add what two particles have exchanged at their contact since `stress.note_pair`."""
+    """Add the transfer between two particles at their collision since `note_pair`."""
     space, sums, before = model.space, stress.sums, stress.before
     d, mass, other = (
         len(space.lengths),
@@ -209,7 +221,7 @@ def _add_sheared(flights, i, j, model, stress, shear):
 
 @inner_helper
 def tally_contact(flights, i, j, time, model, stress, shear):
-    """Add what two particles have exchanged at their contact, of a gas that is sheared or not."""
+    """Add the transfer between two particles at their collision, in a gas sheared or not."""
     if shear is None:
         add_contact(flights, i, j, time, model.space, model.masses, model.law, stress)
     else:

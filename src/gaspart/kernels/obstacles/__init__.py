@@ -1,1 +1,1 @@
-"""What stands in a particle's way: faces of the container, wells, interior walls."""
+"""Obstacles of particles: faces of the container, wells, interior walls."""

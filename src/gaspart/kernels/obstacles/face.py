@@ -1,6 +1,4 @@
-"""The faces of the container, and of the boxes in it: when a particle comes to one, and what happens
-there.
-"""
+"""Faces of the container and of its boxes: hit times and effects on particles."""
 
 from __future__ import annotations
 
@@ -45,10 +43,10 @@ from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.per_area import add_per_area, spin_before, velocity_before
 from gaspart.kernels.physics.running_sum import add
 
-# Open faces: a particle that comes to one leaves the container, and its number is vacant.
+# Open faces: a particle that reaches one leaves the container, and its number becomes vacant.
 #
-# A particle that enters takes the lowest vacant number: vacant numbers are counted in blocks, so that the
-# search for it is short, and its result depends on nothing but which particles are inside.
+# A particle that enters takes the lowest vacant number. Vacant numbers are counted in blocks, so that the
+# search is short; its result depends only on which particles are inside.
 
 
 NUMBERS = 256
@@ -57,7 +55,7 @@ NUMBERS = 256
 
 @inner_kernel
 def leave(flights, i, face, model, tally, law, opened):
-    """Take a particle away, with its energy, and the momentum that it carries through the face."""
+    """Remove a particle, and count the energy and momentum that it carries through the face."""
     axis, square = face // 2, 0.0
     mass = mass_of(i, model.masses, law)
     add(tally.wall_impulse, face, mass * abs(flights[i].velocity[axis]))
@@ -72,7 +70,7 @@ def leave(flights, i, face, model, tally, law, opened):
 
 @inner_helper
 def collide_open(flights, i, face, model, tally, law, opened):
-    """Let a particle leave, where a face may be open."""
+    """Remove a particle at a face if faces may be open."""
     if opened is not None:
         leave(flights, i, face, model, tally, law, opened)
 
@@ -105,13 +103,16 @@ RULES = {
     "piston": PISTON,
     "open": OPEN,
 }
-"""What happens to a particle at a face: the name, and the number in `Faces.kind`."""
+"""Kinds of faces: the name, and the number in `Faces.kind`."""
 
 
 @inner_helper
 def plane_of(particles, i, axis, upper, boxes, space, oversized):
-    """The lower or upper face of a particle's box along an axis: (coordinate for its centre, face code). A
-    wall stops an oversized particle some boxes before the last."""
+    """Return the lower or upper face of a particle's box along an axis.
+
+    The result is (coordinate for its centre, face code). A wall stops an oversized particle some boxes before
+    the last.
+    """
     flights = particles.flights
     at = particles.predictions[i].box[axis]
     up = int64(upper)  # a number: the processor cannot predict which way a particle flies
@@ -128,11 +129,10 @@ def plane_of(particles, i, axis, upper, boxes, space, oversized):
 
 @inner_helper
 def next_face(particles, i, boxes, space, now, gravity, faces, oversized):
-    """The next face that a particle comes to, of its box or of the container, or the edge of a well: (time,
-    face code).
+    """Return the next face or edge of a well that a particle reaches: (time, face code).
 
-    A falling particle may cross the face of a box, turn, and cross it again in the same flight: `now`
-    determines which of its crossings lie behind it.
+    The face belongs to its box or to the container. A falling particle may cross the face of a box, turn, and
+    cross it again in the same flight: `now` determines which of its crossings are in the past.
     """
     flights = particles.flights
     soon = inf
@@ -173,17 +173,18 @@ def next_face(particles, i, boxes, space, now, gravity, faces, oversized):
 
 @inner_kernel
 def next_face_pulled(particles, i, axis, pull, boxes, space, now, oversized):
-    """The same along one axis with a pull: (time, face code).
+    """Return the next face along an axis with an acceleration: (time, face code).
 
-    Until a particle that rises against the pull turns, it can only leave through the face ahead, and
-    afterwards only through the one that the pull leads to, so no face is ever crossed twice in the same
-    direction (the rule of Spencer 2022, section 2.1.2, in a form that rounding cannot turn into a loop).
+    A particle that rises against the acceleration can only leave through the face ahead until it turns, and
+    afterwards only through the face in the direction of the acceleration, so no face is ever crossed twice in
+    the same direction (the rule of Spencer 2022, section 2.1.2, in a form that rounding cannot turn into a
+    loop).
     """
     flight = particles.flights[i]
     x, clock = flight.position[axis], flight.clock
     upper = pull > 0.0
     strength = abs(pull)
-    along = flight.velocity[axis] if upper else -flight.velocity[axis]  # speed towards where the pull leads
+    along = flight.velocity[axis] if upper else -flight.velocity[axis]  # speed along the acceleration
     summit = clock if along >= 0.0 else clock - along / strength
     if along < 0.0:
         plane, code = plane_of(particles, i, axis, not upper, boxes, space, oversized)
@@ -204,7 +205,7 @@ def next_face_pulled(particles, i, axis, pull, boxes, space, now, oversized):
 
 @inner_kernel
 def collide_special(flights, i, face, model, tally, law, faces):
-    """Let a face with a kind act on a particle that has come to it. False if it is hard."""
+    """Apply a face with a kind to a particle that hits it; return False if hard."""
     kind = faces.kind[face]
     if kind in (THERMAL, THERMAL_NORMAL):
         collide_thermal(flights, i, face, model, tally, law, faces)
@@ -223,7 +224,7 @@ def collide_special(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def collide_face(flights, i, face, model, tally, law, faces):
-    """Let a wall act on a particle that has come to it. Returns whether it is a hard one."""
+    """Apply a wall to a particle that hits it; return True if the wall is hard."""
     tally.wall_hits[face] += 1
     if faces is not None:
         if collide_special(flights, i, face, model, tally, law, faces):
@@ -234,13 +235,16 @@ def collide_face(flights, i, face, model, tally, law, faces):
 
 @inner_kernel
 def reflect(flights, i, face, model, tally, law, faces):
-    """`collide_face` as a function of its own."""
+    """Perform `collide_face` as a separate function."""
     return collide_face(flights, i, face, model, tally, law, faces)
 
 
 @inner_kernel
 def rest_on_face(flights, i, face, hard, model, tally, gravity, support):
-    """Let a particle that slides along an interior wall down to a face rest on both, or release it."""
+    """Put a particle that slides down an interior wall to rest at a face.
+
+    It rests on both the wall and the face; if the face is not hard, the particle is released instead.
+    """
     if support is None:
         return
     if support.number[i] > 0:
@@ -256,7 +260,10 @@ def rest_on_face(flights, i, face, hard, model, tally, gravity, support):
 
 @inner_helper
 def rest_after(flights, i, face, hard, model, tally, gravity):
-    """A bounce too short for the clocks to resolve is rest; otherwise it would be repeated for ever."""
+    """Put a particle to rest if its bounce is too short for the clocks to resolve.
+
+    Otherwise the bounce would be repeated for ever.
+    """
     if gravity is not None:
         axis = face // 2
         shortest = abs(gravity.acceleration[axis]) * gravity.shortest_bounce
@@ -269,7 +276,10 @@ def rest_after(flights, i, face, hard, model, tally, gravity):
 
 @inner_helper
 def place_at(flights, i, face, space, faces):
-    """Place a particle that has come to a face exactly there. One that moves is anywhere inside."""
+    """Place a particle exactly at the face that it has reached.
+
+    If the face moves, the particle may be anywhere inside.
+    """
     axis, upper = face // 2, face % 2 == 1
     plane = face_plane(flights, i, axis, upper, space)
     if faces is not None:
@@ -281,7 +291,10 @@ def place_at(flights, i, face, space, faces):
 
 @inner_helper
 def meet_face(particles, i, face, time, model, tally, faces):
-    """Reflect a particle at a wall, or take it from a periodic face to the opposite one. True if a wall."""
+    """Reflect a particle at a wall, or move it to the opposite periodic face.
+
+    Returns True for a wall.
+    """
     flights, space = particles.flights, model.space
     axis = face // 2
     upper = face % 2 == 1

@@ -33,14 +33,14 @@ from gaspart.kernels.physics.flight import acceleration_of, advance
 from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
 
-# When a sphere touches a plate, an interior wall of three dimensions: on a side, an edge or a corner.
+# Contact of a sphere with a plate, an interior wall of three dimensions: on a side, an edge or a corner.
 #
-# Everything is computed in the plate's own axes: along its two edges, and across it.
+# All coordinates are in the plate's own axes: along its two edges, and across it.
 
 
 @inner_helper
 def _components(row, x, y, z):
-    """(3,) a vector in the plate's axes: along its two edges, and across the plate."""
+    """Return the components of a vector in the plate's axes: along its edges, and across it."""
     a, b = row.along, row.across
     nx, ny, nz = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
     return x * a[0] + y * a[1] + z * a[2], x * b[0] + y * b[1] + z * b[2], nx * x + ny * y + nz * z
@@ -48,8 +48,11 @@ def _components(row, x, y, z):
 
 @inner_kernel
 def time_to_point(r, v, g, radius):
-    """Time until a sphere touches a point: r, v, g (3,), its separation, velocity and acceleration from
-    there; or a line, with the components along it 0."""
+    """Return the time until a sphere touches a point or a line.
+
+    r, v, g : (3,), separation from the point, velocity and acceleration; for a line, the components along it
+        are 0
+    """
     rr = r[0] * r[0] + r[1] * r[1] + r[2] * r[2]
     rv = r[0] * v[0] + r[1] * v[1] + r[2] * v[2]
     vv = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
@@ -63,10 +66,12 @@ def time_to_point(r, v, g, radius):
 
 @inner_kernel
 def time_to_edge(r, v, g, length, radius):
-    """Time until a sphere touches an edge: of r, v, g (3,) the first two components are across the line, the
-    third along it from its start.
+    """Return the time until a sphere touches an edge.
 
-    A falling sphere may come to the line beside the edge, leave it, and come back to it at the edge.
+    A falling sphere may touch the line next to the edge, leave it, and touch it again at the edge.
+
+    r, v, g : (3,), separation, velocity and acceleration; the first two components are across the line, the
+        third is along it from its start
     """
     x, z, y = r
     vx, vz, vy = v
@@ -91,7 +96,7 @@ def time_to_edge(r, v, g, length, radius):
 
 @inner_kernel
 def time_to_plate(flights, i, rows, m, space, gravity):
-    """When a sphere touches a plate; inf if it does not."""
+    """Return the time at which a sphere touches a plate; inf if it does not."""
     radius, row = flights[i].radius, rows[m]
     position, velocity = flights[i].position, flights[i].velocity
     dx, dy, dz = position[0] - row.corner[0], position[1] - row.corner[1], position[2] - row.corner[2]
@@ -130,7 +135,10 @@ def time_to_plate(flights, i, rows, m, space, gravity):
 
 @inner_kernel
 def time_to_segment(flights, i, rows, m, space, gravity):
-    """When a disc touches a segment, on a side (Spencer 2022, Eqs. 3-12) or at an end; inf if it does not."""
+    """Return the time at which a disc touches a segment; inf if it does not.
+
+    The contact is on a side (Spencer 2022, Eqs. 3-12) or at an end.
+    """
     radius = flights[i].radius
     ux, uy, length = rows[m].direction[0], rows[m].direction[1], rows[m].length
     dx = flights[i].position[0] - rows[m].start[0]
@@ -172,20 +180,20 @@ def time_to_segment(flights, i, rows, m, space, gravity):
     return flights[i].clock + best
 
 
-# From a point to the nearest point of an interior wall of the rows below.
+# Vectors from a point to the nearest point of an interior wall, given by the rows below.
 
 
 SEGMENT = np.dtype([("start", "f8", 2), ("direction", "f8", 2), ("length", "f8")])
-"""A row of a segment: its start, the unit vector along it, its length."""
+"""Row of a segment: its start, the unit vector along it, its length."""
 PLATE = np.dtype(
     [("corner", "f8", 3), ("along", "f8", 3), ("length", "f8"), ("across", "f8", 3), ("width", "f8")]
 )
-"""A row of a plate: a corner, and the unit vectors along its two edges with their lengths."""
+"""Row of a plate: a corner, and the unit vectors along its two edges with their lengths."""
 
 
 @inner_helper
 def to_segment(rows, m, point):
-    """(3,) the vector from a point (2,) to the nearest point of a segment, its ends included."""
+    """Return the vector from a point (2,) to the nearest point of a segment, ends included."""
     ux, uy = rows[m].direction[0], rows[m].direction[1]
     dx, dy = point[0] - rows[m].start[0], point[1] - rows[m].start[1]
     s = min(max(ux * dx + uy * dy, 0.0), rows[m].length)
@@ -199,7 +207,7 @@ def _dot(a, x, y, z):
 
 @inner_helper
 def to_plate(rows, m, point):
-    """(3,) the vector from a point (3,) to the nearest point of a plate, its rim included."""
+    """Return the vector from a point (3,) to the nearest point of a plate, rim included."""
     along, across, corner = rows[m].along, rows[m].across, rows[m].corner
     dx, dy, dz = point[0] - corner[0], point[1] - corner[1], point[2] - corner[2]
     s = min(max(_dot(along, dx, dy, dz), 0.0), rows[m].length)
@@ -213,7 +221,10 @@ def to_plate(rows, m, point):
 
 @inner_helper
 def to_wall(rows, m, point, lengths):
-    """(3,) the same for the kind of wall that stands in a container with sides `lengths` (d,)."""
+    """Return the vector from a point to the nearest point of an interior wall.
+
+    lengths : (d,), sides of the container; the dimension determines the kind of wall
+    """
     if len(lengths) == 2:
         return to_segment(rows, m, point)
     return to_plate(rows, m, point)
@@ -221,7 +232,7 @@ def to_wall(rows, m, point, lengths):
 
 @inner_helper
 def time_to_wall(flights, i, rows, m, space, gravity, lengths):
-    """When a particle touches an interior wall; inf if it does not."""
+    """Return the time at which a particle touches an interior wall; inf if it does not."""
     if len(lengths) == 2:
         return time_to_segment(flights, i, rows, m, space, gravity)
     return time_to_plate(flights, i, rows, m, space, gravity)
@@ -229,8 +240,10 @@ def time_to_wall(flights, i, rows, m, space, gravity, lengths):
 
 @inner_kernel
 def next_wall(flights, predictions, i, boxes, space, gravity, walls, face_time):
-    """The next wall that a particle comes to of those near its box, if before `face_time`: (time, row), or
-    (face_time, -1)."""
+    """Return the next wall near a particle's box that it hits: (time, row).
+
+    Without a hit before `face_time` the result is (face_time, -1).
+    """
     box = box_of(predictions, boxes, i)
     if flights[i].radius > walls.largest_radius:
         box = len(walls.first) - 2
@@ -246,7 +259,7 @@ def next_wall(flights, predictions, i, boxes, space, gravity, walls, face_time):
 
 @inner_helper
 def find_wall(particles, i, boxes, space, gravity, walls, time, face):
-    """The earlier of the next interior wall and the face (time, face code)."""
+    """Return the earlier of the next interior wall and the given face: (time, face code)."""
     if walls is not None:
         wall_time, m = next_wall(
             particles.flights, particles.predictions, i, boxes, space, gravity, walls, time
@@ -259,14 +272,16 @@ def find_wall(particles, i, boxes, space, gravity, walls, time, face):
 
 @inner_helper
 def mass_in(masses, i):
-    """The mass of a particle, 1 where all have the same."""
+    """Return the mass of a particle, 1 if all masses are equal."""
     return 1.0 if masses is None else masses[i]
 
 
 @inner_helper
 def coordinate_along(flights, i, row, edge, lengths):
-    """Where the centre of a particle is along an edge of a wall: (coordinate, length, the edge's unit
-    vector)."""
+    """Return a particle's coordinate along an edge of a wall.
+
+    The result is (coordinate of the centre, length, the edge's unit vector).
+    """
     p = flights[i].position
     if len(lengths) == 2:
         u, length = (row.direction[0], row.direction[1], 0.0), row.length
@@ -280,7 +295,7 @@ def coordinate_along(flights, i, row, edge, lengths):
 
 @inner_kernel
 def is_at_end(flights, i, row, lengths):
-    """Whether a particle touches a wall at an end, an edge or a corner."""
+    """Return True if a particle touches a wall at an end, an edge or a corner."""
     outside = False
     for edge in range(len(lengths) - 1):
         at, length, _ = coordinate_along(flights, i, row, edge, lengths)
@@ -290,7 +305,7 @@ def is_at_end(flights, i, row, lengths):
 
 @inner_kernel
 def leave_wall(flights, i, row, space):
-    """Move a particle that has come to the end of a wall beyond it."""
+    """Move a particle that has reached the end of a wall beyond it."""
     for edge in range(len(space.lengths) - 1):
         at, length, u = coordinate_along(flights, i, row, edge, space.lengths)
         leave(flights, i, u, at, length, space)
@@ -298,7 +313,10 @@ def leave_wall(flights, i, row, space):
 
 @inner_helper
 def leaves(flights, i, m, space, walls, gravity):
-    """Whether a particle that comes to a wall has slid along it and leaves it."""
+    """Return True if a particle has slid along a wall and leaves it.
+
+    Such a particle is released.
+    """
     if gravity is None:
         return False
     if is_resting_on(gravity.support, i, m):
@@ -310,7 +328,7 @@ def leaves(flights, i, m, space, walls, gravity):
 
 @inner_helper
 def settle_on(flights, i, m, normal, model, tally, walls, gravity):
-    """Let a particle rest on an interior wall if its bounce cannot be resolved."""
+    """Put a particle to rest on an interior wall if its bounce cannot be resolved."""
     if gravity is not None:
         mass = mass_of(i, model.masses, model.law)
         at_end = is_at_end(flights, i, walls.rows[m], model.space.lengths)
@@ -320,8 +338,10 @@ def settle_on(flights, i, m, normal, model, tally, walls, gravity):
 
 @inner_helper
 def bounce_off(flights, i, normal, model, tally, law):
-    """Reflect a particle at a hard wall in the direction of the unit vector `normal` (3,). Returns the
-    momentum given to the wall."""
+    """Reflect a particle at a hard wall; return the momentum given to the wall.
+
+    normal : (3,), unit vector towards the wall
+    """
     space = model.space
     least = least_speed(flights, i, space)
     if law is None:
@@ -337,8 +357,10 @@ def bounce_off(flights, i, normal, model, tally, law):
 
 @inner_kernel
 def collide_wall(flights, i, m, model, tally, walls, law):
-    """Reflect a particle at an interior wall that it touches, from its side or its rim, or give it a velocity
-    of the wall's temperature. Returns the number of the wall."""
+    """Reflect a particle at an interior wall, or draw a velocity at the wall's temperature.
+
+    The particle touches the wall at a side or at the rim. Returns the number of the wall.
+    """
     space = model.space
     x, y, z = to_wall(walls.rows, m, flights[i].position, space.lengths)
     distance = sqrt(x * x + y * y + z * z)
@@ -357,7 +379,7 @@ def collide_wall(flights, i, m, model, tally, walls, law):
 
 @inner_helper
 def collide_interior(flights, i, m, model, tally, walls, moving):
-    """`collide_wall`, or the same with the wall that moves."""
+    """Perform `collide_wall`, or `collide_moving_wall` if the wall moves."""
     if moving is not None:
         return collide_moving_wall(flights, i, model, tally, moving)
     return collide_wall(flights, i, m, model, tally, walls, model.law)
@@ -365,8 +387,10 @@ def collide_interior(flights, i, m, model, tally, walls, moving):
 
 @inner_helper
 def meet_wall(flights, i, face, time, model, tally, walls):
-    """Advance a particle to an interior wall and reflect it there. Returns the number of the wall, or NONE if
-    the particle has slid along the wall and leaves it."""
+    """Advance a particle to an interior wall and reflect it; return the number of the wall.
+
+    Returns NONE if the particle has slid along the wall and leaves it.
+    """
     if walls is not None:
         advance(flights, i, time, model.space, model.gravity)
         if leaves(flights, i, face - WALLS, model.space, walls, model.gravity):

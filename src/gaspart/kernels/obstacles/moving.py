@@ -1,9 +1,10 @@
-"""Vibrating faces: the container's side is where such a face is at time 0, and it moves inwards from there.
+"""Moving obstacles: vibrating faces, pistons, and a moving interior wall.
 
-A particle meets it where its height above that place, h(t) = x + v t + a t^2 / 2, falls to that of the face,
-s(t). In each period a sawtooth moves up at one speed and is back at once; a sine is at
-stroke (1 - cos(2 pi t / period)) / 2. Heights and velocities count from the container's side inwards. The
-remainder of a division (%) is exact, and so the same on every machine.
+A vibrating face is at the container's side at time 0, and moves inwards from there. A particle hits the face
+where its height above the side, h(t) = x + v t + a t^2 / 2, falls to the height of the face, s(t). In each
+period a sawtooth moves up at one speed and returns at once; a sine is at stroke (1 - cos(2 pi t / period)) /
+2. Heights and velocities count from the container's side inwards. The remainder of a division (%) is exact,
+and so the same on every machine.
 """
 
 from __future__ import annotations
@@ -19,22 +20,22 @@ from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
 from gaspart.kernels.physics.sine import TURN, sine_cosine
 
-# A piston: a face of finite mass, which a constant force pushes inwards and particles push back.
+# Piston: a face of finite mass, which a constant force pushes inwards and particles push back.
 #
-# It starts at the side of the container and bounces off that without loss. Between its contacts it
-# therefore moves on one parabola, or on two: one outwards to the side, and one from there. Places and
+# A piston starts at the side of the container and bounces there without loss. Between its contacts it
+# therefore moves on one parabola, or on two: one outwards to the side, and one from there. Positions and
 # velocities count from the container's side inwards.
 
 
 @inner_helper
 def time_to_stop(place, velocity, push):
-    """Time until a piston reaches the side of the container; inf if it never does."""
+    """Return the time until a piston reaches the side of the container, or inf."""
     return time_to_side(place, -velocity, -push)
 
 
 @kernel
 def moved(place, velocity, push, late):
-    """(place, velocity) of a piston some time later, if it meets no particle."""
+    """Return (position, velocity) of a piston some time later, without a hit by a particle."""
     stop = time_to_stop(place, velocity, push)
     if late < stop:
         return flown(place, velocity, push, late), velocity + push * late
@@ -45,7 +46,11 @@ def moved(place, velocity, push, late):
 
 @kernel
 def time_to_piston(x, v, place, velocity, push):
-    """Time until a particle of height x and inward velocity v touches a piston; inf if it never does."""
+    """Return the time until a particle touches a piston; inf if it never does.
+
+    x : height of the particle
+    v : inward velocity of the particle
+    """
     stop = time_to_stop(place, velocity, push)
     time = time_to_side(x - place, velocity - v, push)
     if time <= stop:
@@ -56,7 +61,7 @@ def time_to_piston(x, v, place, velocity, push):
 
 @inner_kernel
 def next_piston(particles, i, space, piston):
-    """When a particle touches the piston."""
+    """Return the time at which a particle touches the piston."""
     flights, face = particles.flights, piston.face
     upper, axis = face % 2 == 1, face // 2
     flight, motion = flights[i], piston.motion
@@ -72,7 +77,10 @@ def next_piston(particles, i, space, piston):
 
 @inner_helper
 def find_piston(particles, i, axis, space, piston):
-    """(time, face code) of the contact with a piston across an axis, where there may be none."""
+    """Return (time, face code) of the contact with a piston across an axis.
+
+    The time is inf if there is no piston across this axis.
+    """
     if piston is None:
         return inf, NONE
     if piston.face // 2 != axis:
@@ -82,7 +90,7 @@ def find_piston(particles, i, axis, space, piston):
 
 @kernel
 def advance_piston(motion, push, time):
-    """Move a piston to `time`."""
+    """Advance a piston to `time`."""
     late = time - motion[PISTON_CLOCK]
     motion[PISTON_PLACE], motion[PISTON_VELOCITY] = moved(
         motion[PISTON_PLACE], motion[PISTON_VELOCITY], push, late
@@ -92,10 +100,10 @@ def advance_piston(motion, push, time):
 
 @inner_kernel
 def collide_with_piston(flights, i, face, model, tally, piston):
-    """Let a particle and the piston exchange momentum without loss.
+    """Exchange momentum between a particle and the piston without loss.
 
-    They part so fast that the clocks resolve the next contact: a push, which a piston needs that lies on a
-    particle at rest.
+    Their speed of separation is large enough for the clocks to resolve the next contact: this is a push,
+    which a piston needs that lies on a particle at rest.
     """
     axis, inwards = face // 2, -1.0 if face % 2 else 1.0
     motion = piston.motion
@@ -114,34 +122,34 @@ def collide_with_piston(flights, i, face, model, tally, piston):
 
 @inner_helper
 def collide_piston(flights, i, face, model, tally, piston):
-    """The same where there may be no piston."""
+    """Perform `collide_with_piston` if there is a piston."""
     if piston is not None:
         collide_with_piston(flights, i, face, model, tally, piston)
 
 
 @inner_helper
 def is_piston(face, piston):
-    """Whether a face is a piston."""
+    """Return True if a face is a piston."""
     if piston is None:
         return False
     return face == piston.face
 
 
-# A wall across the container that moves: of finite mass, pushed by the particles on both its sides.
+# Moving wall across the container: of finite mass, pushed by the particles on both its sides.
 #
-# Between its contacts it moves evenly, and each particle stays on its side.
+# Between its contacts its velocity is constant, and each particle stays on its side.
 
 
 @kernel
 def advance_wall(motion, time):
-    """Move the wall to `time`."""
+    """Advance the wall to `time`."""
     motion[PISTON_PLACE] += motion[PISTON_VELOCITY] * (time - motion[PISTON_CLOCK])
     motion[PISTON_CLOCK] = time
 
 
 @inner_kernel
 def next_moving(flights, i, moving):
-    """When a particle touches the wall; inf if it never does."""
+    """Return the time at which a particle touches the wall; inf if it never does."""
     axis, side, motion = moving.axis, moving.side[i], moving.motion
     start = max(flights[i].clock, motion[PISTON_CLOCK])
     x = flights[i].position[axis] + flights[i].velocity[axis] * (start - flights[i].clock)
@@ -153,7 +161,7 @@ def next_moving(flights, i, moving):
 
 @inner_helper
 def find_moving(flights, i, moving, time, face):
-    """The earlier of the contact with the wall, where there may be none, and the face (time, face code)."""
+    """Return the earlier of the contact with a moving wall and the face (time, face code)."""
     if moving is not None:
         soon = next_moving(flights, i, moving)
         if soon < time:
@@ -163,10 +171,10 @@ def find_moving(flights, i, moving, time, face):
 
 @inner_kernel
 def collide_moving_wall(flights, i, model, tally, moving):
-    """Let a particle and the wall exchange momentum without loss. Returns the number of the wall, with the
-    faces before it.
+    """Exchange momentum between a particle and the wall without loss.
 
-    They part at a speed that rounding cannot hide, or they would meet for ever.
+    Their speed of separation is larger than rounding, or they would collide for ever. Returns the number of
+    the wall, counted after the faces.
     """
     axis, side, motion = moving.axis, moving.side[i], moving.motion
     advance_wall(motion, flights[i].clock)
@@ -187,12 +195,15 @@ def collide_moving_wall(flights, i, model, tally, moving):
     return wall
 
 
-# Hard faces: what passes at a contact with one at rest.
+# Hard faces at rest: the momentum transferred at a hit.
 
 
 @inner_helper
 def bounce(flights, i, face, model, tally, law):
-    """Reflect a particle, by the law of contacts if there is one. Returns the momentum given to the face."""
+    """Reflect a particle at a hard face, by the collision law if there is one.
+
+    Returns the momentum given to the face.
+    """
     axis = face // 2
     if law is None:
         velocity = flights[i].velocity[axis]
@@ -203,13 +214,13 @@ def bounce(flights, i, face, model, tally, law):
     return collide_wall_by_law(flights, i, normal, 0.0, model.space, tally, law)
 
 
-_RESOLVED = 2.0**-52  # of clocks and of the period: the shortest step of a search
-_SLACK = 1.0 + 2.0**-20  # of the stroke: a particle further away needs no search
+_RESOLVED = 2.0**-52  # shortest step of a search, as a fraction of clock and period
+_SLACK = 1.0 + 2.0**-20  # distance in strokes beyond which a particle needs no search
 
 
 @kernel
 def place_and_velocity(time, sine, stroke, period):
-    """Where a face is at a time of its period, and how fast it moves inwards."""
+    """Return position and inward velocity of a face at a time of its period."""
     if not sine:
         speed = stroke / period
         return speed * time, speed
@@ -219,16 +230,20 @@ def place_and_velocity(time, sine, stroke, period):
 
 @inner_helper
 def time_to_sawtooth(gap, closing, pull, left):
-    """Time until a particle touches a face that moves evenly for the time `left`, and whether it does;
-    otherwise that time."""
+    """Return the time until a particle touches a steadily moving face, and whether it does.
+
+    left : time for which the face moves steadily; it is the result if there is no contact
+    """
     time = time_to_side(gap, closing, pull)
     return (time, True) if time < left else (left, False)
 
 
 @inner_helper
 def time_to_sine(gap, closing, most):
-    """A time up to which a particle cannot touch a face to which it comes nearer with an acceleration of at
-    most `most`, the root for this acceleration; and whether it touches it now."""
+    """Return a time before which a particle cannot touch a face, and whether it touches now.
+
+    The time is the root for the largest acceleration `most` of their approach.
+    """
     if gap <= 0.0 and closing > 0.0:
         return 0.0, True
     gap = max(gap, 0.0)
@@ -238,16 +253,18 @@ def time_to_sine(gap, closing, most):
 
 @kernel
 def time_to_vibrating(x, v, a, clocks, at, sine, stroke, period):
-    """Time until a particle of height x, inward velocity v and acceleration a touches a vibrating face, and
-    approaches it; inf if it never does, or not before the clocks' epoch ends. clocks: the time since that
-    epoch began, and its length; at: the time of the face's period; both times are those of x and v.
+    """Return the time until a particle hits a vibrating face; inf if it does not.
 
-    All is predicted anew in the next epoch. Without that end, a particle that comes to the stroke at 1e-16
-    of its former speed would be searched for in 1e16 periods, whose phases rounding decides.
+    At the contact the two approach each other. The result is also inf if there is no contact before the
+    clocks' epoch ends: all is predicted anew in the next epoch. Without this end, a particle that comes to
+    the stroke at 1e-16 of its former speed would be searched for in 1e16 periods, whose phases rounding
+    decides. Above the stroke the particle flies on to it. Within the stroke, each step of the search ends
+    before the first contact, for any motion of the face, so that no contact is missed; a step with the
+    largest acceleration of the face converges to the contact quadratically, like Newton's method.
 
-    Above the stroke the particle flies on to it. Within it, each step of the search ends before the first
-    contact, however the face moves, so that none is passed over: one with the largest acceleration of the
-    face converges to the contact quadratically, as Newton's steps do.
+    x, v, a : height, inward velocity and acceleration of the particle
+    clocks : time since the epoch of the clocks began, and its length, at the time of x and v
+    at : time of the face's period, at the time of x and v
     """
     largest = 0.5 * stroke * (TURN / period) * (TURN / period) + abs(a)
     clock, epoch = clocks
@@ -275,7 +292,7 @@ def time_to_vibrating(x, v, a, clocks, at, sine, stroke, period):
 
 @inner_helper
 def moves(face, motion):
-    """Whether a face moves."""
+    """Return True if a face vibrates."""
     if motion is None:
         return False
     return motion.stroke[face] > 0.0
@@ -283,7 +300,7 @@ def moves(face, motion):
 
 @inner_helper
 def is_near(particles, i, face, boxes, space, motion):
-    """Whether a particle in this box may touch the face."""
+    """Return True if a particle in this box may touch the face."""
     axis, upper = face // 2, face % 2 == 1
     at, width = particles.predictions[i].box[axis], boxes.widths[axis]
     inset = face_plane(particles.flights, i, axis, False, space)
@@ -293,7 +310,7 @@ def is_near(particles, i, face, boxes, space, motion):
 
 @inner_kernel
 def next_vibrating(particles, i, axis, boxes, space, gravity, motion):
-    """When a particle touches a vibrating face of an axis: (time, face code)."""
+    """Return the next contact with a vibrating face of an axis: (time, face code)."""
     flights, soon, code = particles.flights, inf, NONE
     for face in range(2 * axis, 2 * axis + 2):
         if motion.stroke[face] > 0.0 and is_near(particles, i, face, boxes, space, motion):
@@ -318,7 +335,7 @@ def next_vibrating(particles, i, axis, boxes, space, gravity, motion):
 
 @inner_helper
 def find_vibrating(particles, i, axis, boxes, space, gravity, motion):
-    """The same where no face may vibrate."""
+    """Perform `next_vibrating` if there is a vibrating face."""
     if motion is None:
         return inf, NONE
     return next_vibrating(particles, i, axis, boxes, space, gravity, motion)
@@ -326,10 +343,10 @@ def find_vibrating(particles, i, axis, boxes, space, gravity, motion):
 
 @inner_kernel
 def collide_vibrating(flights, i, face, model, tally, law, motion):
-    """Reflect a particle in the frame of a vibrating face, whose work is its velocity times the momentum.
+    """Reflect a particle in the frame of a vibrating face.
 
-    Particles part from it so fast that the clocks resolve the next contact: a push, whose energy is counted
-    as well.
+    The work of the face is its velocity multiplied by the momentum. The speed of separation is large enough
+    for the clocks to resolve the next contact: this is a push, whose energy is counted as well.
     """
     axis, period = face // 2, motion.period[face]
     inwards = -1.0 if face % 2 else 1.0
@@ -354,6 +371,6 @@ def collide_vibrating(flights, i, face, model, tally, law, motion):
 
 @inner_helper
 def collide_moving(flights, i, face, model, tally, law, motion):
-    """The same where no face may vibrate."""
+    """Perform `collide_vibrating` if there is a vibrating face."""
     if motion is not None:
         collide_vibrating(flights, i, face, model, tally, law, motion)

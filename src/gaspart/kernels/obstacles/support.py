@@ -1,6 +1,7 @@
-"""The planes of walls on which particles rest, or along which they slide, under gravity.
+"""Planes of walls on which particles rest, or along which they slide, under gravity.
 
-Of gravity there remains what no wall supports: its projection on the directions that lead into none of them.
+The part of gravity that no wall supports remains: its projection on the directions that lead into none of
+them.
 """
 
 from __future__ import annotations
@@ -20,19 +21,22 @@ _PARALLEL = 2.0**-40  # squared sine of an angle between planes that are taken f
 
 @inner_kernel
 def pull_along(gravity, axis):
-    """Gravity along an axis, 0 along a third one in 2D."""
+    """Return gravity along an axis, 0 along a third axis in two dimensions."""
     return gravity.acceleration[axis] if axis < len(gravity.acceleration) else 0.0
 
 
 @inner_helper
 def dot(a, b):
-    """The scalar product of two vectors (3,)."""
+    """Compute the scalar product of two vectors (3,)."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @inner_helper
 def is_resting_on(support, i, row):
-    """Whether a particle rests on the row of an interior wall, or slides along it."""
+    """Return True if a particle rests on, or slides along, a row of a wall.
+
+    The wall is an interior wall.
+    """
     if support is None:
         return False
     found = False
@@ -43,7 +47,10 @@ def is_resting_on(support, i, row):
 
 @inner_helper
 def rests_on(i, row, gravity):
-    """The same where there may be no gravity."""
+    """Return True if a particle rests on, or slides along, a row of a wall.
+
+    Without gravity the result is False.
+    """
     if gravity is None:
         return False
     return is_resting_on(gravity.support, i, row)
@@ -51,8 +58,10 @@ def rests_on(i, row, gravity):
 
 @inner_kernel
 def within(support, i, planes, vector, dimension):
-    """(3,) the projection of a vector on the first of two planes, or on their intersection if the second is
-    not -1."""
+    """Project a vector on a plane, or on the intersection of two planes.
+
+    planes : two planes; without the second, -1, the projection is on the first one
+    """
     first, second = planes
     n = support.normal[i, first]
     part = dot(n, vector)
@@ -72,8 +81,11 @@ def within(support, i, planes, vector, dimension):
 
 @inner_kernel
 def leave_of(whole, support, i, dimension):
-    """Determine the acceleration that the planes of a particle leave of a `whole` one (3,): the largest
-    projection on one or two of them that leads into none; zero if there is none. Returns its square."""
+    """Determine the acceleration that remains on the planes of a particle; return its square.
+
+    It is the largest projection of the acceleration `whole` (3,) on one or two planes that leads into no
+    plane; zero if there is no such projection.
+    """
     least = _INTO * sqrt(dot(whole, whole))
     best, pull = 0.0, support.pull[i]
     pull[:] = 0.0
@@ -91,8 +103,10 @@ def leave_of(whole, support, i, dimension):
 
 @inner_kernel
 def find_pull(gravity, i, dimension):
-    """Determine the acceleration that the planes of a particle leave of gravity. Remove planes that it leads
-    away from."""
+    """Determine the acceleration that remains of gravity on the planes of a particle.
+
+    Planes from which it leads away are removed.
+    """
     support = gravity.support
     whole = pull_along(gravity, 0), pull_along(gravity, 1), pull_along(gravity, 2)
     leave_of(whole, support, i, dimension)
@@ -109,8 +123,10 @@ def find_pull(gravity, i, dimension):
 
 @inner_helper
 def add_plane(flights, i, normal, row, space, support):
-    """Add the plane that a particle touches in the direction of a unit vector (3,); the third gives way to a
-    fourth one."""
+    """Add the plane that a particle touches in the direction of a unit vector (3,).
+
+    A fourth plane replaces the third.
+    """
     n = min(support.number[i], 2)
     support.normal[i, n, 0], support.normal[i, n, 1], support.normal[i, n, 2] = (
         -normal[0],
@@ -126,8 +142,10 @@ def add_plane(flights, i, normal, row, space, support):
 
 @inner_helper
 def lies_on_floor(flights, i, axis, space, gravity, longest):
-    """Whether a particle lies on a face of the container along an axis, or bounces there no longer than the
-    longest bounce that is taken for rest."""
+    """Return True if a particle lies on a face of the container along an axis.
+
+    It also lies there if its bounce is at most as long as the longest bounce that is taken for rest.
+    """
     if axis >= len(space.lengths) or space.periodic[axis]:
         return False
     pull, x = gravity.acceleration[axis], flights[i].position[axis]
@@ -149,8 +167,11 @@ def add_floors(flights, i, space, gravity, longest):
 
 @inner_kernel
 def pressing(flights, i, normal, space, gravity, longest):
-    """The acceleration of a particle in the direction of a unit vector (3,): by gravity, or if that leads
-    away, by what the floors on which the particle lies leave of it."""
+    """Return the acceleration of a particle in the direction of a unit vector (3,).
+
+    It is the component of gravity, or if this leads away, the part that remains on the floors on which the
+    particle lies.
+    """
     if gravity.support.number[i] > 0:
         return dot(normal, gravity.support.pull[i])
     press = remaining = 0.0
@@ -163,7 +184,10 @@ def pressing(flights, i, normal, space, gravity, longest):
 
 @inner_kernel
 def release(flights, i, space, support):
-    """Let gravity act on a particle in full, which is exactly at the walls that it rested on until now."""
+    """Remove the support of a particle, so that gravity acts on it in full.
+
+    The particle is moved exactly to the walls on which it rested.
+    """
     if support is None:
         return
     for n in range(support.number[i]):
@@ -177,23 +201,24 @@ def release(flights, i, space, support):
 
 @inner_helper
 def release_after(flights, i, space, gravity):
-    """The same where there may be no gravity."""
+    """Release a particle if there is gravity."""
     if gravity is not None:
         release(flights, i, space, gravity.support)
 
 
 # Particles that slide along a wall into an acute wedge, under an overhanging wall or fixed particle.
 #
-# This throws the particle down; it comes to rest below, and is under it again at once, at less of its
-# speed: for ever, in no time. It comes to rest between both; what remains is its velocity along both.
+# The overhang throws the particle down; it comes to rest below, and hits the overhang again at once, with
+# less of its speed: infinitely often, in no time. So it is put to rest between both; its velocity along both
+# remains.
 
 
-_INTO = 2.0**-40  # of its speed: what leads less into a plane runs along it
+_INTO = 2.0**-40  # fraction of the speed; a smaller component into a plane counts as motion along it
 
 
 @inner_helper
 def count_planes(support, i):
-    """How many planes of interior walls a particle rests on."""
+    """Return the number of planes of interior walls on which a particle rests."""
     if support is None:
         return 0
     return support.number[i]
@@ -201,7 +226,7 @@ def count_planes(support, i):
 
 @inner_helper
 def plane_normal(support, i, n):
-    """(3,) the unit vector from one of these planes to the particle."""
+    """Return the unit vector (3,) from one of these planes to the particle."""
     if support is None:
         return 0.0, 0.0, 0.0
     return support.normal[i, n, 0], support.normal[i, n, 1], support.normal[i, n, 2]
@@ -209,7 +234,7 @@ def plane_normal(support, i, n):
 
 @inner_helper
 def fastest_at_rest(gravity, longest, support):
-    """The speed across a horizontal wall below which a bounce is taken for rest."""
+    """Return the speed across a horizontal wall below which a bounce is taken for rest."""
     square = 0.0
     for k in range(len(gravity.acceleration)):
         square += gravity.acceleration[k] * gravity.acceleration[k]
@@ -222,9 +247,11 @@ def fastest_at_rest(gravity, longest, support):
 
 @inner_kernel
 def come_to_rest_again(flights, i, longest, space, gravity, support):
-    """What a particle that has just bounced keeps of its velocity, when it comes to rest again on that on
-    which it rested: (velocity (3,), the number of planes that it led into, the normal (3,) of the last one).
-    The number is 0 if there are none, or if its speed lets it bounce there as well."""
+    """Return the velocity of a bounced particle that comes to rest again on its support.
+
+    The result is (velocity (3,), number of planes that it led into, normal (3,) of the last plane). The
+    number is 0 without such planes, or if the particle is fast enough to bounce there as well.
+    """
     w, normal, number = velocity_of(flights, i, space), (0.0, 0.0, 0.0), 0
     planes, fastest = count_planes(support, i), fastest_at_rest(gravity, longest, support)
     for n in range(planes if planes > 0 else 3):
@@ -246,9 +273,13 @@ def come_to_rest_again(flights, i, longest, space, gravity, support):
 
 @inner_kernel
 def rest_in_wedge(flights, i, normal, particle, space, tally, gravity, support):
-    """After a bounce on something in the direction of a unit vector (3,): let a particle rest between this
-    and what it rested on, if it would meet it again at once. particle: its mass, and the longest bounce taken
-    for rest. Returns whether it rests."""
+    """Put a particle to rest in a wedge after a bounce; return whether it rests.
+
+    It rests between the obstacle of the bounce, in the direction of the unit vector `normal` (3,), and its
+    support, if it would hit the obstacle again at once.
+
+    particle : its mass, and the longest bounce taken for rest
+    """
     mass, longest = particle
     v = velocity_of(flights, i, space)
     w, number, p = come_to_rest_again(flights, i, longest, space, gravity, support)
@@ -272,9 +303,9 @@ def rest_in_wedge(flights, i, normal, particle, space, tally, gravity, support):
 
 # Particles that come to rest on walls, or leave them, under gravity.
 #
-# A bounce too low for positions, or too short for clocks, to resolve is taken for rest: the velocity
-# across the wall becomes zero. The particle is released by the next contact that moves it, and where it
-# leaves the wall.
+# A bounce too low for positions, or too short for clocks, to resolve is taken for rest: the velocity across
+# the wall becomes zero. The particle is released by the next contact that moves it, and where it leaves the
+# wall.
 
 
 _HOP = (
@@ -284,9 +315,14 @@ _HOP = (
 
 @inner_kernel
 def come_to_rest(flights, i, normal, place, mass, space, tally, gravity):
-    """After a bounce on a wall in the direction of a unit vector (3,): let the particle rest there if the
-    bounce cannot be resolved, or else make it as long as can be. place: the row of the wall, whether it
-    is touched at an end, where only what is balanced can rest, and the longest bounce taken for rest."""
+    """Put a particle to rest after a bounce that is too short to be resolved.
+
+    If the particle cannot rest there, its bounce is made long enough to be resolved.
+
+    normal : (3,), unit vector towards the wall
+    place : row of the wall, whether it is touched at an end, where only a balanced particle can rest, and the
+        longest bounce taken for rest
+    """
     row, at_end, longest = place
     support = gravity.support
     press = pressing(flights, i, normal, space, gravity, longest)
@@ -324,7 +360,7 @@ def come_to_rest(flights, i, normal, place, mass, space, tally, gravity):
 
 @inner_helper
 def time_to_leave(at, speed, pull, length):
-    """Time until a coordinate along a wall is outside of [0, length]; inf if it never is."""
+    """Return the time until a coordinate along a wall is outside [0, length]; inf if never."""
     time = inf
     if at <= length:
         time = time_to_side(length - at, speed, pull)
@@ -335,8 +371,10 @@ def time_to_leave(at, speed, pull, length):
 
 @inner_helper
 def leave(flights, i, edge, at, length, space):
-    """Move a particle that is at the end of a wall beyond it, in the direction of a unit vector (3,) along
-    which its coordinate is `at`, by more than that is rounded by."""
+    """Move a particle at the end of a wall beyond it, by more than the rounding.
+
+    edge : (3,), unit vector along which the coordinate of the particle is `at`
+    """
     beyond = length
     for k in range(len(space.lengths)):
         beyond += abs(flights[i].position[k])
@@ -352,13 +390,13 @@ def leave(flights, i, edge, at, length, space):
 
 # Bounces that are shorter than the duration of a contact: the particle comes to rest.
 #
-# The contact of a single particle with a floor then never ends. A particle that others press against it
-# rests only after much shorter bounces: otherwise it would take the energy of contacts that are elastic.
+# The contact of a single particle with a floor then never ends. A particle that others press against it rests
+# only after much shorter bounces: otherwise it would take the energy of contacts that are elastic.
 
 
 @inner_helper
 def longest_rest(flights, i, gravity, law):
-    """Of a particle at a wall, the longest bounce, as half its time, that is taken for rest."""
+    """Return the longest bounce at a wall that is taken for rest, as half its time."""
     if law is not None:
         return _longest_rest(flights, i, gravity, law.duration)
     return gravity.shortest_bounce
@@ -374,7 +412,7 @@ def _longest_rest(flights, i, gravity, duration):
 
 @inner_helper
 def rest_on_floor(flights, i, face, tally, gravity, law):
-    """Let a particle that has bounced on a face which is a floor rest there, if the bounce is so short."""
+    """Put a particle to rest after a bounce on a floor if the bounce is short."""
     if law is not None:
         _rest_on_floor(flights, i, face, tally, gravity, law, law.duration)
 

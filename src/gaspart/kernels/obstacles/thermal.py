@@ -1,4 +1,7 @@
-"""Thermal walls: a particle leaves them with a velocity drawn from their temperature."""
+"""Faces and walls that draw, absorb or change velocities: thermal walls, sticky walls, wells.
+
+A particle leaves a thermal wall with a velocity drawn from the temperature of the wall.
+"""
 
 from __future__ import annotations
 
@@ -25,8 +28,12 @@ from gaspart.kernels.physics.running_sum import add
 
 @inner_helper
 def mirrors(i, face, number, key, accommodation):
-    """Whether a face leaves a particle its velocity, mirrored, at the hit with this number (Maxwell's model):
-    by a word of block 0, of which `flux_speed` takes another."""
+    """Return True if a face mirrors the velocity of a particle at this hit (Maxwell's model).
+
+    The decision uses a word of block 0, of which `flux_speed` takes another.
+
+    number : number of the hit
+    """
     if accommodation is None:
         return False
     _, word, _, _ = random_words(key, i, number, 0)
@@ -35,7 +42,7 @@ def mirrors(i, face, number, key, accommodation):
 
 @inner_helper
 def temperature_at(face, position, lengths, level, ramp):
-    """The temperature of a thermal face where a particle at this position (d,) hits it."""
+    """Return the temperature of a thermal face where a particle at a position (d,) hits it."""
     if ramp is None:
         return level[face]
     return _on_ramp(face, position, lengths, level[face], ramp)
@@ -52,7 +59,7 @@ def _on_ramp(face, position, lengths, low, ramp):
 
 @inner_kernel
 def collide_thermal(flights, i, face, model, tally, law, faces):
-    """Give a particle the velocity of one that leaves a thermal wall."""
+    """Give a particle the velocity with which it leaves a thermal wall."""
     d = len(model.space.lengths)
     axis = face // 2
     side = 1.0 if face % 2 else -1.0
@@ -87,8 +94,10 @@ def collide_thermal(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def add_shear(flights, i, face, mass, sliding):
-    """Add a particle's momentum along a face to what that was given. mass: negative where the particle takes
-    it."""
+    """Add a particle's momentum along a face to the momentum given to the face.
+
+    mass : negative if the particle takes the momentum
+    """
     if sliding is not None:
         d = sliding.velocity.shape[1]
         for k in range(d):
@@ -98,7 +107,7 @@ def add_shear(flights, i, face, mass, sliding):
 
 @inner_helper
 def drag(flights, i, face, mass, sliding):
-    """Let a particle that leaves a face share its motion."""
+    """Add the velocity of a sliding face to the particle that leaves it."""
     if sliding is not None:
         for k in range(sliding.velocity.shape[1]):
             flights[i].velocity[k] += sliding.velocity[face, k]
@@ -107,8 +116,12 @@ def drag(flights, i, face, mass, sliding):
 
 @inner_kernel
 def draw_spin(i, wall, level, key, counter, dimension, tally, law):
-    """The same for the spin of a rough particle, which has one component in 2D. wall: the row of the tally;
-    level: the temperature; counter: the draw's number and the first block of random words that it may use."""
+    """Draw the spin of a rough particle, which has one component in two dimensions.
+
+    wall : row of the tally
+    level : temperature
+    counter : number of the draw, and first block of random words that the draw may use
+    """
     if law is None:
         return
     if law.tangential > -1.0:
@@ -123,14 +136,17 @@ def draw_spin(i, wall, level, key, counter, dimension, tally, law):
             law.spins[i, k] = spin
 
 
-# Interior walls at a temperature: a particle leaves them with a velocity drawn from it, on its side.
+# Interior walls at a temperature: a particle leaves them on its side with a velocity drawn from it.
 
 
 @inner_helper
 def leave_warm(flights, i, wall, normal, model, tally, law, warm):
-    """Give a particle the velocity of one that leaves an interior wall, in the direction of the unit vector
-    `normal` (3,), if that is at a temperature. Returns the momentum given to the wall along that direction,
-    or -1 if it is hard."""
+    """Give a particle the velocity with which it leaves an interior wall at a temperature.
+
+    Returns the momentum given to the wall along the normal, or -1 if the wall is hard.
+
+    normal : (3,), unit vector towards the wall
+    """
     if warm is None:
         return -1.0
     return _leave_warm(flights, i, wall, normal, model, tally, law, warm)
@@ -163,8 +179,10 @@ def _leave_warm(flights, i, wall, normal, model, tally, law, warm):
 
 @inner_helper
 def tangents(normal, dimension):
-    """Two unit vectors (3,) at right angles to one another and to the unit vector `normal` (3,); in 2D the
-    first is in the plane."""
+    """Return two unit vectors (3,) perpendicular to each other and to a unit vector `normal` (3,).
+
+    In two dimensions the first is in the plane.
+    """
     x, y, z = normal
     if dimension == 2:
         return (-y, x, 0.0), (0.0, 0.0, 1.0)
@@ -181,22 +199,22 @@ def tangents(normal, dimension):
     return first, (y * c - z * b, z * a - x * c, x * b - y * a)
 
 
-# Sticky walls: slow particles stay, their normal energy becomes that of a vibration.
+# Sticky walls: slow particles stay, and their normal energy becomes energy of a vibration.
 #
-# A particle that is hit while it sticks loses at once the velocity across its faces that the contact gives
-# it. What has hit it keeps of its approach what rounding makes of zero, and must not come back for that.
+# A particle that is hit while it sticks loses at once the velocity across its faces that the collision gives
+# it. The particle that has hit it may keep a small approach velocity where exact arithmetic gives zero, and
+# must not return because of this rounding.
 
 
 @inner_helper
 def is_absorbed(energy, face, mass, faces):
-    """Whether a particle with this normal energy sticks to a face."""
+    """Return True if a particle with this normal energy sticks to a face."""
     return energy < 0.5 * faces.level[face] * faces.level[face] / mass
 
 
 @inner_kernel
 def collide_sticky(flights, i, face, model, tally, law, faces):
-    """Judge a particle at a sticky face by all the normal energy that it has, in flight and in its
-    vibration."""
+    """Decide whether a particle sticks to a face, by its normal energy in flight and vibration."""
     axis = face // 2
     side = 1.0 if face % 2 else -1.0
     mass = mass_of(i, model.masses, law)
@@ -217,7 +235,10 @@ def collide_sticky(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def is_held(flights, i, axis, masses, law, faces, sticky):
-    """Whether a particle sticks to a face across an axis, which absorbs its velocity there."""
+    """Return True if a particle sticks to a face across an axis.
+
+    The face absorbs its velocity along this axis.
+    """
     place = faces.place[i, axis]
     face = 2 * axis + (1 if place > 0 else 0)
     if place == 0 or not sticky[face]:
@@ -229,7 +250,7 @@ def is_held(flights, i, axis, masses, law, faces, sticky):
 
 @inner_helper
 def mobility_of(i, masses, law):
-    """What an impulse changes of a particle's velocity: nothing if it is fixed."""
+    """Return the change of a particle's velocity by a unit impulse: 0 if it is fixed."""
     if law is not None:
         return law.inverse_mass[i]
     return 1.0 / mass_of(i, masses, law)
@@ -237,8 +258,10 @@ def mobility_of(i, masses, law):
 
 @inner_helper
 def lose_rounding(flights, i, axis, least, space, sticky):
-    """Take a velocity from a particle at a sticky face with which it would come to it, if that is at most
-    `least`: what is left where it has given all its velocity to another particle is no contact."""
+    """Remove a velocity of at most `least` with which a particle would hit its sticky face.
+
+    Such a velocity remains where the particle has given all its velocity to another particle; it is no hit.
+    """
     v = flights[i].velocity[axis]
     upper = v > 0.0
     if v != 0.0 and abs(v) <= least and sticky[2 * axis + (1 if upper else 0)]:
@@ -282,8 +305,11 @@ def _part_if_held(flights, i, j, model, faces, sticky):
 
 @inner_helper
 def part_if_held(flights, i, j, model, faces):
-    """Let two particles that have collided part, if one of them sticks to a face and would be met again, at a
-    speed that is rounding only; and let no such speed lead to a face."""
+    """Separate two particles that have collided if one of them sticks to a face.
+
+    If they would collide again, they get a speed of separation of the order of rounding; and no such speed
+    may lead to a face.
+    """
     if faces is not None:
         _part_if_held(flights, i, j, model, faces, faces.sticky)
 
@@ -293,7 +319,7 @@ def part_if_held(flights, i, j, model, faces):
 
 @inner_helper
 def edge_plane(flights, i, face, space, faces):
-    """Where the centre of a particle crosses the edge of a face's well."""
+    """Return the coordinate of a particle's centre at the edge of a face's well."""
     upper = face % 2 == 1
     width = faces.width[face]
     return face_plane(flights, i, face // 2, upper, space) + (-width if upper else width)
@@ -301,8 +327,11 @@ def edge_plane(flights, i, face, space, faces):
 
 @inner_kernel
 def time_to_edge(flights, i, axis, space, faces):
-    """When a particle that moves along an axis comes to the edge of a well there, or, stuck to a face, is to
-    be judged again because a contact has moved it: (time, face code)."""
+    """Return the next edge of a well along an axis: (time, face code).
+
+    For a particle stuck to a face the result is its clock and the face: it is tested again, because a contact
+    has moved it.
+    """
     v = flights[i].velocity[axis]
     clock = flights[i].clock
     place = faces.place[i, axis]
@@ -318,8 +347,10 @@ def time_to_edge(flights, i, axis, space, faces):
 
 @inner_helper
 def cross_edge(flights, i, face, model, tally, law, faces):
-    """Let a particle into a well, or out of it if it is fast enough. The wall takes the momentum of the
-    step."""
+    """Move a particle into a well, or out of it if it is fast enough.
+
+    The wall takes the momentum of the step.
+    """
     axis = face // 2
     flights[i].position[axis] = edge_plane(flights, i, face, model.space, faces)
     side = 1.0 if face % 2 else -1.0
@@ -340,14 +371,17 @@ def cross_edge(flights, i, face, model, tally, law, faces):
 
 @inner_kernel
 def collide_edge(flights, i, face, model, tally, law, faces):
-    """`cross_edge` as a function of its own. Returns the number of the face."""
+    """Perform `cross_edge` as a separate function; return the number of the face."""
     cross_edge(flights, i, face, model, tally, law, faces)
     return face
 
 
 @inner_helper
 def meet_edge(flights, i, face, time, model, tally, faces):
-    """Advance a particle to the edge of a well, and let it in or out. Returns the number of the face."""
+    """Advance a particle to the edge of a well and cross or reflect there.
+
+    Returns the number of the face.
+    """
     if faces is not None:
         advance(flights, i, time, model.space, model.gravity)
         velocity = velocity_before(flights, i, tally.per_area)

@@ -1,29 +1,30 @@
-"""When do falling particles touch: the roots of flights under a uniform pull.
+"""Contact times of falling particles: the roots of flights under a uniform acceleration.
 
-Two particles that fall alike move straight relative to each other, so these are needed only where one of
+Two particles that fall alike move straight relative to each other, so these roots are needed only if one of
 the two does not fall: a wall, the side of a box, a fixed particle, a particle that lies on a floor. As in
-`contact`, a particle that touches and approaches does so now, and every root is taken in the form that does
-not cancel.
+`contact`, the contact time of a particle that touches and approaches is 0, and every root is taken in the
+form that does not cancel.
 """
 
 from math import inf, sqrt
 
 from gaspart.kernels.compile.policy import helper, inner_helper, kernel
 
-_HALVINGS = 2200  # bisection alone narrows any interval of floats to two neighbours in fewer
+_HALVINGS = 2200  # maximum number of bisections; fewer narrow any interval to two adjacent floats
 
 
 @inner_helper
 def flown(x, v, pull, time):
-    """Where a coordinate x of speed v is after `time` under `pull` (Spencer 2022, Eq. 1)."""
+    """Return a coordinate after ballistic flight (Spencer 2022, Eq. 1)."""
     return x + (v + 0.5 * pull * time) * time
 
 
 @helper
 def time_against(gap, speed, pull):
-    """Time to cross `gap` at `speed` >= 0 against a `pull` > 0 that slows it down; inf if it turns before.
+    """Return the time to cross `gap` at `speed` >= 0 against a deceleration `pull` > 0.
 
-    The smaller root of pull t^2 / 2 - speed t + gap = 0 (Spencer 2022, Eqs. 12 and 14).
+    This is the smaller root of pull t^2 / 2 - speed t + gap = 0 (Spencer 2022, Eqs. 12 and 14); inf if the
+    particle turns before.
     """
     if gap <= 0.0:
         return 0.0
@@ -35,10 +36,13 @@ def time_against(gap, speed, pull):
 
 @helper
 def time_along(gap, speed, pull):
-    """Time until a `gap` is crossed in the direction of `pull` > 0, begun at `speed` (negative: away).
+    """Return the time to cross a `gap` in the direction of an acceleration `pull` > 0.
 
-    The larger root of gap - speed t - pull t^2 / 2 = 0. If the gap is not even open (>= 0) when the way back
-    begins, as rounding may leave it for a particle that has just left a floor, that is the time.
+    This is the larger root of gap - speed t - pull t^2 / 2 = 0. If the gap is not open (>= 0) at the turning
+    point, as rounding may leave it for a particle that has just left a floor, the result is the time of the
+    turning point.
+
+    speed : initial speed; negative away from the end of the gap
     """
     if speed >= 0.0:
         if gap <= 0.0:
@@ -51,8 +55,12 @@ def time_along(gap, speed, pull):
 
 @inner_helper
 def time_to_side(gap, closing, pull):
-    """Time until a particle touches the side that it is on: `gap` from it, approaching at `closing`, drawn
-    towards it by `pull`; inf if it never does."""
+    """Return the time until a particle touches the side that it is on, or inf.
+
+    gap : distance to the side
+    closing : speed of approach
+    pull : acceleration towards the side
+    """
     if pull > 0.0:
         return time_along(gap, closing, pull)
     if closing <= 0.0:
@@ -64,7 +72,11 @@ def time_to_side(gap, closing, pull):
 
 @inner_helper
 def time_to_far_side(gap, closing, pull):
-    """The same for the side that it is not on yet (gap < 0): it must pass the line, turn and come back."""
+    """Return the time until a particle touches the side that it is not on, or inf.
+
+    The gap is negative. The particle must pass the line, turn and come back. The arguments are explained in
+    `time_to_side`.
+    """
     if closing >= 0.0 or pull <= 0.0:
         return inf
     square = closing * closing + 2.0 * pull * gap
@@ -78,7 +90,10 @@ def _polynomial(c0, c1, c2, c3, c4, t):
 
 @inner_helper
 def _root_between(c0, c1, c2, c3, c4, low, high):
-    """A root of the quartic between `low` and `high`, where its signs differ: Newton within bisection."""
+    """Find a root of the quartic between `low` and `high`, where its signs differ.
+
+    The method is Newton's within bisection.
+    """
     falls = _polynomial(c0, c1, c2, c3, c4, low) > 0.0
     t = 0.5 * (low + high)
     for _ in range(_HALVINGS):
@@ -101,14 +116,15 @@ def _root_between(c0, c1, c2, c3, c4, low, high):
 
 @kernel
 def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
-    """Time until two particles touch whose separation is r + v t + a t^2 / 2; inf if they never do.
+    """Return the time until two particles touch; inf if they never do.
 
-    gap = r.r - sigma^2, rv = r.v, vv = v.v, ra = r.a, va = v.a, aa = a.a > 0. The first time at which they
-    touch or overlap and approach: the quartic f(t) = |r(t)|^2 - sigma^2 is looked at between the roots of
-    its derivative, and those between the roots of its second, so that no grazing contact is passed over.
+    Their separation is r + v t + a t^2 / 2; gap = r.r - sigma^2, rv = r.v, vv = v.v, ra = r.a, va = v.a, aa =
+    a.a > 0. The result is the first time at which they touch or overlap and approach: the quartic f(t) =
+    |r(t)|^2 - sigma^2 is examined between the roots of its derivative, and the derivative between the roots
+    of the second derivative, so that no grazing contact is missed.
     """
     c0, c1, c2, c3, c4 = gap, 2.0 * rv, vv + ra, va, 0.25 * aa
-    # f'' = 2 c2 + 6 c3 t + 12 c4 t^2 splits time into stretches in which f' is monotonic
+    # f'' = 2 c2 + 6 c3 t + 12 c4 t^2 splits time into intervals in which f' is monotonic
     first = second = 0.0
     square = 9.0 * c3 * c3 - 24.0 * c4 * c2
     if square > 0.0:
@@ -134,7 +150,7 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
         turn = stop
         if (slope < 0.0 and end_slope > 0.0) or (slope > 0.0 and end_slope < 0.0):
             turn = _root_between(c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 0.0, start, stop)
-        # f falls from `start` to `turn`, or from `turn` to `stop`, or nowhere in this stretch
+        # f falls from `start` to `turn`, or from `turn` to `stop`, or nowhere in this interval
         at_once = slope < 0.0 or (slope == 0.0 and end_slope < 0.0)
         if at_once or end_slope < 0.0:
             low, high = (start, turn) if at_once else (turn, stop)
@@ -148,7 +164,10 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
 
 @kernel
 def time_of_summit(rv, vv, ra, va, aa):
-    """When the distance of two such particles is greatest between two approaches; inf after a single one."""
+    """Return the time of the greatest distance between two approaches; inf for a single approach.
+
+    The arguments are explained in `time_to_contact_pulled`.
+    """
     c1, c2, c3, c4 = 2.0 * rv, vv + ra, va, 0.25 * aa
     square = 9.0 * c3 * c3 - 24.0 * c4 * c2
     if square <= 0.0:

@@ -1,7 +1,8 @@
-"""What passes between two particles that touch, or a particle and a wall.
+"""Transfer of momentum between two particles that touch, or between a particle and a wall.
 
 Smooth elastic particles exchange momentum alone. A `ContactLaw` adds restitution, spins and fixed particles
-(Spencer 2022, section 2.2); it works with three components, of which 2D leaves the third or the first two 0.
+(Spencer 2022, section 2.2); it works with three components. In two dimensions the third component of a
+velocity and the first two of a spin are 0.
 """
 
 from math import sqrt
@@ -23,12 +24,15 @@ from gaspart.kernels.physics.running_sum import add
 
 LEAST = (
     2.0**-48
-)  # of the particles' speed: they part at least so fast, or rounding would let them meet for ever
+)  # minimum speed of separation divided by the particles' speed: rounding would let them collide for ever
 
 
 @inner_helper
 def gap_along(flights, i, j, axis, space):
-    """The separation of two particles along an axis, by the nearest image; 0 along a third axis in 2D."""
+    """Return the separation of two particles along an axis, by the nearest image.
+
+    Along a third axis in two dimensions it is 0.
+    """
     if axis >= len(space.lengths):
         return 0.0
     gap = flights[j].position[axis] - flights[i].position[axis]
@@ -37,13 +41,13 @@ def gap_along(flights, i, j, axis, space):
 
 @inner_helper
 def speed_along(flights, i, axis, space):
-    """The velocity of a particle along an axis; 0 along a third axis in 2D."""
+    """Return a particle's velocity along an axis; 0 along a third axis in two dimensions."""
     return flights[i].velocity[axis] if axis < len(space.lengths) else 0.0
 
 
 @inner_helper
 def velocity_of(flights, i, space):
-    """(3,) the velocity of a particle."""
+    """Return the velocity (3,) of a particle."""
     return (
         speed_along(flights, i, 0, space),
         speed_along(flights, i, 1, space),
@@ -60,7 +64,7 @@ def push(flights, i, factor, vector, space):
 
 @inner_helper
 def fastest_component(flights, i, space):
-    """The largest component of a particle's velocity."""
+    """Return the largest component of a particle's velocity."""
     fastest = 0.0
     for k in range(len(space.lengths)):
         fastest = max(fastest, abs(flights[i].velocity[k]))
@@ -69,8 +73,12 @@ def fastest_component(flights, i, space):
 
 @inner_helper
 def least_speed(flights, i, space):
-    """The least speed at which a particle parts from a wall: its speed times the rounding of the direction to
-    the wall, which is that of positions over the radius. With less it would meet the wall for ever."""
+    """Return the minimum speed of separation of a particle from a wall.
+
+    It is the particle's speed multiplied by the rounding error of the direction to the wall, which is the
+    rounding error of positions divided by the radius. With a smaller speed the particle would hit the wall
+    for ever.
+    """
     longest = flights[i].radius
     for k in range(len(space.lengths)):
         longest = max(longest, space.lengths[k])
@@ -79,7 +87,7 @@ def least_speed(flights, i, space):
 
 @inner_helper
 def collide_smooth(flights, i, j, rr, rv, space, masses):
-    """An elastic contact of smooth particles. Returns |r . dp|."""
+    """Apply an elastic collision to two smooth particles; return |r . dp|."""
     if masses is None:
         to_i = to_j = exchange_equal(rr, rv)
         virial = abs(rv)
@@ -95,16 +103,19 @@ def collide_smooth(flights, i, j, rr, rv, space, masses):
 
 @inner_helper
 def spin_of(flights, i, law):
-    """(3,) the spin of a particle times its radius."""
+    """Return the spin (3,) of a particle multiplied by its radius."""
     radius = flights[i].radius
     return radius * law.spins[i, 0], radius * law.spins[i, 1], radius * law.spins[i, 2]
 
 
 @inner_helper
 def slip(velocity, spin, normal):
-    """(3,) the tangential relative velocity of two surfaces, from the relative velocity of the centres and
-    the sum of the spins, times radius, with `normal` the unit vector from the first to the second; Spencer
-    2022, Eq. 30."""
+    """Return the tangential relative velocity (3,) of two surfaces (Spencer 2022, Eq. 30).
+
+    velocity : relative velocity of the centres
+    spin : sum of the spins multiplied by the radii
+    normal : unit vector from the first to the second
+    """
     x, y, z = normal
     gx = velocity[0] + (spin[1] * z - spin[2] * y)
     gy = velocity[1] + (spin[2] * x - spin[0] * z)
@@ -115,16 +126,21 @@ def slip(velocity, spin, normal):
 
 @inner_helper
 def lose(approach, mobility, normal, usual, law, tally):
-    """Count the energy that the normal part of a contact takes, with this restitution; and what the `usual`
-    one would have taken more."""
+    """Count the energy dissipated by the normal part of a collision with this restitution.
+
+    The energy that the `usual` restitution would have dissipated in addition is counted separately.
+    """
     add(tally.sums, LOSS, 0.5 * (1.0 - normal * normal) * approach * approach / mobility)
     keep(0.5 * (normal * normal - usual * usual) * approach * approach / mobility, law.duration)
 
 
 @inner_helper
 def rub(velocity, mobility, lever, tangential, law, tally):
-    """(3,) the tangential impulse on the first of two surfaces with a tangential relative velocity (3,).
-    mobility, lever, tangential: as in `contact.tangential_impulse`."""
+    """Return the tangential impulse (3,) on the first of two surfaces, and count its energy.
+
+    velocity : (3,), tangential relative velocity
+    mobility, lever, tangential : see `contact.tangential_impulse`
+    """
     factor = tangential_impulse(mobility, lever, tangential)
     gx, gy, gz = velocity
     square = gx * gx + gy * gy + gz * gz
@@ -137,8 +153,10 @@ def rub(velocity, mobility, lever, tangential, law, tally):
 
 @inner_helper
 def add_spin(flights, i, normal, impulse, law):
-    """Add the spin that an impulse (3,) gives at the surface point in the direction `normal`; Spencer 2022,
-    Eq. 26."""
+    """Add the spin due to an impulse (3,) at a surface point (Spencer 2022, Eq. 26).
+
+    normal : unit vector towards the point
+    """
     factor = flights[i].radius * law.inverse_inertia[i]
     law.spins[i, 0] += factor * (normal[1] * impulse[2] - normal[2] * impulse[1])
     law.spins[i, 1] += factor * (normal[2] * impulse[0] - normal[0] * impulse[2])
@@ -147,10 +165,10 @@ def add_spin(flights, i, normal, impulse, law):
 
 @inner_kernel
 def exchange_with_vibration(i, j, approach, mobility, vibrations):
-    """Exchange the normal energy of two particles and that of the mode that one of them has.
+    """Exchange the normal energy of two particles with the energy of a vibrational mode.
 
-    This keeps the measure v dv dE and is its own inverse in time. Returns the speed at which they part, or -1
-    if neither has a mode.
+    The mode belongs to one of the particles. The exchange conserves the measure v dv dE and is its own
+    inverse in time. Returns the speed of separation, or -1 if neither particle has a mode.
     """
     if vibrations is None:
         return -1.0
@@ -164,7 +182,7 @@ def exchange_with_vibration(i, j, approach, mobility, vibrations):
 
 @inner_kernel
 def collide_by_law(flights, i, j, rr, rv, space, tally, law):
-    """A contact under a law (Spencer 2022, Eq. 39). Returns |r . dp|."""
+    """Apply the collision law to two particles (Spencer 2022, Eq. 39); return |r . dp|."""
     mobility_i, mobility_j = law.inverse_mass[i], law.inverse_mass[j]
     mobility = mobility_i + mobility_j
     length = sqrt(rr)
@@ -203,8 +221,13 @@ def collide_by_law(flights, i, j, rr, rv, space, tally, law):
 
 @inner_kernel
 def collide_wall_by_law(flights, i, normal, least, space, tally, law):
-    """A contact with a wall in the direction of the unit vector `normal` (3,) (Spencer 2022, Eq. 40); the
-    particle parts from it at `least` so fast. Returns the momentum given to the wall along that direction."""
+    """Apply the collision law to a particle at a wall (Spencer 2022, Eq. 40).
+
+    Returns the momentum given to the wall along the normal.
+
+    normal : (3,), unit vector towards the wall
+    least : minimum speed of separation
+    """
     mobility = law.inverse_mass[i]
     velocity = velocity_of(flights, i, space)
     approach = normal[0] * velocity[0] + normal[1] * velocity[1] + normal[2] * velocity[2]
@@ -225,7 +248,10 @@ def collide_wall_by_law(flights, i, normal, least, space, tally, law):
 
 @inner_helper
 def is_fixed(i, law, duration):
-    """Return True if a particle is fixed: one that a jam holds has no mobility, either, until it is free."""
+    """Return True if a particle is fixed.
+
+    A particle held by a jam has no mobility either, but is not fixed.
+    """
     if duration is not None:
         return duration.inverse_mass[i] == 0.0
     return law.inverse_mass[i] == 0.0
@@ -241,7 +267,10 @@ def meets_fixed(i, j, law):
 
 @inner_helper
 def exchange_momentum(flights, i, j, rr, rv, model, tally, law):
-    """What passes at a contact, by the law if there is one. Returns |r . dp|."""
+    """Apply the collision law to a pair in contact; return |r . dp|.
+
+    Without a law the collision is elastic.
+    """
     if law is None:
         return collide_smooth(flights, i, j, rr, rv, model.space, model.masses)
     return collide_by_law(flights, i, j, rr, rv, model.space, tally, law)

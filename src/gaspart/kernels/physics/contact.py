@@ -1,9 +1,9 @@
-"""The physics of one contact: when do two particles touch, and what momentum passes.
+"""Physics of one contact: the time at which two particles touch, and the transferred momentum.
 
-Both engines use these functions and no others. With r and v the separation and relative velocity of two
-particles (second minus first), they work on the invariants rr = r.r, rv = r.v, vv = v.v and ss = sigma^2,
-sigma the distance of the centres at contact; so they know no dimension, no container and no engine.
-The arithmetic keeps the type of its arguments (float32 stays float32): hence x + x for 2x.
+Both engines use only these functions. With r and v the separation and relative velocity of two particles
+(second minus first), they work on the invariants rr = r.r, rv = r.v, vv = v.v and ss = sigma^2, sigma the
+distance of the centres at contact; so they depend on no dimension, no container and no engine. The arithmetic
+keeps the type of its arguments (float32 stays float32): hence x + x for 2x.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from gaspart.kernels.physics.running_sum import add
 
 @helper
 def contact_root(rr, rv, vv, ss):
-    """Time of first touch of an approaching pair (rv < 0) on a collision course.
+    """Return the time of first touch of a pair on a collision course (rv < 0).
 
-    The smaller root of vv t^2 + 2 rv t + (rr - ss) = 0, in the form without cancellation
-    t = c/(-b + sqrt(b^2 - ac)) (Spencer 2022, Eq. 21). Negative for a pair that overlaps already: the
-    touch then lies that long in the past, which is what the time-stepped engine rewinds by.
+    This is the smaller root of vv t^2 + 2 rv t + (rr - ss) = 0, in the form without cancellation t = c/(-b +
+    sqrt(b^2 - ac)) (Spencer 2022, Eq. 21). It is negative for a pair that overlaps already: the touch was
+    that long ago, and the time-stepped engine rewinds by this time.
     """
     c = rr - ss
     return c / (sqrt(rv * rv - vv * c) - rv)
@@ -28,10 +28,11 @@ def contact_root(rr, rv, vv, ss):
 
 @helper
 def time_to_contact(rr, rv, vv, ss):
-    """Time until a pair touches; 0 if it touches or overlaps and approaches; inf if it never does.
+    """Return the time until a pair touches; inf if it never does.
 
-    Overlap that rounding has left is never allowed to grow: a touching, approaching pair collides now
-    (Bannerman, Strobl, Formella & Poeschel, Comput. Part. Mech. 1, 191 (2014)).
+    For a pair that touches or overlaps and approaches it is 0. Overlap due to rounding is never allowed to
+    grow. So a touching, approaching pair collides now (Bannerman, Strobl, Formella & Poeschel, Comput. Part.
+    Mech. 1, 191 (2014)).
     """
     c = rr - ss
     if not ((rv < 0.0) & (rv * rv >= vv * c)):  # one branch, nearly always taken
@@ -43,18 +44,20 @@ def time_to_contact(rr, rv, vv, ss):
 
 @helper
 def exchange_equal(rr, rv):
-    """The factor k of an elastic contact of equal masses: v1 += k r, v2 -= k r.
+    """Return the factor k of an elastic contact of equal masses.
 
-    Taken with the true r.r, not sigma^2, so that the energy does not depend on the contact's error.
+    The velocities change by v1 += k r, v2 -= k r. The factor is computed with the true r.r, not sigma^2, so
+    that the energy does not depend on the contact's error.
     """
     return rv / rr
 
 
 @helper
 def exchange(rr, rv, mass1, mass2):
-    """The factors k1, k2 of an elastic contact: v1 += k1 r, v2 -= k2 r (Spencer 2022, Eq. 39, smooth).
+    """Return the factors k1, k2 of an elastic contact.
 
-    Written with 2 m2/(m1 + m2), in which no mass is lost however large the ratio.
+    The velocities change by v1 += k1 r, v2 -= k2 r. This is Spencer 2022, Eq. 39, for smooth particles,
+    written with 2 m2/(m1 + m2), in which no mass is lost however large the ratio.
     """
     k = rv / rr
     total = mass1 + mass2
@@ -63,32 +66,40 @@ def exchange(rr, rv, mass1, mass2):
 
 @inner_helper
 def normal_change(approach, restitution, least):
-    """By how much a contact changes the normal relative velocity: `approach` becomes -restitution * approach
-    (Spencer 2022, Eq. 35), or -least, whichever parts the two faster."""
+    """Return the change of the normal relative velocity by a collision.
+
+    `approach` becomes -restitution * approach (Spencer 2022, Eq. 35), or -least if this gives a higher speed
+    of separation.
+    """
     return approach + max(restitution * approach, least)
 
 
 @inner_helper
 def tangential_impulse(inverse_mass, lever, restitution):
-    """Impulse per tangential relative velocity of the surfaces (Spencer 2022, Eq. 38).
+    """Return the impulse divided by the tangential relative velocity (Spencer 2022, Eq. 38).
 
-    inverse_mass: 1/m1 + 1/m2; lever: R1^2/I1 + R2^2/I2; 0 for what is fixed.
+    inverse_mass : 1/m1 + 1/m2, with 0 for a fixed particle or wall
+    lever : R1^2/I1 + R2^2/I2, with 0 for a fixed particle or wall
     """
     return (1.0 + restitution) / (inverse_mass + lever)
 
 
 @inner_helper
 def time_to_plane(x, v, plane):
-    """Time at which a coordinate x, moving at v != 0, reaches `plane` (Spencer 2022, Eqs. 10 and 13)."""
+    """Return the time at which a coordinate x reaches `plane` (Spencer 2022, Eqs. 10 and 13).
+
+    v : velocity, not 0
+    """
     return (plane - x) / v
 
 
 @helper
 def time_to_growing_contact(rr, rv, vv, sigma, rate):
-    """Time until a pair touches whose distance at contact grows, sigma + rate t; inf if it never does.
+    """Return the time until two growing particles touch; inf if they never do.
 
-    The first root of a t^2 + 2 b t + c, a = vv - rate^2, in the form that does not cancel (Lubachevsky &
-    Stillinger, J. Stat. Phys. 60, 561 (1990)); 0 for a pair that touches or overlaps, and approaches.
+    The distance at contact is sigma + rate t. The result is the first root of a t^2 + 2 b t + c, a = vv -
+    rate^2, in the form that does not cancel (Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990)); 0 for
+    a pair that touches or overlaps, and approaches.
     """
     a = vv - rate * rate
     b = rv - sigma * rate
@@ -103,24 +114,26 @@ def time_to_growing_contact(rr, rv, vv, sigma, rate):
     return (sqrt(square) + b) / -a
 
 
-# Restitution of viscoelastic particles, which falls with the speed of approach.
+# Restitution of viscoelastic particles, which decreases with the speed of approach.
 #
 # Elastic and viscous forces of spheres in contact (Brilliantov, Spahn, Hertzsch and Poeschel, Phys. Rev. E
-# 53, 5382 (1996)) have one number, the damping b: with lengths and times scaled, x'' + b sqrt(x) x' +
-# x^(3/2) = 0 from x = 0, x' = 1 until the force vanishes. It grows as the fifth root of the speed. The
-# restitution is the approximant of Mueller and Poeschel, Phys. Rev. E 84, 021302 (2011), whose error is
+# 53, 5382 (1996)) depend on one number, the damping b: with scaled lengths and times, x'' + b sqrt(x) x' +
+# x^(3/2) = 0 from x = 0, x' = 1 until the force vanishes. The damping grows as the fifth root of the speed.
+# The restitution is the approximant of Mueller and Poeschel, Phys. Rev. E 84, 021302 (2011), whose error is
 # below 0.009 (tests).
 
 
 _ABOVE = 0.501086
 _BELOW = (0.501086, 1.15345, 0.577977, 0.532178)
-_STEPS = 6  # of Newton's method, after which rounding is left
+_STEPS = 6  # steps of Newton's method, to rounding
 
 
 @helper
 def fifth_root(value):
-    """The fifth root of a number that is not negative, to 4e-16, by +, -, x and / alone: the same bits on
-    every machine."""
+    """Compute the fifth root of a number that is not negative, to 4e-16.
+
+    Only +, -, x and / are used: the bits are the same on every machine.
+    """
     if not value > 0.0:
         return 0.0
     fraction, exponent = frexp(value)
@@ -135,7 +148,7 @@ def fifth_root(value):
 
 @helper
 def restitution_of(damping):
-    """The coefficient of normal restitution, from 1 without damping to 0."""
+    """Return the coefficient of normal restitution, from 1 without damping to 0."""
     w = sqrt(damping)
     below = 1.0 + w * (_BELOW[0] + w * (_BELOW[1] + w * (_BELOW[2] + w * _BELOW[3])))
     return (1.0 + _ABOVE * w) / below
@@ -143,10 +156,11 @@ def restitution_of(damping):
 
 @inner_helper
 def normal_restitution(approach, radius, mobility, normal, viscous):
-    """The restitution of a contact: `normal`, or that of viscoelastic particles with this speed of approach.
+    """Return the normal restitution of a contact, constant or viscoelastic.
 
-    radius: product over sum of the two radii, or that of a particle at a wall; mobility: the sum of the
-    inverse masses.
+    normal : constant restitution, which is returned if `viscous` equals None
+    radius : product of the two radii divided by their sum, or the radius of a particle at a wall
+    mobility : sum of the inverse masses
     """
     if viscous is None:
         return normal
@@ -155,32 +169,36 @@ def normal_restitution(approach, radius, mobility, normal, viscous):
 
 # Contacts that last: dissipation at most once in a contact duration.
 #
-# Hard particles that lose energy meet infinitely often in a finite time, and a pile at rest has contacts
-# all the time. In the TC model (Luding & McNamara, Granular Matter 1, 113 (1998)) a contact dissipates
-# only if both particles have had no other for a time t_c, the duration of a contact of real particles;
+# Hard particles that lose energy collide infinitely often in a finite time, and a pile at rest has contacts
+# all the time. In the TC model (Luding & McNamara, Granular Matter 1, 113 (1998)) a contact dissipates only
+# if neither particle has had another contact for a time t_c, the duration of a contact of real particles;
 # otherwise it is elastic. Contacts with walls count as well; a fixed particle is a wall.
 #
-# Elastic here means: normal restitution 1, and no friction, not even of perfectly rough particles, which
-# would lose nothing: in a corner those exchange spin and velocity for ever, without leaving it (no-slip
-# billiards).
+# Elastic here means: normal restitution 1, and no friction, not even for perfectly rough particles, which
+# would lose nothing: in a corner such particles exchange spin and velocity for ever, without leaving it
+# (no-slip billiards).
 
 
 SHORTEST = 2.0**-7
-"""Of the contact duration: the shortest time between contacts of particles that are pressed together."""
+"""Shortest time between contacts of particles that are pressed together, as a fraction of the contact
+duration.
+"""
 
 
 @inner_helper
 def _elastic(duration):
-    """Count an elastic contact. Returns its (normal, tangential) restitution."""
+    """Count an elastic contact; return its (normal, tangential) restitution."""
     duration.elastic[0] += 1
     return 1.0, -1.0
 
 
 @inner_helper
 def restitution_of_pair(flights, i, j, normal, law, duration):
-    """The (normal, tangential) restitution of a contact of two particles that have been advanced to it.
+    """Return the (normal, tangential) restitution of a contact of two particles.
 
-    normal: what the law alone gives.
+    The particles have been advanced to the contact.
+
+    normal : restitution by the law alone
     """
     if duration is not None:
         time = flights[i].clock
@@ -199,7 +217,10 @@ def restitution_of_pair(flights, i, j, normal, law, duration):
 
 @inner_helper
 def restitution_at_wall(flights, i, normal, law, duration):
-    """The same of a particle and a wall."""
+    """Return the (normal, tangential) restitution of a contact of a particle and a wall.
+
+    The arguments are explained in `restitution_of_pair`.
+    """
     if duration is not None:
         time = flights[i].clock
         lasts = time - duration.latest[i] < duration.length
@@ -212,20 +233,25 @@ def restitution_at_wall(flights, i, normal, law, duration):
 
 @inner_helper
 def keep(energy, duration):
-    """Add an energy that a contact would have dissipated, if it had not been elastic."""
+    """Add an energy that a contact would have dissipated if it had not been elastic."""
     if duration is not None:
         add(duration.kept, 0, energy)
 
 
 @inner_helper
 def meet_often(flights, i, j, duration):
-    """Whether two particles, advanced to the present time, have both had contacts far more often than any
-    that gravity alone presses together."""
+    """Return True if contacts of both particles are far more frequent than under gravity alone.
+
+    The particles have been advanced to the present time; gravity alone may press particles together.
+    """
     late = flights[i].clock - min(duration.latest[i], duration.latest[j])
     return late < SHORTEST * SHORTEST * duration.length
 
 
 @inner_helper
 def is_alone(flights, i, duration):
-    """Whether a particle, advanced to the present time, has met no other for the duration of a contact."""
+    """Return True if a particle has met no other for the duration of a contact.
+
+    The particle has been advanced to the present time.
+    """
     return flights[i].clock - duration.met[i] >= duration.length

@@ -1,10 +1,10 @@
-"""Exact sums of float64 numbers of any size, which do not depend on the order of adding.
+"""Exact sums of float64 numbers of any size, independent of the order of addition.
 
 A sum is a row of whole numbers, the digits of a number in base 2^32 (Kulisch, Computer Arithmetic and
 Validity (2013), ch. 8): digit n counts units of 2^(32 n - 1074), so that the digits hold every float64. Each
-term is added to three of them, without a carry. The last number of a row counts the terms since carries were
-made, which are made in time: nothing overflows, and nothing is rounded. Sums of threads are added digit by
-digit.
+term is added to three of them, without a carry. The last number of a row counts the terms since the last
+carry; carries are made in time, so that nothing overflows and nothing is rounded. Sums of threads are added
+digit by digit.
 """
 
 import math
@@ -15,17 +15,17 @@ from gaspart.kernels.compile.policy import inner_helper, kernel
 
 DIGITS = 68
 WIDTH = DIGITS + 1
-"""Whole numbers of a sum: its digits, of which the last has the sign, and the count of terms."""
+"""Number of whole numbers of a sum: its digits, the last of which has the sign, and the count of terms."""
 _BITS, _LOWEST = 32, -1074
 _MASK, _FRACTION, _HIDDEN, _EXPONENT = 2**32 - 1, 2**52 - 1, 2**52, 2**11 - 1
 _MOST_TERMS = 2**29  # a term adds less than 2^33 to a digit
 UNITS = np.array([math.ldexp(1.0, _BITS * n + _LOWEST) if n < 66 else 0.0 for n in range(DIGITS)])
-"""The units of the digits; those of the highest two, which only carries reach, are above any float64."""
+"""Units of the digits; the units of the highest two, which only carries reach, are above any float64."""
 
 
 @inner_helper
 def carry(total):
-    """Bring each digit of a sum but the last into 0 to 2^32 - 1."""
+    """Carry, so that each digit except the last is from 0 to 2^32 - 1."""
     above = np.int64(0)
     for n in range(DIGITS - 1):
         digit = total[n] + above
@@ -61,7 +61,7 @@ def add_exact(total, x):
 
 @inner_helper
 def _magnitude(total):
-    """Make the digits of a sum those of its absolute value. Returns its sign."""
+    """Replace the digits of a sum by the digits of its absolute value; return its sign."""
     carry(total)
     if total[DIGITS - 1] >= 0:
         return 1.0
@@ -73,7 +73,7 @@ def _magnitude(total):
 
 @inner_helper
 def _two_sum(a, b):
-    """a + b, rounded, and the rounding error."""
+    """Return a + b, rounded, and the rounding error."""
     total = a + b
     added = total - a
     return total, (a - (total - added)) + (b - added)
@@ -81,8 +81,10 @@ def _two_sum(a, b):
 
 @kernel
 def join(parts, total):
-    """total (K, WIDTH) becomes the sum of parts (threads, K, WIDTH), with its carries made: it depends on the
-    value of the sum alone."""
+    """Set total (K, WIDTH) to the sum of parts (threads, K, WIDTH), with carries.
+
+    The digits then depend only on the value of the sum.
+    """
     total[...] = 0
     for part in range(parts.shape[0]):
         for k in range(parts.shape[1]):
@@ -94,8 +96,12 @@ def join(parts, total):
 
 @kernel
 def evaluate(sums, units, found):
-    """found (K, 2) becomes the values of sums (K, WIDTH), whose digits are used up: the nearest float64, and
-    what remains, to 2^-64 of it. units: `UNITS`."""
+    """Set found (K, 2) to the values of sums (K, WIDTH), whose digits are overwritten.
+
+    A value is the nearest float64, and the remainder, to 2^-64 of the value.
+
+    units : `UNITS`
+    """
     for k in range(len(sums)):
         total = sums[k]
         sign, top = _magnitude(total), DIGITS - 1
@@ -103,7 +109,7 @@ def evaluate(sums, units, found):
             top -= 1
         for n in range(top - 2):
             if total[n] != 0:
-                total[top - 2] |= 1  # decides where the digits that count are half-way between two float64
+                total[top - 2] |= 1  # decides if the digits are half-way between two float64
         value = rest = 0.0
         for n in range(3):  # 65 bits at least, and few enough for two float64 to hold
             value, error = _two_sum(value, total[top - n] * units[top - n])
@@ -113,14 +119,14 @@ def evaluate(sums, units, found):
 
 
 def joined(parts: np.ndarray) -> np.ndarray:
-    """(..., WIDTH) the sum over threads of (threads, ..., WIDTH)."""
+    """Return the sum (..., WIDTH) over threads of (threads, ..., WIDTH)."""
     total = np.empty(parts.shape[1:], np.int64)
     join(parts.reshape(len(parts), -1, WIDTH), total.reshape(-1, WIDTH))
     return total
 
 
 def exact_parts(parts: np.ndarray) -> np.ndarray:
-    """(..., 2) what (threads, ..., WIDTH) have summed: the nearest float64, and what remains."""
+    """Return the values (..., 2) of sums (threads, ..., WIDTH): nearest float64 and remainder."""
     total = joined(parts)
     found = np.empty((*total.shape[:-1], 2))
     evaluate(total.reshape(-1, WIDTH), UNITS, found.reshape(-1, 2))

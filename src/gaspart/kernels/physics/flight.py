@@ -1,7 +1,7 @@
-"""Particles between their events: straight flight, or parabolic under gravity.
+"""Flights of particles between events: straight, or parabolic under gravity.
 
-`flights` (N,) are records of position, velocity, clock and radius (`model.flight_dtype`). Where `gravity` is
-None, the machine code knows none.
+`flights` (N,) are records of position, velocity, clock and radius (`model.flight_dtype`). If `gravity` equals
+None, the machine code contains no gravity.
 """
 
 from __future__ import annotations
@@ -15,14 +15,17 @@ from gaspart.kernels.physics.contact import time_to_contact
 
 @inner_helper
 def face_plane(flights, i, axis, upper, space):
-    """Where a face of the container stops, or on a periodic axis passes on, the centre of a particle."""
+    """Return the coordinate at which a face of the container stops a particle's centre.
+
+    On a periodic axis the centre passes on there.
+    """
     inset = 0.0 if space.periodic[axis] else space.margin * flights[i].radius
     return space.lengths[axis] - inset if upper else inset
 
 
 @inner_helper
 def is_supported(support, i):
-    """Whether a particle rests on or slides along walls."""
+    """Return True if a particle rests on walls or slides along them."""
     if support is None:
         return False
     return support.number[i] > 0
@@ -30,7 +33,7 @@ def is_supported(support, i):
 
 @inner_helper
 def remaining_pull(support, i, axis):
-    """The acceleration along an axis of a particle that is supported."""
+    """Return the acceleration along an axis of a particle that is supported."""
     if support is None:
         return 0.0
     return support.pull[i, axis]
@@ -38,8 +41,11 @@ def remaining_pull(support, i, axis):
 
 @inner_helper
 def acceleration_of(flights, i, axis, space, gravity):
-    """The acceleration of a particle along an axis: none if it is fixed, or lies at rest on the face below;
-    what the walls that it rests on leave of gravity."""
+    """Return the acceleration of a particle along an axis.
+
+    It is 0 if the particle is fixed, or lies at rest on the face below; on walls it is the part of gravity
+    that they do not support.
+    """
     if is_supported(gravity.support, i) and not gravity.fixed[i]:
         return remaining_pull(gravity.support, i, axis)
     pull = gravity.acceleration[axis]
@@ -56,8 +62,10 @@ def acceleration_of(flights, i, axis, space, gravity):
 
 @inner_helper
 def mark_resting(flights, i, space, gravity, resting):
-    """Mark in `resting` (N,) whether a particle may not be accelerated (see `acceleration_of`): it is fixed,
-    or does not move along an axis with a pull."""
+    """Mark in `resting` (N,) whether a particle may not be accelerated.
+
+    This is so if it is fixed, supported, or does not move along an axis with gravity (see `acceleration_of`).
+    """
     if gravity is not None:
         found = gravity.fixed[i] | is_supported(gravity.support, i)
         for k in range(len(space.lengths)):
@@ -81,14 +89,14 @@ def advance(flights, i, time, space, gravity):
 
 @kernel
 def advance_all(flights, time, space, gravity):
-    """Move all particles to `time`."""
+    """Move all particles along their flights to `time`."""
     for i in range(len(flights)):
         advance(flights, i, time, space, gravity)
 
 
 @kernel
 def restart_clocks(flights, time, space, gravity):
-    """Move all particles to `time`, and let that be time 0 of their clocks."""
+    """Move all particles to `time`, which becomes time 0 of their clocks."""
     for i in range(len(flights)):
         advance(flights, i, time, space, gravity)
         flights[i].clock = 0.0
@@ -96,8 +104,13 @@ def restart_clocks(flights, time, space, gravity):
 
 @inner_helper
 def encounter(flights, i, j, offset, space, gravity):
-    """Particles i and j, the latter displaced by `offset` (d,), at the later of their clocks: that time, and
-    of their separation r, relative velocity v and acceleration a the products rr, rv, vv, ra, va, aa."""
+    """Return time and invariants of two particles at the later of their clocks.
+
+    The invariants are the products rr, rv, vv, ra, va, aa of their separation r, relative velocity v and
+    acceleration a.
+
+    offset : (d,), displacement of particle j
+    """
     start = max(flights[i].clock, flights[j].clock)
     late_i = start - flights[i].clock
     late_j = start - flights[j].clock
@@ -125,7 +138,10 @@ def encounter(flights, i, j, offset, space, gravity):
 
 @inner_helper
 def time_of_contact(flights, i, j, offset, space, gravity):
-    """When particles i and j touch, j displaced by `offset` (d,); inf if they do not."""
+    """Return the time at which two particles touch; inf if they do not.
+
+    offset : (d,), displacement of particle j
+    """
     start, rr, rv, vv, ra, va, aa = encounter(flights, i, j, offset, space, gravity)
     sigma = flights[i].radius + flights[j].radius
     ss = sigma * sigma
@@ -135,19 +151,20 @@ def time_of_contact(flights, i, j, offset, space, gravity):
     return start + time_to_contact(rr, rv, vv, ss)
 
 
-# Along one axis of the container: the box that holds a coordinate, the nearest image of a difference.
+# Coordinates along one axis of the container: the box that contains a coordinate, the nearest image of a
+# difference.
 
 
 @inner_helper
 def box_coordinate(x, width, per_side):
-    """Which box along an axis holds coordinate x; the outermost one for x outside."""
+    """Return the index along an axis of the box that contains x; outside, the outermost box."""
     c = int(x / width)
     return min(max(c, 0), per_side - 1)
 
 
 @inner_helper
 def nearest(gap, length, periodic):
-    """A difference of two coordinates of the container, by the nearest image on a periodic axis."""
+    """Return a difference of two coordinates, by the nearest image on a periodic axis."""
     if periodic:
         if gap + gap > length:
             return gap - length
@@ -156,18 +173,21 @@ def nearest(gap, length, periodic):
     return gap
 
 
-# Planes across an axis, those of equal bins: which of them an impulse acts below.
+# Planes across an axis, at the boundaries of equal bins: the planes below which an impulse acts.
 #
-# An impulse dp on a particle at z changes the momentum below every plane above z. Of the planes of one bin
-# that is the part 1 - f, where f is how far up in the bin the particle is: the bin is given dp (1 - f),
-# the next one dp f, and the mean over the planes of a bin is the sum of all up to it
-# (docs/estimators.md). Impulses of any origin count, of contacts, walls and edges of wells: all that
-# changes a velocity between two flights.
+# An impulse dp on a particle at z changes the momentum below every plane above z. For the planes within one
+# bin this holds for the fraction 1 - f, where f is the particle's height in the bin as a fraction of it: dp
+# (1 - f) is added to the bin, dp f to the next one, and the mean over the planes of a bin is the sum of all
+# bins up to it (docs/estimators.md). Impulses of any origin count, from contacts, walls and edges of wells:
+# all changes of a velocity between two flights.
 
 
 @inner_helper
 def row_of(i, row):
-    """The row of sums that a particle adds to, of `row` (N,), or None if there is one."""
+    """Return the row of sums of a particle.
+
+    `row` (N,) has the rows of the particles, or equals None if there is one row.
+    """
     if row is None:
         return 0
     return np.int64(row[i])
@@ -175,7 +195,10 @@ def row_of(i, row):
 
 @inner_helper
 def bin_at(place, bins):
-    """In which of so many bins a place is, counted in bins, and how far up in it. What is outside counts as
-    in the last bin on that side, by the same line."""
+    """Return the bin of a position, and the fraction of the bin below the position.
+
+    The position is counted in bins. A position outside counts in the last bin on that side, by the same
+    linear formula.
+    """
     bin_ = min(max(np.int64(place), 0), bins - 1)
     return bin_, place - bin_

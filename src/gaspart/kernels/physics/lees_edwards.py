@@ -1,7 +1,8 @@
-"""A gas whose periodic images slide (Lees & Edwards, J. Phys. C 5, 1921 (1972)).
+"""Gas whose periodic images slide (Lees & Edwards, J. Phys. C 5, 1921 (1972)).
 
-Images above the container are displaced along the flow, axis 0, by what a flow of one shear rate has carried
-them since time 0, and images below by as much against it; their velocities differ by that of this motion.
+Images above the container are displaced along the flow, axis 0, by the distance that a flow of constant shear
+rate has moved them since time 0, and images below by the same distance against it; their velocities differ by
+the velocity of this motion.
 """
 
 from math import copysign, inf
@@ -19,20 +20,25 @@ UPPER_FACE = 2 * GRADIENT + 1
 
 @inner_helper
 def displacement(time, shear):
-    """How far images above are displaced at a time on the clocks, but for whole lengths of the container."""
+    """Return the displacement of the images above at a clock time.
+
+    Whole lengths of the container are left out.
+    """
     return shear.origin[0] + shear.velocity * time
 
 
 @inner_helper
 def flow_at(y, space, shear):
-    """The velocity of the flow at a height: 0 in the middle."""
+    """Return the velocity of the flow at a height, which is 0 in the middle."""
     return shear.rate * (y - 0.5 * space.lengths[GRADIENT])
 
 
 @inner_kernel
 def cross_sheared(particles, i, upper, mass, space, tally, shear):
-    """Let a particle that has come to a sheared face have the place along the flow, and the velocity, of its
-    image that enters. The energy that it loses is that which the face takes."""
+    """Give a particle at a sheared face position and velocity of its image that enters.
+
+    The energy that it loses is the energy that the face takes.
+    """
     flights, side, length = particles.flights, 1.0 if upper else -1.0, space.lengths[FLOW]
     x = flights[i].position[FLOW] - side * displacement(flights[i].clock, shear)
     turns = np.floor(x / length)
@@ -46,7 +52,7 @@ def cross_sheared(particles, i, upper, mass, space, tally, shear):
 
 @inner_helper
 def shift_image(particles, i, axis, upper, model, tally, shear):
-    """The same at any periodic face, if it is sheared."""
+    """Perform `cross_sheared` if a periodic face is sheared."""
     if shear is not None:
         if axis == GRADIENT:
             mass = mass_of(i, model.masses, model.law)
@@ -55,11 +61,14 @@ def shift_image(particles, i, axis, upper, model, tally, shear):
 
 @inner_kernel
 def time_of_sheared_contact(flights, i, j, image, offset, space, shear):
-    """When particles i and j touch, j in the images above (`image` 1) or below (-1), whichever it is along
-    the flow; inf if they do not. offset: its displacement along a third axis.
+    """Return the time at which two particles touch across a sheared face, or inf.
 
-    No image is touched before the centres' distance across the flow is that of a contact, and then either the
-    nearest one or the next that comes: that is at this distance still when it passes, or none is.
+    Particle j is in the images above (`image` 1) or below (-1), in any of the images along the flow. No image
+    is touched before the distance of the centres across the flow equals the distance at contact. Then it is
+    either the nearest image or the next image to arrive: it is still at this distance when it passes, or no
+    image is touched.
+
+    offset : displacement of the image along a third axis
     """
     start = max(flights[i].clock, flights[j].clock)
     late_i, late_j = start - flights[i].clock, start - flights[j].clock

@@ -1,6 +1,7 @@
-"""Momentum and heat that particles of several sizes give to faces, per area that their centres can reach.
+"""Momentum and heat given to faces by particles of several sizes, divided by accessible areas.
 
-Particles of one size need no sums of their own: their area is one number.
+The accessible area of a face is the area that centres of particles of a size can reach. Particles of one size
+need no sums of their own: their area is one number.
 """
 
 from typing import NamedTuple
@@ -13,10 +14,16 @@ from gaspart.kernels.physics.running_sum import add
 
 
 class PerArea(NamedTuple):
-    """Sums of the event-driven engine. inverse (sizes, 2d), one divided by the area of each face that centres
-    of particles of a size can reach, 0 without any; size (N,), that of each particle; sums (2d (d + 1), 2),
-    see `running_sum.add`: of each face the momentum along each axis, outwards along the normal, and the
-    energy."""
+    """Sums of the event-driven engine per accessible area.
+
+    Attributes
+    ----------
+    inverse : (sizes, 2d), inverse of the area of each face that centres of particles of a size can reach, 0
+        without such an area
+    size : (N,), size of each particle
+    sums : (2d (d + 1), 2), momentum of each face along each axis, outwards along the normal, and energy, see
+        `physics.running_sum.add`
+    """
 
     inverse: np.ndarray
     size: np.ndarray
@@ -25,7 +32,10 @@ class PerArea(NamedTuple):
 
 @inner_helper
 def velocity_before(flights, i, per_area):
-    """Return the velocity of a particle, with 0 for a third component in 2D; zeros if nothing is summed."""
+    """Return the velocity (3,) of a particle; zeros if nothing is summed.
+
+    The third component is 0 in two dimensions.
+    """
     if per_area is not None:
         velocity = flights[i].velocity
         return velocity[0], velocity[1], velocity[2] if len(velocity) == 3 else 0.0
@@ -34,7 +44,7 @@ def velocity_before(flights, i, per_area):
 
 @inner_helper
 def spin_energy(i, law):
-    """Return the energy of the spin of a particle; 0 of smooth ones."""
+    """Return the energy of the spin of a particle; 0 for smooth particles."""
     if law is None:
         return 0.0
     if law.tangential > -1.0:
@@ -45,7 +55,7 @@ def spin_energy(i, law):
 
 @inner_helper
 def spin_before(i, law, per_area):
-    """Return the same if it is summed, otherwise 0."""
+    """Return the energy of the spin of a particle if it is summed, otherwise 0."""
     if per_area is not None:
         return spin_energy(i, law)
     return 0.0
@@ -53,7 +63,10 @@ def spin_before(i, law, per_area):
 
 @inner_helper
 def add_per_area(flights, i, face, before, model, per_area):
-    """Add what a face has taken from a particle. before: its velocity then, and the energy of its spin."""
+    """Add the momentum and energy that a face has taken from a particle.
+
+    before : velocity of the particle before the hit, and the energy of its spin
+    """
     if per_area is not None:
         (velocity, spin), law = before, model.law
         mass, inverse = mass_of(i, model.masses, law), per_area.inverse[per_area.size[i], face]

@@ -1,7 +1,7 @@
-"""Random numbers inside kernels: a function of a key, a particle and a number of its own count, and of
-nothing else, so that they do not depend on the order in which events are found.
+"""Random numbers in kernels, functions of a key, a particle and its own count.
 
-Everything made of the random words uses +, -, x, / and the square root only, as in `random`.
+So they do not depend on the order in which events are found, nor on anything other than these numbers. All
+results of the random words use only +, -, x, / and the square root, as in `random`.
 """
 
 from math import frexp, sqrt
@@ -19,7 +19,7 @@ _SPARE = np.uint64(12)  # bits of a word that a uniform number leaves unused
 
 @helper
 def _product(a, b):
-    """The 128 bits of a b, as (high, low) words."""
+    """Return the 128 bits of a b as (high, low) words."""
     a_high, a_low, b_high, b_low = a >> _HALF, a & _LOW, b >> _HALF, b & _LOW
     low = a_low * b_low
     middle = a_high * b_low + (low >> _HALF)
@@ -29,9 +29,12 @@ def _product(a, b):
 
 @kernel
 def random_words(key, particle, number, block):
-    """Four random words of 64 bits: Philox4x64-10 (Salmon, Moraes, Dror & Shaw, SC11 (2011)).
+    """Return four random words of 64 bits by Philox4x64-10.
 
-    key: (2,) words of the seed; particle, number, block: the counter.
+    The generator is by Salmon, Moraes, Dror & Shaw, SC11 (2011).
+
+    key : (2,), words of the seed
+    particle, number, block : counter
     """
     c0, c1, c2, c3 = np.uint64(block), np.uint64(number), np.uint64(particle), np.uint64(0)
     k0, k1 = key[0], key[1]
@@ -46,13 +49,13 @@ def random_words(key, particle, number, block):
 
 @helper
 def uniform(word):
-    """A number above 0 and below 1, from the 52 highest bits of a word."""
+    """Convert the 52 highest bits of a word to a number above 0 and below 1."""
     return (np.float64(word >> _SPARE) + 0.5) * 2.0**-52
 
 
 @kernel
 def log_of(x):
-    """ln x of a positive number, the same bits as `random.natural_log`."""
+    """Compute ln x of a positive number, to the same bits as `random.natural_log`."""
     mantissa, exponent = frexp(x)
     if mantissa < 0.7071067811865476:
         mantissa = 2.0 * mantissa
@@ -67,16 +70,21 @@ def log_of(x):
 
 @kernel
 def flux_speed(key, particle, number):
-    """The normal speed of a particle that leaves a wall, in units of sqrt(kT/m): of density v exp(-v^2/2)."""
+    """Draw the normal speed of a particle that leaves a wall, in units of sqrt(kT/m).
+
+    Its probability density is v exp(-v^2/2).
+    """
     word, _, _, _ = random_words(key, particle, number, 0)
     return sqrt(-2.0 * log_of(uniform(word)))
 
 
 @kernel
 def normal_pair(key, particle, number, block):
-    """Two standard normal numbers by Marsaglia's polar method, and the first block that they have not used.
+    """Draw two standard normal numbers by Marsaglia's polar method.
 
-    `block`: where to begin, at least 1, since `flux_speed` takes block 0.
+    Also returns the first unused block of random words.
+
+    block : first block to use, at least 1, since `flux_speed` takes block 0
     """
     while True:
         words = random_words(key, particle, number, block)

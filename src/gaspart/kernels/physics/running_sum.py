@@ -1,9 +1,9 @@
 """Running sums of the tally: as accurate after 1e10 events as after 1e6.
 
-A plain sum in float64 loses digits as it grows. The event-driven engine adds in one fixed order and keeps
-the rounding error of each addition beside the sum (Neumaier, ZAMM 54, 39 (1974)). The time-stepped engine
-adds in an order that depends on slots and threads, so it sums integers, for which no order matters.
-Both forms are two numbers; both belong to the checkpoint, and do not depend on where a run is split.
+A plain sum in float64 loses digits as it grows. The event-driven engine adds in one fixed order and stores
+the rounding error of each addition in addition to the sum (Neumaier, ZAMM 54, 39 (1974)). The time-stepped
+engine adds in an order that depends on slots and threads, so it sums integers, for which the order does not
+matter. Both forms are two numbers; both belong to the checkpoint, and do not depend on where a run is split.
 """
 
 import math
@@ -12,15 +12,15 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper
 
-_COARSE, _FINE = 2.0**-28, 2.0**-57  # of the largest term: each holds 2^35 such terms in 64 bits
+_COARSE, _FINE = 2.0**-28, 2.0**-57  # units in the largest term; each holds 2^35 such terms in 64 bits
 
 
 @inner_helper
 def add(sums, n, x):
-    """Add x to sums (K, 2), at n: the sum, and the sum of its rounding errors, which are exact (Knuth, The
-    Art of Computer Programming 2, 4.2.2).
+    """Add x to sums (K, 2), at n, and its rounding error to their second column.
 
-    After M additions the relative error is at most 2^-53 + (M 2^-53)^2 of the sum of all |x|.
+    The rounding errors are exact (Knuth, The Art of Computer Programming 2, 4.2.2). After M additions the
+    relative error is at most 2^-53 + (M 2^-53)^2 of the sum of all |x|.
     """
     before = sums[n, 0]
     after = before + x
@@ -31,10 +31,12 @@ def add(sums, n, x):
 
 @inner_helper
 def add_whole(sum_, x, largest):
-    """Add x to a sum (2,) of integers: multiples of a coarse unit, and of a fine one for the remainder.
+    """Add x to a sum (2,) of integers: multiples of a coarse and a fine unit.
 
-    largest: a power of two that few terms exceed, so that but for rint all here is exact, and the quotient
-    the same for all terms.
+    The fine unit counts the remainder.
+
+    largest : power of two that few terms exceed, so that all operations except rint are exact, and the
+        quotient is the same for all terms
     """
     units = x * (1.0 / largest / _COARSE)
     whole = np.rint(units)
@@ -43,15 +45,18 @@ def add_whole(sum_, x, largest):
 
 
 def values(sums: np.ndarray) -> np.ndarray:
-    """(...) what `add` has summed in (..., 2)."""
+    """Return the values (...) of sums (..., 2) of `add`."""
     return sums[..., 0] + sums[..., 1]
 
 
 def net(*sums: np.ndarray) -> float:
-    """The total of several such sums, rounded once: what remains when large sums cancel is exact."""
+    """Return the total of several sums, rounded once.
+
+    The remainder after large sums cancel is exact.
+    """
     return math.fsum(np.concatenate([one.ravel() for one in sums]))
 
 
 def whole_parts(sums: np.ndarray, largest: float) -> np.ndarray:
-    """(..., 2) what `add_whole` has summed in (..., 2), each part as a float64."""
+    """Convert sums (..., 2) of `add_whole` to float64, part by part."""
     return sums * np.array([largest * _COARSE, largest * _FINE])

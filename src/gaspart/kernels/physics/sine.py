@@ -1,4 +1,7 @@
-"""Sine and cosine that are the same bits on every machine: by +, -, x and / alone."""
+"""Sine and cosine with the same bits on every machine.
+
+They are computed by +, -, x and / alone.
+"""
 
 from math import floor
 
@@ -13,13 +16,18 @@ COSINE_SERIES = (
     1.0, -1.0 / 2.0, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40320.0, -1.0 / 3628800.0, 1.0 / 479001600.0,
     -1.0 / 87178291200.0, 1.0 / 20922789888000.0,
 )  # fmt: skip
-"""Coefficients of the series in even powers, the sine's without its first factor: within an eighth of a turn
-of 0 what they leave out is below 1e-16."""
+"""Coefficients of the series in even powers; the sine's series lacks its first factor x.
+
+Within an eighth of a turn around 0 the truncation error is below 1e-16.
+"""
 
 
 @helper
 def sine_cosine(turns):
-    """sin and cos of 2 pi turns, to 3e-16: the series about the nearest quarter of a turn."""
+    """Compute sin and cos of 2 pi turns, to 3e-16.
+
+    The series is evaluated about the nearest quarter of a turn.
+    """
     quarter = floor(4.0 * turns + 0.5)
     x = TURN * (turns - 0.25 * quarter)
     square = x * x

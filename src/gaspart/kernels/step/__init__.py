@@ -1,1 +1,1 @@
-"""The time-stepped engine: loop, motion, boundaries, searches, resolution of contacts."""
+"""Time-stepped engine: loop, motion, boundaries, searches, resolution of contacts."""

@@ -1,9 +1,9 @@
-"""Contacts by rules of the event-driven engine: faces with a kind, rough particles, particles that vibrate.
+"""Contacts by rules of the event-driven engine: special faces, rough or vibrating particles.
 
-Their physics is the event-driven engine's own, on its flights: what is here writes a particle into its
-flight, with the clock at 0, the end of the step, finds when in the past it came to a face, and writes it
-back. Only one thread does this; the sums are whole numbers all the same, since the order of slots is not
-fixed.
+Special faces are faces with a kind. The physics is the event-driven engine's own, on its flights: this module
+writes a particle into its flight, with the clock at 0, the end of the step, finds the past time at which it
+reached a face, and writes it back. Only one thread does this; the sums are integers all the same, since the
+order of slots is not fixed.
 """
 
 from __future__ import annotations
@@ -24,17 +24,24 @@ from gaspart.kernels.physics.flight import advance, bin_at, face_plane, row_of
 from gaspart.kernels.physics.running_sum import add, add_whole
 from gaspart.kernels.step.model import LOSS, VIRIAL
 
-# Impulses by the place where a particle receives them, along one axis (`kernels.physics.flight`), in steps.
+# Impulses by the position where a particle receives them, along one axis (`kernels.physics.flight`), in
+# steps.
 #
-# Between two impulses a particle flies freely here too, for a time that may be negative: a contact is
-# where the pair is rewound to, a reflection at the face. So positions change by flights alone, and what
-# these carry through planes follows from the impulses, to rounding, whatever the step.
+# Between two impulses a particle flies freely here too, for a time that may be negative: the position of a
+# contact is the one to which the pair is rewound, the position of a reflection is the face. So positions
+# change by flights alone, and the transport through planes follows from the impulses, to rounding, for any
+# step.
 
 
 @inner_helper
 def place_and_speed(particles, slot, ago, tally, impulses):
-    """Where a particle was on its present flight at a time `ago` (negative) before the end of the step, along
-    the axis, and its velocity at that end; 0 and 0 if no impulses are tallied."""
+    """Return a particle's past position, and its velocity at the end of the step.
+
+    The position is on its present flight. Both are along the axis of the impulses; they are 0 if no impulses
+    are tallied.
+
+    ago : time before the end of the step, negative
+    """
     if impulses is not None:
         v = np.float64(particles.velocities[tally.axis, slot])
         return particles.positions[tally.axis, slot] + ago * (v + 0.5 * tally.pull * ago), v
@@ -43,7 +50,7 @@ def place_and_speed(particles, slot, ago, tally, impulses):
 
 @inner_helper
 def add_impulse(particles, slot, place, change, tally, thread, impulses):
-    """Add the impulse that has changed the velocity of a particle along the axis, at a place."""
+    """Add the impulse, at a position, that has changed a particle's velocity along the axis."""
     if impulses is not None:
         if change != 0.0:
             bins, number = impulses.shape[2] - 1, particles.index[slot]
@@ -59,7 +66,10 @@ def add_impulse(particles, slot, place, change, tally, thread, impulses):
 
 @inner_helper
 def add_contact(particles, slot, before, tally, impulses):
-    """Add the impulse of a contact. before: what `place_and_speed` gave then."""
+    """Add the impulse of a contact.
+
+    before : result of `place_and_speed` before the contact
+    """
     if impulses is not None:
         place, speed = before
         change = particles.velocities[tally.axis, slot] - speed
@@ -68,7 +78,10 @@ def add_contact(particles, slot, before, tally, impulses):
 
 @inner_helper
 def add_reflection(particles, slot, axis, at, tally, thread, impulses):
-    """Add the impulse of a face across an axis. at: its place, and the change of the velocity."""
+    """Add the impulse of a face across an axis.
+
+    at : position of the face, and the change of the velocity
+    """
     if impulses is not None:
         if axis == tally.axis:
             place, change = np.float64(at[0]), np.float64(at[1])
@@ -77,7 +90,7 @@ def add_reflection(particles, slot, axis, at, tally, thread, impulses):
 
 @inner_helper
 def add_share(i, face, given, tally, thread, per_area):
-    """Add the momentum and the heat that a particle gives to a face to the sums per accessible area."""
+    """Add momentum and heat given to a face to the sums per accessible area."""
     if per_area is not None:
         share, (impulse, heat) = tally.share[tally.size[i], face], given
         add_whole(per_area[thread, face, 0], share * impulse, tally.momentum)
@@ -86,20 +99,27 @@ def add_share(i, face, given, tally, thread, per_area):
 
 @inner_helper
 def own_impulses(impulses, part):
-    """The sums of one thread, as if there were no others."""
+    """Return the sums of one thread in the form of the sums of all threads."""
     if impulses is None:
         return None
     return impulses[part : part + 1]
 
 
-_SHORT = 2.0**-12  # of a step: bounces on a floor in less time are not distinguished
+_SHORT = 2.0**-12  # time as a fraction of a step below which bounces on a floor are not distinguished
 
 
 class Rules(NamedTuple):
-    """What the event-driven engine's kernels work on. flights (N,): room for particles; model: the law and
-    the faces; tally: room for what one event adds to it. free (d, 2): between which coordinates a particle
-    that no face holds meets no face and no edge; holds: whether any face may hold particles. heat (2d, 2):
-    given to each face, by `running_sum.add_whole`."""
+    """Data of the event-driven engine's kernels.
+
+    Attributes
+    ----------
+    flights : (N,), workspace for particles
+    model : the law and the faces
+    tally : workspace for the contribution of one event
+    free : (d, 2), coordinates between which a particle that no face holds hits no face and no edge
+    holds : whether any face may hold particles
+    heat : (2d, 2), heat given to each face, by `physics.running_sum.add_whole`
+    """
 
     flights: np.ndarray
     model: Model
@@ -111,7 +131,7 @@ class Rules(NamedTuple):
 
 @inner_helper
 def is_free(particles, slot, rules):
-    """Whether an ordinary particle cannot have met a face, nor the edge of a well."""
+    """Return True if an ordinary particle cannot have hit a face or a well's edge."""
     free = True
     for k in range(particles.positions.shape[0]):
         x = particles.positions[k, slot]
@@ -123,7 +143,10 @@ def is_free(particles, slot, rules):
 
 @inner_kernel
 def gather(particles, slot, rules):
-    """Write the particle in a slot into its flight, with the clock at 0; returns its number."""
+    """Write the particle in a slot into its flight, with the clock at 0.
+
+    Returns its number.
+    """
     flights, i = rules.flights, np.int64(particles.index[slot])
     for k in range(particles.positions.shape[0]):
         flights[i].position[k] = particles.positions[k, slot]
@@ -135,7 +158,7 @@ def gather(particles, slot, rules):
 
 @inner_kernel
 def scatter(particles, slot, rules):
-    """Write a flight back into its slot; returns the square of the particle's speed."""
+    """Write a flight back into its slot; return the square of the particle's speed."""
     flights, i = rules.flights, particles.index[slot]
     square = 0.0
     for k in range(particles.positions.shape[0]):
@@ -147,11 +170,11 @@ def scatter(particles, slot, rules):
 
 @inner_kernel
 def crossing_time(flights, i, axis, space, faces):
-    """When a particle on its present flight came through a face across an axis, or the edge of a well there:
-    (time, face code), a time up to the end of the step, or (inf, NONE).
+    """Return when a particle crossed a face or the edge of a well: (time, face code).
 
-    A particle that is stuck to a face and moves all the same left its plane then; whether it is set free is
-    decided there.
+    The crossing is along an axis, on the present flight, before the end of the step; without one the result
+    is (inf, NONE). A particle that is stuck to a face but moves left its plane then; the decision whether it
+    is released is made at that time.
     """
     v = flights[i].velocity[axis]
     if v == 0.0:
@@ -170,8 +193,11 @@ def crossing_time(flights, i, axis, space, faces):
 
 @inner_kernel
 def crossing_time_pulled(flights, i, axis, pull, space, dt):
-    """The same under a pull along the axis, with the formulas of `motion.reflect_falling`. A particle that
-    was pushed out by a contact, or that comes down too slowly to resolve its bounces, does so now."""
+    """Return when a particle crossed a face under gravity along an axis: (time, face code).
+
+    The formulas are the ones of `motion.reflect_falling`. If a particle was pushed out by a contact, or comes
+    down too slowly to resolve its bounces, the time is the end of the step.
+    """
     v = flights[i].velocity[axis]
     for side in range(2):
         plane = face_plane(flights, i, axis, side == 1, space)
@@ -190,8 +216,10 @@ def crossing_time_pulled(flights, i, axis, pull, space, dt):
 
 @inner_kernel
 def first_crossing(flights, i, space, dt, faces, gravity):
-    """The first of all faces and edges that a particle came through: (time, face code) as in
-    `crossing_time`."""
+    """Return the first of all faces and edges that a particle crossed: (time, face code).
+
+    See `crossing_time`.
+    """
     first, face = inf, NONE
     for k in range(len(space.lengths)):
         if not space.periodic[k]:
@@ -209,7 +237,7 @@ def first_crossing(flights, i, space, dt, faces, gravity):
 
 @inner_helper
 def taken(sums, n):
-    """Reset one of some sums (K, 2) to zero; returns what it held."""
+    """Reset one of the sums (K, 2) to zero; return its value before."""
     x = sums[n, 0] + sums[n, 1]
     sums[n, 0] = sums[n, 1] = 0.0
     return x
@@ -217,7 +245,7 @@ def taken(sums, n):
 
 @inner_kernel
 def record_face(i, face, rules, tally):
-    """Move what an event of a particle at a face has added to the rules' tally into that of the engine."""
+    """Move the contribution of an event at a face from the rules' tally to the engine's."""
     event = rules.tally
     tally.wall_hits[0, face] += event.wall_hits[face]
     given = taken(event.wall_impulse, face), taken(event.wall_energy, face)
@@ -230,7 +258,7 @@ def record_face(i, face, rules, tally):
 
 @inner_helper
 def speed_at_face(flights, i, tally, impulses):
-    """The velocity of a particle along the axis of impulses; 0 if none are tallied."""
+    """Return a particle's velocity along the axis of impulses; 0 without a tally."""
     if impulses is not None:
         return flights[i].velocity[tally.axis]
     return 0.0
@@ -238,8 +266,10 @@ def speed_at_face(flights, i, tally, impulses):
 
 @inner_helper
 def add_impulse_of_face(particles, slot, before, rules, tally, impulses):
-    """Add the impulse of a face that a particle has met, which had the velocity `before`, where it is now on
-    its flight."""
+    """Add the impulse of a face at the present position of a particle.
+
+    before : velocity of the particle before it hit the face
+    """
     if impulses is not None:
         flight = rules.flights[particles.index[slot]]
         change, place = flight.velocity[tally.axis] - before, flight.position[tally.axis]
@@ -248,8 +278,10 @@ def add_impulse_of_face(particles, slot, before, rules, tally, impulses):
 
 @inner_kernel
 def meet_faces(particles, slot, rules, dt, tally, law):
-    """Let a particle meet all faces that it has come through, one after another. Returns whether there was
-    any."""
+    """Process all faces that a particle has crossed, one after another.
+
+    Returns whether there was any.
+    """
     i = gather(particles, slot, rules)
     flights, model, met = rules.flights, rules.model, False
     space, gravity, faces = model.space, model.gravity, model.faces
@@ -277,10 +309,11 @@ def meet_faces(particles, slot, rules, dt, tally, law):
 
 @inner_kernel
 def collide_flights(particles, i, j, contact, rules, tally, law):
-    """A contact under a law of the particles in two slots. contact: how long ago (a negative time), and the
-    invariants rr, rv then. Returns the squares of the two speeds.
+    """Apply the collision law to the particles in two slots; return the squares of both speeds.
 
     Particles fall alike, so that relative to each other they move straight.
+
+    contact : time since the contact, negative, and the invariants rr, rv then
     """
     ago, rr, rv = contact
     flights, space = rules.flights, rules.model.space

@@ -1,7 +1,7 @@
-"""Overlapping pairs by the boxes of Frederickx & Meerts (2010): any number of them, down to one.
+"""Search of overlapping pairs by the boxes of Frederickx & Meerts (2010), and the time step.
 
-Each pair is tested once: the rest of the particle's own box first, then the neighbouring boxes of higher
-index.
+The number of boxes is arbitrary, down to one. Each pair is tested once: the rest of the particle's own box
+first, then the neighbouring boxes of higher index.
 """
 
 from __future__ import annotations
@@ -25,10 +25,18 @@ from gaspart.kernels.step.threads import gathered, is_outdated, make_list, move_
 
 
 class StepBoxes(NamedTuple):
-    """The grid of boxes (see `state.boxes.Boxes`): per_side, widths, strides (3,), neighbour. at (N, 3), the
-    coordinates of each slot's box; of each box the first slot, head (boxes,), and the next after each slot,
-    following (N,). near: leave out neighbouring boxes that are farther from a particle's centre than `reach`,
-    a contact."""
+    """Grid of boxes (see `state.boxes.Boxes`) and the slots in each box.
+
+    Attributes
+    ----------
+    per_side, widths, strides : (3,), number, widths and index strides of the boxes along each axis
+    neighbour : neighbours of a box along each axis
+    at : (N, 3), coordinates of each slot's box
+    head : (boxes,), first slot of each box
+    following : (N,), next slot after each slot
+    near : whether neighbouring boxes are left out that are farther from a particle's centre than `reach`
+    reach : distance at contact
+    """
 
     per_side: np.ndarray
     widths: np.ndarray
@@ -43,7 +51,7 @@ class StepBoxes(NamedTuple):
 
 @inner_kernel
 def sort_in(particles, boxes):
-    """Put all ordinary particles into the lists of their boxes."""
+    """Insert all ordinary particles into the lists of their boxes."""
     boxes.head[:] = -1
     for slot in range(particles.ordinary):
         box = 0
@@ -57,7 +65,10 @@ def sort_in(particles, boxes):
 
 @inner_helper
 def gap_squared(particles, slot, boxes, axis, offset):
-    """The square of the distance of a particle from a box's slab, `offset` boxes along an axis (-1, 0, 1)."""
+    """Return the squared distance of a particle from the slab of a box along an axis.
+
+    offset : position of the box relative to the particle's box (-1, 0, 1)
+    """
     x = particles.positions[axis, slot]
     width = boxes.widths[axis]
     low = boxes.at[slot, axis] * width
@@ -71,7 +82,7 @@ def gap_squared(particles, slot, boxes, axis, offset):
 
 @inner_kernel
 def is_out_of_reach(particles, slot, boxes, dx, dy, dz):
-    """Whether a neighbouring box is too far from a particle to hold a partner's centre."""
+    """Return True if a neighbouring box is too far away to hold a partner's centre."""
     square = gap_squared(particles, slot, boxes, 0, dx - 1)
     square += gap_squared(particles, slot, boxes, 1, dy - 1)
     if particles.positions.shape[0] == 3:
@@ -81,8 +92,10 @@ def is_out_of_reach(particles, slot, boxes, dx, dy, dz):
 
 @inner_kernel
 def search_all(particles, i, space, step, found):
-    """Test a particle against all before it, a loop without branches for each block of them; the number of
-    tests."""
+    """Test a particle against all particles before it; return the number of tests.
+
+    For each block of particles the test is a loop without branches.
+    """
     size = particles.radii[i]
     start = 0
     while start < i:
@@ -102,7 +115,10 @@ def search_all(particles, i, space, step, found):
 
 @inner_helper
 def search_list_of_box(particles, i, j, boxes, space, step, found):
-    """Test a particle against that in slot j and all that follow it in its box; the number of tests."""
+    """Test a particle against slot j and all slots that follow in its box.
+
+    Returns the number of tests.
+    """
     tests = 0
     size = particles.radii[i]
     while j >= 0:
@@ -116,7 +132,7 @@ def search_list_of_box(particles, i, j, boxes, space, step, found):
 
 @inner_kernel
 def search_boxes(particles, boxes, space, step, found, tally):
-    """Record all pairs to be resolved of ordinary particles."""
+    """Record all pairs of ordinary particles that must be resolved."""
     if len(boxes.head) == 1:
         tally.counts[BOX_VISITS] += particles.ordinary
         for i in range(particles.ordinary):
@@ -149,18 +165,17 @@ def search_boxes(particles, boxes, space, step, found, tally):
     tally.counts[BOX_VISITS] += visits
 
 
-# One small step after another: the canonical step of the time-stepped engine.
+# Sequence of small steps: the canonical step of the time-stepped engine.
 #
-# A step moves all particles, reflects those that left through a wall, finds all pairs that overlap and
-# approach, and resolves them in the order of their contact time and indices, testing each again; further
-# passes find what the first has left or made. Which search finds the pairs changes no bit of the result.
-# All arithmetic keeps the precision of the positions (float32 or float64): hence dt - dt for 0 and x + x
-# for 2x.
+# A step moves all particles, reflects the particles that left through a wall, finds all pairs that overlap
+# and approach, and resolves them in the order of their contact time and indices, testing each again; further
+# passes find pairs that the first has left or made. The kind of search changes no bit of the result. All
+# arithmetic keeps the precision of the positions (float32 or float64): hence dt - dt for 0 and x + x for 2x.
 
 
 @inner_helper
 def total_pull(gravity):
-    """The sum of the components of gravity, each counted positive."""
+    """Return the sum of the absolute components of gravity."""
     pull = 0.0
     if gravity is not None:
         for component in gravity:
@@ -170,7 +185,7 @@ def total_pull(gravity):
 
 @inner_allocating_kernel
 def update_list(particles, pairs, space, tally, before, threads, cells):
-    """Make the list anew if it is outdated. Returns its pairs, and `before`, see `Step`."""
+    """Renew the list if it is outdated; return its pairs, and `before`, see `Step`."""
     if cells is not None:
         if is_outdated(particles, cells, space, threads):
             return make_list(particles, cells, pairs, space, tally, threads), int64(0)
@@ -187,7 +202,7 @@ def search_grid(particles, space, step, found, tally, boxes):
 
 @inner_allocating_kernel
 def find_contacts(particles, search, space, step, found, tally, threads):
-    """Find all pairs to be resolved. Returns them in `found`, or in more room."""
+    """Find all pairs that must be resolved; return them in `found`, or in larger arrays."""
     parts, count = len(found.number), particles.positions.shape[1]
     while True:
         found.number[:] = 0
@@ -205,9 +220,13 @@ def find_contacts(particles, search, space, step, found, tally, threads):
 
 @allocating_kernel
 def run_steps(particles, search, model, settings, steps, tally, threads):
-    """Make so many steps; or, if none, only the list if it is outdated. settings: their length, whether
-    contacts are rewound, and the number of passes at most; threads: their number, or None for one. Returns
-    the pairs of the list as it stands then."""
+    """Perform a number of steps; for zero steps, only renew the list if it is outdated.
+
+    Returns the present pairs of the list.
+
+    settings : length of the steps, whether contacts are rewound, and the maximum number of passes
+    threads : number of threads, or None for one thread
+    """
     boxes, cells, pairs = search
     space, rules, law = model.space, model.rules, model.law
     dt, rewind, passes = settings

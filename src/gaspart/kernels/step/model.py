@@ -1,10 +1,10 @@
-"""What the time-stepped engine's kernels pass to one another: particles, search, model, step, tally.
+"""Data structures of the time-stepped engine's kernels: particles, search, model, step, tally.
 
-A *slot* is a particle's present place in memory; `index` gives the particle's number. Arrays are by axis, in
-the order of slots. Arguments come in one order: the particles and which of them, the structures of the
-search, the model, the step, the tally, the thread, and last whatever may be absent, as in `kernels.model`.
-All real numbers have the precision of the positions (float32 or float64). Sums that several threads make are
-whole numbers, so that they do not depend on the order of adding.
+A *slot* is a particle's present position in memory; `index` gives the particle's number. Arrays are by axis,
+in the order of slots. Arguments have one order: the particles and their indices, the structures of the
+search, the model, the step, the tally, the thread, and last arguments that may be absent, as in
+`kernels.model`. All real numbers have the precision of the positions (float32 or float64). Sums of several
+threads are integers, so that they do not depend on the order of addition.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ COUNTS = (
     "fixed_collisions",
 )
 SUMS, EXTREMES = ("virial_sum", "dissipated_energy"), ("deepest_overlap", "worst_contact")
-"""What StepTally has, by the fields of `state.tally.Tally`. Two more counts are for the engine alone."""
+"""Entries of StepTally by the fields of `state.tally.Tally`; two more counts are for the engine alone."""
 _NUMBERS = range(len(COUNTS) + 2)
 COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS, FIXED, LATE, PASSED = _NUMBERS
 VIRIAL, LOSS = range(len(SUMS))
@@ -35,11 +35,19 @@ FASTEST, DISPLACEMENT = range(2)
 
 
 class StepParticles(NamedTuple):
-    """By slot: positions, velocities (d, N), radii (N,), index (N,), last_pass (N,), the number of the pass
-    of the last contact. By particle: images (d, N), masses (N,). bounds (2,): the speed of the FASTEST
-    particle and the largest DISPLACEMENT since the list was made, or more.
+    """Particles by slot, and their periodic images and masses by particle number.
 
-    ordinary: how many slots boxes and cells hold; the particles beyond, too large for them, come last.
+    Attributes
+    ----------
+    positions, velocities : (d, N), by slot
+    images : (d, N), by particle
+    radii : (N,), by slot
+    index : (N,), number of the particle in each slot
+    masses : (N,), by particle
+    last_pass : (N,), number of the pass of the last contact, by slot
+    bounds : (2,), upper bounds of the speed of the FASTEST particle and of the largest DISPLACEMENT since the
+        list was made
+    ordinary : number of slots in boxes and cells; the particles beyond, too large for them, come last
     """
 
     positions: np.ndarray
@@ -54,9 +62,17 @@ class StepParticles(NamedTuple):
 
 
 class StepModel(NamedTuple):
-    """What is simulated. normal: the restitution of smooth contacts; impulse_share: what such a contact
-    passes of the elastic impulse, (1 + normal) / 2; inset: the largest radius, of an ordinary particle, that
-    a wall stops; gravity (d,), rules (see `boundaries.Rules`) and law may be None."""
+    """Model of the simulated scene.
+
+    Attributes
+    ----------
+    normal : restitution of smooth contacts
+    impulse_share : impulse of such a contact divided by the elastic impulse, (1 + normal) / 2
+    inset : largest radius of an ordinary particle that a wall stops
+    gravity : (d,), or None
+    rules : see `boundaries.Rules`, or None
+    law : or None
+    """
 
     space: Space
     normal: float
@@ -68,8 +84,14 @@ class StepModel(NamedTuple):
 
 
 class Search(NamedTuple):
-    """The boxes (see `box_search.StepBoxes`), or the cells and pairs (threads, room) of a neighbour list;
-    boxes or cells are None."""
+    """Search for contacts: boxes, or cells and pairs of a neighbour list.
+
+    Attributes
+    ----------
+    boxes : see `box_search.StepBoxes`, or None
+    cells : or None
+    pairs : (threads, room)
+    """
 
     boxes: Any
     cells: Any
@@ -77,10 +99,17 @@ class Search(NamedTuple):
 
 
 class Step(NamedTuple):
-    """One pass of a step of length dt. rewind: whether pairs collide as they were at their contact; parting:
-    whether overlaps count that began in this step and shrink; number: that of this pass, among those of all
-    steps, counted from 1; first: that of the step's first pass; before: that of the pass before if only its
-    contacts have changed what a search finds, otherwise 0."""
+    """Pass of a step.
+
+    Attributes
+    ----------
+    dt : length of the step
+    rewind : whether pairs collide in the state of their contact
+    parting : whether overlaps count that began in this step and shrink
+    number : number of this pass, counted from 1 over all steps
+    first : number of the first pass of the step
+    before : number of the previous pass if only its contacts have changed the result of a search, otherwise 0
+    """
 
     dt: float
     rewind: bool
@@ -91,20 +120,33 @@ class Step(NamedTuple):
 
 
 class StepTally(NamedTuple):
-    """counts, sums (..., 2) by `running_sum.add` and extremes, see the names at the module's top; by
-    thread: wall_hits (threads, 2d); wall_impulse (threads, 2d, 2) and wall_loss (threads, 2), an energy, both
-    by `running_sum.add_whole`; momentum and energy: the powers of two that few terms of these exceed.
+    """Counts and sums of a run in steps.
 
-    impulses (threads, rows, bins + 1, 2), by `add_whole`: those along an axis, as in
-    `kernels.physics.flight`, or None; pull, the acceleration along it; per_length, bins in a unit of length;
-    turns, one over the number of bins if the axis is periodic, otherwise 0; row (N,), that of each particle,
-    or None if there is one. They are not in a tuple of their own: numba passes no tuples in tuples to
-    threads.
+    They are not in nested tuples: numba passes no tuples in tuples to threads.
 
-    per_area (threads, 2d, 2, 2), by `add_whole`: the momentum along its normal and the heat that each face is
-    given, each times the least area of a face that centres of particles of any size can reach, divided by
-    that of the particle's size: share (sizes, 2d), with size (N,) of each particle. None unless these
-    differ. fixed: True if there are fixed particles, whose collisions are counted apart, otherwise None."""
+    Attributes
+    ----------
+    counts : see the names at the top of the module
+    sums : (..., 2), by `physics.running_sum.add`
+    extremes : see the names at the top of the module
+    wall_hits : (threads, 2d)
+    wall_impulse : (threads, 2d, 2), by `physics.running_sum.add_whole`
+    wall_loss : (threads, 2), an energy, by `physics.running_sum.add_whole`
+    momentum, energy : powers of two that few terms of these sums exceed
+    impulses : (threads, rows, bins + 1, 2), impulses along an axis, as in `kernels.physics.flight`, by
+        `add_whole`, or None
+    axis : axis of the impulses
+    pull : acceleration along this axis
+    per_length : number of bins in a unit of length
+    turns : inverse of the number of bins if the axis is periodic, otherwise 0
+    row : (N,), row of each particle, or None if there is one row
+    per_area : (threads, 2d, 2, 2), by `add_whole`, momentum along its normal and heat given to each face,
+        both multiplied by `share`; None unless accessible areas differ between sizes
+    share : (sizes, 2d), least area of a face that centres of particles of any size can reach, divided by the
+        area for the particle's size
+    size : (N,), size of each particle
+    fixed : True if there are fixed particles, whose collisions are counted separately, otherwise None
+    """
 
     counts: np.ndarray
     sums: np.ndarray
@@ -127,9 +169,16 @@ class StepTally(NamedTuple):
 
 
 class Found(NamedTuple):
-    """Contacts to resolve, by thread: pairs (threads, room, 2) of slots, times (threads, room), number
-    (threads,), which may exceed the room; tests (threads,), how many pairs were tested; touching
-    (threads, n), room for those of a block that touch."""
+    """Contacts to resolve, by thread.
+
+    Attributes
+    ----------
+    pairs : (threads, room, 2), slots
+    times : (threads, room)
+    number : (threads,), which may exceed the room
+    tests : (threads,), number of tested pairs
+    touching : (threads, n), workspace for the touching pairs of a block
+    """
 
     pairs: np.ndarray
     times: np.ndarray
@@ -140,15 +189,17 @@ class Found(NamedTuple):
 
 @inner_helper
 def part_of(part, parts, count):
-    """Where part `part` of `count` things divided among `parts` begins, and where it ends."""
+    """Return the first and the last index (exclusive) of an equal slice.
+
+    `count` items are divided into `parts` slices.
+    """
     return part * count // parts, (part + 1) * count // parts
 
 
-# The cells of a neighbour list: rows of them along the first axis, and the particles in memory in their
-# order.
+# Cells of a neighbour list: rows along the first axis, and the particles in memory in their order.
 #
-# So the particles in three cells of a row, one after another, are one stretch of slots. Around the cells
-# lies a layer of empty ones; behind a periodic face a row of it holds the slots of the row across the
+# So the particles in three consecutive cells of a row are one range of slots. A layer of empty cells
+# surrounds the cells; behind a periodic face a row of this layer holds the slots of the row across the
 # container.
 
 
@@ -156,13 +207,22 @@ ONE = np.uint32(1)  # whole numbers of this type index arrays without a test for
 
 
 class Cells(NamedTuple):
-    """per_side (3,) cells along each axis, without the layer around them; inverse (3,) of their widths;
-    strides (3,) of the index with that layer, which is two cells deep where a row begins; wraps (3,), whether
-    the first and the last cell along an axis are neighbours; ends (cells,), behind which slot each cell's
-    particles end; cell (N,), in which cell the particle in each slot was when the list was made; order (N,):
-    room for the sort; skin, the distance beyond a contact up to which pairs are listed; origin (d, N), where
-    the particle in each slot was when the list was made; held (N,), see `shared_contacts`; listed (threads,),
-    how long each thread's list is."""
+    """Cells of a neighbour list.
+
+    Attributes
+    ----------
+    per_side : (3,), number of cells along each axis, without the layer around them
+    inverse : (3,), inverse widths of the cells
+    strides : (3,), strides of the index with that layer, which is two cells deep where a row begins
+    wraps : (3,), whether the first and the last cell along an axis are neighbours
+    ends : (cells,), slot behind which the particles of each cell end
+    cell : (N,), cell of the particle in each slot when the list was made
+    order : (N,), workspace of the sort
+    skin : distance beyond a contact up to which pairs are listed
+    origin : (d, N), position of the particle in each slot when the list was made
+    held : (N,), see `shared_contacts`
+    listed : (threads,), length of each thread's list
+    """
 
     per_side: np.ndarray
     inverse: np.ndarray
@@ -179,13 +239,13 @@ class Cells(NamedTuple):
 
 @inner_helper
 def coordinate(x, inverse, per_side):
-    """Which cell along an axis holds coordinate x; the outermost one for x outside."""
+    """Return the index along an axis of the cell that contains x; outside, the outermost cell."""
     return min(max(int(x * inverse), 0), per_side - 1)
 
 
 @inner_kernel
 def locate(x, inverse, per_side, stride, cell):
-    """Add to the cells (n,) of particles the term of their coordinates x (n,) along one axis."""
+    """Add the contribution of one axis to the cell numbers (n,) of particles at x (n,)."""
     for n in range(len(x)):
         cell[n] += np.uint32((coordinate(x[n], inverse, per_side) + 1) * stride)
 
@@ -203,8 +263,12 @@ def locate_part(particles, part, cells):
 
 @inner_kernel
 def divide_cells(cells, ordinary, shares):
-    """Divide the cells among threads, shares[n] to shares[n + 1] (threads + 1,) each: with about as many
-    particles, if these are where they were when they were sorted before."""
+    """Divide the cells among threads so that each has about the same number of particles.
+
+    This holds if the particles are where they were at the last sort.
+
+    shares : (threads + 1,), cells shares[n] to shares[n + 1] belong to thread n
+    """
     threads = len(cells.listed)
     shares[0], shares[threads] = 0, len(cells.ends)
     for part in range(1, threads):
@@ -214,13 +278,15 @@ def divide_cells(cells, ordinary, shares):
 
 @inner_kernel
 def order_part(cells, ordinary, first, end):
-    """Put the slots in the cells from `first` to `end`, one thread's share, into the order of these, in each
-    cell by number; and find where each cell's slots end then."""
+    """Sort the slots in one thread's cells, from `first` to `end`, by cell and number.
+
+    Also find where each cell's slots end then.
+    """
     ends, order, width = cells.ends[first:end], cells.order, np.uint32(end - first)
     ends[:] = 0
     place = ONE - ONE
     for cell in cells.cell[:ordinary]:
-        within = np.uint32(cell - first)  # of a cell before the first, a large number
+        within = np.uint32(cell - first)  # a large number for a cell before the first
         if within < width:
             ends[within] += ONE
         place += np.uint32(cell < first)
@@ -237,7 +303,7 @@ def order_part(cells, ordinary, first, end):
 
 @inner_kernel
 def copy_periodic_rows(cells):
-    """Give the rows behind periodic faces the slots of those across the container."""
+    """Copy the slots of rows across the container to the rows behind periodic faces."""
     ends = cells.ends
     for k in range(1, 3):
         if cells.wraps[k]:
@@ -250,7 +316,7 @@ def copy_periodic_rows(cells):
 
 @inner_kernel
 def permute(values, order, slots, permuted):
-    """permuted[n] becomes values[order[n]] for n from slots[0] to slots[1]."""
+    """Set permuted[n] to values[order[n]] for n from slots[0] to slots[1]."""
     source, permuted = order[slots[0] : slots[1]], permuted[slots[0] : slots[1]]
     for n in range(len(source)):
         permuted[n] = values[source[n]]
@@ -258,7 +324,7 @@ def permute(values, order, slots, permuted):
 
 @inner_kernel
 def copy(permuted, slots, values):
-    """values[n] becomes permuted[n] for n from slots[0] to slots[1]."""
+    """Set values[n] to permuted[n] for n from slots[0] to slots[1]."""
     values, permuted = values[slots[0] : slots[1]], permuted[slots[0] : slots[1]]
     for n in range(len(permuted)):
         values[n] = permuted[n]

@@ -1,7 +1,7 @@
-"""How particles move in one step: freely, then back into the container through its periodic faces or walls.
+"""Motion of the particles in one step: free flight, then return through faces.
 
-The free flight is a loop without branches; the particles of a block are tested one by one only if any of them
-has left the container.
+Faces are periodic faces or walls. The free flight is a loop without branches; the particles of a block are
+tested one by one only if one of them has left the container.
 """
 
 import numpy as np
@@ -17,7 +17,7 @@ _BLOCK = 128
 
 @inner_helper
 def wrap(particles, slot, axis, length):
-    """Bring a particle back into the container on a periodic axis."""
+    """Move a particle back into the container on a periodic axis."""
     x = particles.positions[axis, slot]
     if 0.0 <= x < length:
         return
@@ -33,7 +33,10 @@ def wrap(particles, slot, axis, length):
 
 @inner_helper
 def reflect(particles, slot, axis, planes, model, tally, thread):
-    """Reflect a particle that left through a wall, as long as it moves outward. planes: (lower, upper)."""
+    """Reflect a particle that left through a wall, as long as it moves outward.
+
+    planes : (lower, upper)
+    """
     lower, upper = planes
     x = particles.positions[axis, slot]
     v = particles.velocities[axis, slot]
@@ -46,7 +49,7 @@ def reflect(particles, slot, axis, planes, model, tally, thread):
         add_share(particles.index[slot], 2 * axis + side, (impulse, 0.0), tally, thread, tally.per_area)
         if model.normal == 1.0:
             x = plane + plane - x
-        else:  # it came through |x - plane| / |v| ago
+        else:  # it crossed the plane a time |x - plane| / |v| ago
             x = plane + model.normal * (plane - x)
             lost = 0.5 * impulse * abs(v) * (1.0 - model.normal)
             add_whole(tally.wall_loss[thread], lost, tally.energy)
@@ -59,11 +62,12 @@ def reflect(particles, slot, axis, planes, model, tally, thread):
 
 @inner_kernel
 def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
-    """The same under a pull: back along the parabola to the plane, and on from there with the speed it had.
+    """Reflect a particle that left through a wall under gravity.
 
-    y is the height over the plane, u its rate and a the pull, all counted inward. y = u s + a s^2/2 gives how
-    long ago, s, the particle crossed the plane (Spencer 2022, Eq. 14, in the form that does not cancel), and
-    w^2 = u^2 - 2 a y how fast. Bounces that fit into the rest of the step are made at once.
+    The particle goes back along the parabola to the plane, and on from there with the speed that it had. y is
+    the height over the plane, u its rate and a the acceleration, all counted inward. y = u s + a s^2/2 gives
+    the time s since the particle crossed the plane (Spencer 2022, Eq. 14, in the form that does not cancel),
+    and w^2 = u^2 - 2 a y its speed there. Bounces that fit into the rest of the step are made at once.
     """
     lower, upper = planes
     x = particles.positions[axis, slot]
@@ -73,7 +77,7 @@ def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
         side = 0 if x < lower else 1
         y, u, a = (upper - x, -v, -pull) if side else (x - lower, v, pull)
         square = u * u - (y + y) * a
-        if square < 0.0:  # pushed out by a contact, too slow to have come through by itself
+        if square < 0.0:  # pushed out by a contact, too slow to have crossed by itself
             if u < 0.0:
                 at = x, -v - v
                 add_reflection(particles, slot, axis, at, tally, thread, tally.impulses)
@@ -103,7 +107,7 @@ def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
 
 @inner_helper
 def displacement_since_rebuild(particles, slot, cells, space):
-    """How far a particle is from where it was when the list was made."""
+    """Return the distance of a particle from its position when the list was made."""
     square = space.margin - space.margin
     for k in range(len(space.lengths)):
         gap = particles.positions[k, slot] - cells.origin[k, slot]
@@ -114,7 +118,7 @@ def displacement_since_rebuild(particles, slot, cells, space):
 
 @inner_helper
 def raise_bounds(particles, slot, speed_squared, space, cells):
-    """Let the bounds of all particles hold for one that has changed."""
+    """Update the bounds of all particles for one particle that has changed."""
     bounds = particles.bounds
     bounds[FASTEST] = max(bounds[FASTEST], np.sqrt(speed_squared))
     if cells is not None:
@@ -125,7 +129,7 @@ def raise_bounds(particles, slot, speed_squared, space, cells):
 
 @inner_kernel
 def apply_rules(particles, slot, model, dt, tally, rules, law, cells):
-    """Bring one particle back into the container whose walls have rules of their own."""
+    """Move one particle back into a container whose walls have rules of their own."""
     met = meet_faces(particles, slot, rules, dt, tally, law)
     space = model.space
     square = dt - dt
@@ -139,7 +143,7 @@ def apply_rules(particles, slot, model, dt, tally, rules, law, cells):
 
 @inner_kernel
 def apply_boundaries(particles, slot, model, dt, tally, thread, gravity):
-    """Bring one particle back into the container."""
+    """Move one particle back into the container."""
     space = model.space
     inset = space.margin * particles.radii[slot]
     for k in range(len(space.lengths)):
@@ -154,7 +158,7 @@ def apply_boundaries(particles, slot, model, dt, tally, thread, gravity):
 
 @inner_helper
 def is_outside(particles, slot, space, inset):
-    """Whether an ordinary particle may have left the container."""
+    """Return True if an ordinary particle may have left the container."""
     outside = False
     for k in range(len(space.lengths)):
         x = particles.positions[k, slot]
@@ -165,7 +169,7 @@ def is_outside(particles, slot, space, inset):
 
 @inner_kernel
 def fly(x, v, lower, upper, dt):
-    """Move particles along one axis; the number that are not in [lower, upper) then."""
+    """Move particles along one axis; return the number outside [lower, upper) then."""
     outside = 0
     for n in range(len(x)):
         moved = x[n] + v[n] * dt
@@ -176,7 +180,10 @@ def fly(x, v, lower, upper, dt):
 
 @inner_kernel
 def fall(x, v, pull, lower, upper, dt):
-    """The same under a pull: exactly along the parabola."""
+    """Move particles along one axis exactly along the parabola of an acceleration.
+
+    Returns the number outside [lower, upper) then.
+    """
     outside = 0
     gain = pull * dt
     drop = dt / (dt + dt) * gain * dt
@@ -190,8 +197,7 @@ def fall(x, v, pull, lower, upper, dt):
 
 @inner_helper
 def advance_axis(particles, slots, axis, limits, dt, gravity):
-    """Move the particles in `slots` (2,) along one axis; the number that are not within the limits (2,)
-    then."""
+    """Move the particles in `slots` (2,) along one axis; return the number outside limits (2,)."""
     x = particles.positions[axis, slots[0] : slots[1]]
     v = particles.velocities[axis, slots[0] : slots[1]]
     if gravity is None:
@@ -201,7 +207,7 @@ def advance_axis(particles, slots, axis, limits, dt, gravity):
 
 @inner_kernel
 def move_by_rules(particles, model, dt, tally, rules, law, cells, gravity):
-    """Make the motion of one step where walls have rules of their own."""
+    """Perform the motion of one step where walls have rules of their own."""
     count = particles.positions.shape[1]
     for start in range(0, count, _BLOCK):
         stop = min(start + _BLOCK, count)
@@ -217,7 +223,7 @@ def move_by_rules(particles, model, dt, tally, rules, law, cells, gravity):
 
 @inner_kernel
 def move(particles, slots, model, dt, tally, thread, gravity):
-    """Make the motion of one step for the slots from slots[0] to slots[1]."""
+    """Perform the motion of one step for the slots from slots[0] to slots[1]."""
     space, inset = model.space, model.inset
     start, end = slots
     while start < end:
@@ -243,7 +249,7 @@ def add_squares(values, squares):
 
 @inner_kernel
 def add_gaps(x, origin, length, squares):
-    """Add the squares of how far coordinates x (n,) are from others, on an axis of that period."""
+    """Add the squared distances of coordinates x (n,) from others, on an axis of a period."""
     for n in range(len(x)):
         gap = abs(x[n] - origin[n])
         gap = min(gap, abs(length - gap))
@@ -252,8 +258,11 @@ def add_gaps(x, origin, length, squares):
 
 @inner_kernel
 def highest(squares, most):
-    """The highest of some values (n,), or `most`: looked at one by one only if it is among them, since a
-    maximum must wait for the one before."""
+    """Return the maximum of some values (n,) and `most`.
+
+    The values are compared one by one only if one of them exceeds `most`, since a maximum must wait for the
+    one before.
+    """
     above = 0
     for square in squares:
         above += square > most
@@ -265,7 +274,7 @@ def highest(squares, most):
 
 @inner_allocating_kernel
 def fastest_part(particles, slots):
-    """The highest squared speed of the particles in the slots from slots[0] to slots[1]."""
+    """Return the highest squared speed of the particles in the slots from slots[0] to slots[1]."""
     room = np.empty(_BLOCK, particles.velocities.dtype)
     most = particles.velocities[0, 0] - particles.velocities[0, 0]
     for low in range(slots[0], slots[1], _BLOCK):
@@ -280,8 +289,10 @@ def fastest_part(particles, slots):
 
 @inner_allocating_kernel
 def displacement_part(particles, slots, cells, space):
-    """The square of how far any particle in the slots from slots[0] to slots[1] is from where it was when the
-    list was made."""
+    """Return the largest squared displacement since the list was made, of some slots.
+
+    slots : first slot, and the end of the slots
+    """
     room = np.empty(_BLOCK, particles.positions.dtype)
     most = space.margin - space.margin
     for low in range(slots[0], slots[1], _BLOCK):

@@ -1,10 +1,10 @@
-"""Overlapping pairs by a neighbour list: all pairs nearer than a contact and a `skin`, made anew when
-particles may have crossed the skin.
+"""Search of overlapping pairs by a neighbour list.
 
-An entry of the list is one word: a slot, the first of eight others in a row, and a mark for each of these
-that is near. So it is made, and searched, by loading eight particles at once. Entries are written in any
-case, and only then are those without a mark left out: a place that depends on the entry before would have to
-wait for it.
+The list has all pairs nearer than a contact and a `skin`. It is renewed when particles may have crossed the
+skin. An entry of the list is one word: a slot, the first of eight others in a row, and a mark for each of
+these that is near. So it is made, and searched, by loading eight particles at once. Entries are always
+written, and entries without a mark are removed later: a position that depends on the entry before would have
+to wait for it.
 """
 
 from __future__ import annotations
@@ -24,12 +24,13 @@ from gaspart.kernels.simd import WIDTH, Lanes, fields, lowest
 from gaspart.kernels.step.model import DISPLACEMENT, part_of
 from gaspart.kernels.step.resolve import examine
 
-# Eight slots at once: which particles lie near another, in vector instructions.
+# Eight slots at once: the particles near another particle, in vector instructions.
 #
-# Particles are in memory in the order of their cells, so those that may be near one fill a few unbroken
-# stretches of slots. Eight of these are eight numbers in a row, of which a vector is loaded at once; and
-# those that count are written one after another, without a branch. All arithmetic is that of `resolve`, to
-# the same bits. What is loaded beyond the end of a stretch, or of an array (see `roomy`), is never used.
+# Particles are in memory in the order of their cells, so the particles that may be near a particle fill a few
+# unbroken ranges of slots. Eight of these are eight numbers in a row, which are loaded as a vector at once;
+# the near ones are written one after another, without a branch. All arithmetic is the arithmetic of
+# `resolve`, to the same bits. Data loaded beyond the end of a range, or of an array (see `roomy`), are never
+# used.
 
 
 _BYTE, _WORD = ir.IntType(WIDTH), ir.IntType(64)
@@ -37,12 +38,15 @@ _MARKS, _WORDS = ir.VectorType(ir.IntType(1), WIDTH), ir.VectorType(_WORD, WIDTH
 
 
 def roomy(shape: tuple[int, ...], dtype: DTypeLike) -> np.ndarray:
-    """An array of zeros behind whose end a vector can be loaded."""
+    """Return an array of zeros behind whose end a vector can be loaded."""
     return np.zeros(prod(shape) + WIDTH, dtype)[: prod(shape)].reshape(shape)
 
 
 def _call(builder: ir.IRBuilder, name: str, kind: ir.Type, *arguments: ir.Value) -> ir.Value:
-    """What an instruction that LLVM has a name for makes of values, of the type of the first."""
+    """Return the result of an LLVM instruction, given by its name.
+
+    kind : type of the result
+    """
     function = ir.FunctionType(kind, [argument.type for argument in arguments])
     return builder.call(cgutils.get_or_insert_function(builder.module, function, name), arguments)
 
@@ -56,8 +60,11 @@ def _size(lanes: Lanes) -> Lanes:
 
 @intrinsic
 def nearer(typingctx, positions, radii, space, slot, skin, first):
-    """A bit for each of the eight slots from `first` on, lowest first: whether its particle is nearer to that
-    in `slot` than a contact and the skin. See `resolve.distance_squared`."""
+    """Return a bit for each of the eight slots from `first` on.
+
+    The lowest bit belongs to the first slot. A bit is set if the distance of the slot's particle from the
+    particle in `slot` is below a contact and the skin. See `resolve.distance_squared`.
+    """
 
     def generate(context, builder, signature, arguments):
         positions, radii, space, slot, skin, first = arguments
@@ -92,7 +99,10 @@ def nearer(typingctx, positions, radii, space, slot, skin, first):
 
 @intrinsic
 def equals(typingctx, values, first, value):
-    """A bit for each of the eight places from `first` on, lowest first: whether a value is there."""
+    """Return a bit for each of eight elements that is equal to a value.
+
+    The lowest bit belongs to the element `first`.
+    """
 
     def generate(context, builder, signature, arguments):
         values, first, value = arguments
@@ -109,8 +119,11 @@ def equals(typingctx, values, first, value):
 
 @intrinsic
 def compact_eight(typingctx, words, first, least, kept, number):
-    """Write those of eight words, from place `first` on, that are not less than `least` into `kept`, from
-    place `number` on; how many these are. There must be room for eight."""
+    """Write the words, out of eight, that are at least `least` into `kept`.
+
+    Returns their number. The eight words begin at index `first`, the result at index `number`. There must be
+    space for eight.
+    """
 
     def generate(context, builder, signature, arguments):
         words, first, least, kept, number = arguments
@@ -131,7 +144,7 @@ def compact_eight(typingctx, words, first, least, kept, number):
 
 @intrinsic
 def bits(typingctx, word):
-    """How many bits of a word are set."""
+    """Return the number of bits that are set in a word."""
 
     def generate(context, builder, signature, arguments):
         return _call(builder, "llvm.ctpop.i64", _WORD, arguments[0])
@@ -139,18 +152,21 @@ def bits(typingctx, word):
     return types.uint64(types.uint64), generate
 
 
-_SAFE = 0.99  # of the skin, so that rounding uses none of it
-_ROOM = np.uint64(1024)  # entries written before those without a mark are left out
-_BLOCK = 64  # slots whose partners in one row are looked for before those in the next
+_SAFE = 0.99  # usable fraction of the skin, because of rounding
+_ROOM = np.uint64(1024)  # entries written before the ones without a mark are removed
+_BLOCK = 64  # slots whose partners in one row are searched before the next row
 ONE, _TWO, _EIGHT = np.uint64(1), np.uint64(2), np.uint64(WIDTH)
-_PLACE, _SHIFT = np.uint64(28), np.uint64(56)  # of an entry: where its slot begins, and its marks
+_PLACE, _SHIFT = np.uint64(28), np.uint64(56)  # first bits of the slot and of the marks in an entry
 _SLOTS = (ONE << _PLACE) - ONE
 
 
 @inner_kernel
 def compact(entries, number, pairs, listed):
-    """Write those of the first entries that have a mark into pairs (room,), behind those `listed` before, as
-    long as there is room; how many there are then."""
+    """Write the entries with a mark into pairs (room,), as long as there is space.
+
+    number : number of entries
+    listed : number of entries in `pairs` before; the new number is returned
+    """
     most = np.uint64(len(pairs)) - _EIGHT
     for n in range(WIDTH):
         entries[number + np.uint64(n)] = 0
@@ -161,8 +177,12 @@ def compact(entries, number, pairs, listed):
 
 @inner_helper
 def record_near(particles, slot, others, cells, space, entries, pairs, filled):
-    """Record which of the slots from others[0] to others[1] are nearer to one than a contact and the skin,
-    eight an entry. filled: the numbers of entries, and of those in the list; these numbers then."""
+    """Record the slots from others[0] to others[1] that are near a slot, eight in an entry.
+
+    A slot is near if its distance is below a contact and the skin.
+
+    filled : number of entries, and of entries in the list; the new numbers are returned
+    """
     number, listed = filled
     first, last = np.uint64(others[0]), np.uint64(others[1])
     while True:
@@ -180,14 +200,16 @@ def record_near(particles, slot, others, cells, space, entries, pairs, filled):
 
 @inner_helper
 def rows_ahead(dimension):
-    """How many rows of cells hold partners of a particle that its row is to be listed with: its own, and
-    those that come next to it along the other axes."""
+    """Return the number of rows of cells with which the pairs of a row are listed.
+
+    These are the row itself, and the rows that come next to it along the other axes.
+    """
     return 5 if dimension == 3 else 2
 
 
 @inner_helper
 def ahead(cells, n):
-    """By how much the index of a cell in row n of these is higher."""
+    """Return the index of a cell in row n of `rows_ahead`, relative to the cell."""
     if n < 2:
         return cells.strides[1] * n
     return cells.strides[2] + cells.strides[1] * (n - 3)
@@ -195,10 +217,13 @@ def ahead(cells, n):
 
 @inner_helper
 def find_stretches(slots, n, cells, stretches):
-    """Find the partners in row n of the slots from slots[0] to slots[1]: stretches of slots, those in the
-    same column and in the columns beside it. Those that are not empty are written into stretches (2, m), as
-    entries without marks and as the slots behind; how many these are, and how many partners. (To test an
-    empty stretch takes as long as eight slots, and no branch can foresee which are empty.)"""
+    """Find the ranges of slots that may hold partners in row n, for slots[0] to slots[1].
+
+    The ranges are the cells in the same column and in the adjacent columns. Ranges that are not empty are
+    written into stretches (2, m), as entries without marks and as the slots behind. Returns the number of
+    ranges, and of partners. (A test of an empty range takes as long as eight slots, and no branch can foresee
+    which are empty.)
+    """
     ends = cells.ends
     on = np.uint64(ahead(cells, n))
     number = partners = np.uint64(0)
@@ -214,7 +239,7 @@ def find_stretches(slots, n, cells, stretches):
 
 @inner_helper
 def record_stretches(particles, stretches, stop, cells, space, entries, pairs, filled):
-    """`record_near` of the slots and their partners in stretches[:, :stop]; the numbers of entries then."""
+    """Perform `record_near` for the slots and partners in stretches[:, :stop]; return the numbers."""
     for k in range(stop):
         slot, others = stretches[0, k] >> _PLACE, (stretches[0, k] & _SLOTS, stretches[1, k])
         filled = record_near(particles, slot, others, cells, space, entries, pairs, filled)
@@ -223,8 +248,11 @@ def record_stretches(particles, stretches, stop, cells, space, entries, pairs, f
 
 @inner_helper
 def record_across(particles, at, across, cells, space, entries, pairs, filled):
-    """`record_near` of the slots in cell `at` with those in the cell `across` the container and in the same
-    column of the rows ahead; the numbers of entries then, and of tests."""
+    """Perform `record_near` for a cell and the cells across the container.
+
+    The slots are in cell `at`, their partners in cell `across` and in the same column of the rows ahead.
+    Returns the new numbers of entries, and the number of tests.
+    """
     ends = cells.ends
     tests = np.uint64(0)
     for slot in range(np.uint64(ends[at - 1]), np.uint64(ends[at])):
@@ -238,9 +266,11 @@ def record_across(particles, at, across, cells, space, entries, pairs, filled):
 
 @inner_allocating_kernel
 def list_part(particles, part, cells, pairs, space, tests):
-    """Write all pairs of slots nearer than a contact and the skin that one thread is to find, as entries into
-    pairs[part] (room,), and how many these are into cells.listed (if there is no room for all, the last are
-    missing); the number of tests into tests (threads,)."""
+    """List all pairs nearer than a contact and the skin that one thread must find.
+
+    The entries are written into pairs[part] (room,), their number into cells.listed (without space for all,
+    the last are missing), and the number of tests into tests (threads,).
+    """
     parts, rows, mine = len(pairs), rows_ahead(len(space.lengths)), pairs[part]
     start, stop = part_of(part, parts, particles.ordinary)
     entries = np.empty(_ROOM + _EIGHT, np.uint64)
@@ -271,15 +301,20 @@ def list_part(particles, part, cells, pairs, space, tests):
 
 @inner_kernel
 def is_complete(particles, cells):
-    """Whether no two particles may have come nearer by more than the skin since the list was made."""
+    """Return True if no pair can have come nearer by more than the skin.
+
+    The reference is the time at which the list was made.
+    """
     return 2.0 * particles.bounds[DISPLACEMENT] < _SAFE * cells.skin
 
 
 @inner_kernel
 def search_pairs(particles, entries, space, step, found, thread):
-    """Record the pairs, among those of some entries (n,), that are to be resolved; with a pass `step.before`,
-    only those of which one particle at least had a contact in that pass: for all others nothing has changed
-    since they were searched."""
+    """Record the pairs of some entries (n,) that must be resolved.
+
+    With a pass `step.before`, only pairs are searched with a particle that had a contact in that pass: for
+    all others nothing has changed since their last search.
+    """
     touching, before, last_pass = found.touching[thread], step.before, particles.last_pass
     tests = np.uint64(0)  # into `found` at the end: threads that write to one cache line wait for each other
     for low in range(0, len(entries), len(touching)):

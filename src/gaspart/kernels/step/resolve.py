@@ -1,11 +1,10 @@
-"""The contacts of one step: which overlaps count, in what order they are resolved, and how.
+"""Contacts of one step: the overlaps that count, their order, and their resolution.
 
 The order - time of contact, lower index, higher index - does not depend on slots, boxes or threads, so
-neither does any bit of the result.
-
-A contact is that of `kernels.physics.contact`. Its form here keeps float32, collides particles as they were
-at the time of the contact without moving them there, and passes only a part of the elastic impulse where
-there is restitution: a test compares it bit for bit with `collision.collide_smooth` (test_resolve.py).
+neither does any bit of the result. A contact is a contact of `kernels.physics.contact`. Its form here keeps
+float32, collides particles in the state at the time of the contact without moving them there, and transfers
+only a part of the elastic impulse where there is restitution: a test compares it bit for bit with
+`collision.collide_smooth` (test_resolve.py).
 """
 
 import numpy as np
@@ -32,13 +31,16 @@ from gaspart.kernels.step.motion import raise_bounds, wrap
 
 _ONE = np.uint32(1)
 _RUN = 16
-_AHEAD = 4  # contacts
-_LATE = 1.125  # steps ago: contacts before these belong to an earlier step, however float32 rounds
+_AHEAD = 4  # contacts by which the prefetch is ahead
+_LATE = 1.125  # time in steps; earlier contacts belong to an earlier step, for any rounding of float32
 
 
 @inner_helper
 def distance_squared(particles, i, j, space):
-    """Of two slots, by the nearest image: the same bits as in `invariants`, without a branch."""
+    """Return the squared distance of two slots, by the nearest image.
+
+    The bits are the same as in `invariants`, without a branch.
+    """
     rr = space.margin - space.margin
     for k in range(len(space.lengths)):
         length = space.lengths[k] if space.periodic[k] else np.inf
@@ -50,7 +52,7 @@ def distance_squared(particles, i, j, space):
 
 @inner_helper
 def invariants(particles, i, j, space):
-    """rr, rv, vv of a pair (see `contact`), j by its nearest image."""
+    """Return rr, rv, vv of a pair (see `contact`), j by its nearest image."""
     rr = rv = vv = space.margin - space.margin
     for k in range(len(space.lengths)):
         gap = particles.positions[k, j] - particles.positions[k, i]
@@ -64,8 +66,11 @@ def invariants(particles, i, j, space):
 
 @inner_helper
 def entry_time(rr, rv, vv, ss):
-    """When an overlapping pair touched first, if it has always moved as it does now: a time in the past. The
-    root of `contact_root`, for a pair that is parting already in the form that does not cancel for it."""
+    """Return the past time of first touch of an overlapping pair in uniform motion.
+
+    For an approaching pair it is `contact_root`; for a separating pair the root is in the form that does not
+    cancel for it.
+    """
     if rv < 0.0:
         return contact_root(rr, rv, vv, ss)
     return -(np.sqrt(rv * rv - vv * (rr - ss)) + rv) / vv
@@ -73,7 +78,7 @@ def entry_time(rr, rv, vv, ss):
 
 @inner_helper
 def must_resolve(rr, rv, vv, ss, step):
-    """Whether an overlap is to be resolved: it grows, or (if `step.parting`) it began in this step."""
+    """Return True if an overlap grows, or (if `step.parting`) began in this step."""
     if not rr < ss:
         return False
     return rv < 0.0 or (step.parting and rv > 0.0 and -entry_time(rr, rv, vv, ss) < step.dt)
@@ -81,7 +86,7 @@ def must_resolve(rr, rv, vv, ss, step):
 
 @inner_helper
 def examine(particles, i, j, space, step, found, thread):
-    """Record a pair of overlapping slots if it is to be resolved."""
+    """Record a pair of overlapping slots if it must be resolved."""
     if particles.index[i] > particles.index[j]:
         i, j = j, i
     rr, rv, vv = invariants(particles, i, j, space)
@@ -97,7 +102,10 @@ def examine(particles, i, j, space, step, found, thread):
 
 @inner_helper
 def earlier(index, pairs, times, m, n):
-    """Whether contact m is resolved before contact n: by time, then lower index, then higher index."""
+    """Return True if contact m is resolved before contact n.
+
+    The order is by time, then lower index, then higher index.
+    """
     if times[m] != times[n]:
         return times[m] < times[n]
     low_m, low_n = index[pairs[m, 0]], index[pairs[n, 0]]
@@ -106,8 +114,10 @@ def earlier(index, pairs, times, m, n):
 
 @inner_allocating_kernel
 def spread(times):
-    """Contacts nearly in the order of their times: sorted into as many equal stretches of time as there are
-    contacts."""
+    """Sort contacts into equal intervals of time, as many as there are contacts.
+
+    The result is nearly in the order of time.
+    """
     number = len(times)
     first, last = times.min(), times.max()
     scale = (number - 1) / np.float64(last - first) if last > first else 0.0
@@ -127,7 +137,7 @@ def spread(times):
 
 @inner_kernel
 def insert(index, pairs, times, order, low, high):
-    """Put the contacts order[low:high] in order, one after another."""
+    """Sort the contacts order[low:high] by insertion."""
     for n in range(low + 1, high):
         contact = order[n]
         place = n
@@ -160,8 +170,11 @@ def merge(index, pairs, times, order, room, low, middle, high):
 
 @inner_allocating_kernel
 def in_order(index, pairs, times):
-    """The order in which contacts are resolved: spread by time, runs put in order, and merged where they are
-    not yet. (numba's own sorts take 15 s to compile.)"""
+    """Return the order in which contacts are resolved.
+
+    Contacts are spread by time, sorted in runs, and the runs are merged where necessary. (numba's own sorts
+    take 15 s to compile.)
+    """
     number = len(times)
     order = spread(times)
     room = np.empty(number, np.uint32)
@@ -179,8 +192,11 @@ def in_order(index, pairs, times):
 
 @inner_helper
 def impulse_factors(rr, rv, mass1, mass2):
-    """The factors k1, k2 of an elastic contact (v1 += k1 r, v2 -= k2 r), and |r.p| of the momentum p passed.
-    The velocity of a particle of infinite mass does not change, where `exchange` has no value."""
+    """Return the factors k1, k2 of an elastic contact, and |r.p|.
+
+    The velocities change by v1 += k1 r, v2 -= k2 r, and p is the transferred momentum. The velocity of a
+    particle of infinite mass does not change, where `exchange` has no value.
+    """
     if mass1 == np.inf:
         return rr - rr, (rv + rv) / rr, (mass2 + mass2) * abs(rv)
     if mass2 == np.inf:
@@ -191,7 +207,10 @@ def impulse_factors(rr, rv, mass1, mass2):
 
 @inner_helper
 def record_contact(particles, slot, speed_squared, space, step, tally, cells):
-    """Count a contact of a particle if it is not its first in this step, and let all bounds hold for it."""
+    """Record a contact of a particle, count it unless first, and update all bounds.
+
+    It is counted if it is not the particle's first contact in this step.
+    """
     tally.counts[MULTIPLE] += particles.last_pass[slot] >= step.first
     particles.last_pass[slot] = step.number
     raise_bounds(particles, slot, speed_squared, space, cells)
@@ -199,8 +218,10 @@ def record_contact(particles, slot, speed_squared, space, step, tally, cells):
 
 @inner_helper
 def collide_smooth(particles, i, j, contact, model, tally):
-    """A contact of smooth particles. contact: how long ago (a negative time), and the invariants rr, rv then.
-    Returns the squares of the two speeds."""
+    """Apply a collision to two smooth particles; return the squares of both speeds.
+
+    contact : time since the contact, negative, and the invariants rr, rv then
+    """
     ago, rr, rv = contact
     space = model.space
     one, other = particles.index[i], particles.index[j]
@@ -224,7 +245,7 @@ def collide_smooth(particles, i, j, contact, model, tally):
 
 @inner_helper
 def collide(particles, i, j, contact, model, tally, law):
-    """A contact, by the law if there is one; see `collide_smooth`."""
+    """Apply a collision, by the law if there is one; see `collide_smooth`."""
     if law is None:
         return collide_smooth(particles, i, j, contact, model, tally)
     return collide_flights(particles, i, j, contact, model.rules, tally, law)
@@ -240,8 +261,11 @@ def count_fixed(particles, i, j, tally, fixed):
 
 @inner_helper
 def resolve(particles, i, j, model, step, tally, law, cells):
-    """Collide a pair, if it is still to be resolved: rewind it to its contact, pass the momentum along the
-    normal at contact, and play the rest of the step with the new velocities."""
+    """Resolve a pair, if it must still be resolved.
+
+    The pair is rewound to its contact, exchanges momentum along the normal at contact, and moves for the rest
+    of the step with the new velocities.
+    """
     space = model.space
     rr, rv, vv = invariants(particles, i, j, space)
     sigma = particles.radii[i] + particles.radii[j]
@@ -256,7 +280,7 @@ def resolve(particles, i, j, model, step, tally, law, cells):
             tally.counts[LATE] += 1
             if rr + rr + rr + rr < ss:
                 tally.counts[PASSED] += 1
-        rr += ago * (rv + rv + vv * ago)  # the invariants as they were at the contact
+        rr += ago * (rv + rv + vv * ago)  # the invariants at the contact
         rv += ago * vv
         tally.extremes[WORST] = max(tally.extremes[WORST], abs(rr / ss - 1.0))
     tally.counts[COLLISIONS] += 1
@@ -276,7 +300,7 @@ def resolve(particles, i, j, model, step, tally, law, cells):
 
 @inner_helper
 def fetch_particle(particles, slot, cells):
-    """Begin to load what a contact of a particle reads."""
+    """Prefetch the data that a contact of a particle reads."""
     for k in range(len(particles.positions)):
         fetch(particles.positions[k], slot)
         fetch(particles.velocities[k], slot)
@@ -289,7 +313,7 @@ def fetch_particle(particles, slot, cells):
 
 @inner_helper
 def fetch_ahead(particles, pairs, order, n, cells):
-    """Begin to load what the contacts soon after order[n] read, while this one is resolved."""
+    """Prefetch the data of the contacts soon after order[n], while this one is resolved."""
     last = len(order) - 1
     for side in range(2):
         fetch_particle(particles, pairs[order[min(n + 2 * _AHEAD, last)], side], cells)
@@ -298,7 +322,7 @@ def fetch_ahead(particles, pairs, order, n, cells):
 
 @inner_kernel
 def resolve_all(particles, pairs, order, model, step, tally, law, cells):
-    """Resolve what one search has found, in order."""
+    """Resolve the contacts of one search, in order."""
     for n in range(len(order)):
         fetch_ahead(particles, pairs, order, n, cells)
         i, j = pairs[order[n], 0], pairs[order[n], 1]
@@ -307,7 +331,7 @@ def resolve_all(particles, pairs, order, model, step, tally, law, cells):
 
 @inner_kernel
 def count_left(particles, pairs, space, tally):
-    """Count the pairs found that overlap and approach even now."""
+    """Count the pairs found that still overlap and approach."""
     for n in range(len(pairs)):
         i, j = pairs[n, 0], pairs[n, 1]
         rr, rv, _ = invariants(particles, i, j, space)

@@ -1,9 +1,9 @@
-"""How threads share the contacts of a step, to the same bits as one thread.
+"""Contacts of a step shared among threads, to the same bits as with one thread.
 
-Contacts that have no particle in common may be resolved in any order. So each thread resolves, in their
-order, those between two slots of its own; those between slots of two threads are postponed, and with them
-the later contacts of their particles, of these contacts' particles, and so on. What was postponed follows in
-order; the terms of sums are kept by contact, and added up in the order of all contacts.
+Contacts that have no particle in common may be resolved in any order. So each thread resolves, in order, the
+contacts between two of its own slots. Contacts between slots of two threads are postponed, and with them the
+later contacts of their particles, of these contacts' particles, and so on. Postponed contacts follow in
+order; the terms of sums are stored by contact, and added in the order of all contacts.
 """
 
 from typing import NamedTuple
@@ -25,9 +25,17 @@ from gaspart.kernels.step.resolve import fetch_ahead, resolve, resolve_all
 
 
 class Contacts(NamedTuple):
-    """The contacts of a pass. pairs (n, 2) of slots; order (n,) in which they are resolved; terms
-    (n, ..., 2), those of the tally's sums; postponed (n,), whether a contact is; by thread: its counts
-    (threads, 8), extremes and bounds (threads, 2)."""
+    """Contacts of a pass.
+
+    Attributes
+    ----------
+    pairs : (n, 2), slots
+    order : (n,), order in which they are resolved
+    terms : (n, ..., 2), terms of the tally's sums
+    postponed : (n,), whether a contact is postponed
+    counts : (threads, 8), counts of each thread
+    extremes, bounds : (threads, 2), extremes and bounds of each thread
+    """
 
     pairs: np.ndarray
     order: np.ndarray
@@ -40,14 +48,16 @@ class Contacts(NamedTuple):
 
 @inner_helper
 def is_among(slot, slots):
-    """Whether a slot is one of those from slots[0] to slots[1]."""
+    """Return True if a slot is between slots[0] and slots[1]."""
     return slots[0] <= slot < slots[1]
 
 
 @inner_kernel
 def select_own(contacts, slots, held, own):
-    """Select the contacts between two of one thread's slots, in their order, and hold the particles that meet
-    one of another thread's. Returns how many there are."""
+    """Select the contacts between two of one thread's slots, in order; return their number.
+
+    Particles of the thread in contact with a particle of another thread are held.
+    """
     number = 0
     for contact in contacts.order:
         i, j = contacts.pairs[contact, 0], contacts.pairs[contact, 1]
@@ -63,8 +73,10 @@ def select_own(contacts, slots, held, own):
 
 @inner_helper
 def tally_of_contact(tally, terms):
-    """The tally whose sums are the terms (..., 2) of one contact. For kernels that make no arrays: others
-    count references, which this function does not."""
+    """Return the tally whose sums are the terms (..., 2) of one contact.
+
+    It is meant for kernels that make no arrays: others count references, which this function does not.
+    """
     return StepTally(
         tally.counts, terms, tally.extremes, tally.wall_hits, tally.wall_impulse, tally.wall_loss,
         tally.momentum, tally.energy, tally.impulses, tally.axis, tally.pull, tally.per_length, tally.turns,
@@ -74,7 +86,7 @@ def tally_of_contact(tally, terms):
 
 @inner_kernel
 def resolve_own(particles, contacts, own, model, step, tally, cells):
-    """Resolve one thread's contacts in order. Where one of the two particles is held, hold both instead."""
+    """Resolve one thread's contacts in order; if a particle is held, hold both instead."""
     pairs, held = contacts.pairs, cells.held
     for n in range(len(own)):
         fetch_ahead(particles, pairs, own, n, cells)
@@ -90,7 +102,7 @@ def resolve_own(particles, contacts, own, model, step, tally, cells):
 
 @inner_kernel
 def resolve_postponed(particles, contacts, model, step, tally, cells):
-    """Resolve what threads have postponed, and release its particles; add up the terms of all contacts."""
+    """Resolve the postponed contacts, release their particles, and add the terms of all contacts."""
     for contact in contacts.order:
         terms = contacts.terms[contact]
         if contacts.postponed[contact]:
@@ -103,8 +115,11 @@ def resolve_postponed(particles, contacts, model, step, tally, cells):
 
 @inner_allocating_kernel
 def resolve_part(particles, part, contacts, model, step, tally, cells):
-    """Resolve the contacts of one thread. It writes its counts, extremes and bounds only at the end: threads
-    that write to one cache line wait for each other."""
+    """Resolve the contacts of one thread.
+
+    The thread writes its counts, extremes and bounds only at the end: threads that write to one cache line
+    wait for each other.
+    """
     own = np.empty(len(contacts.order), np.uint32)
     slots = part_of(part, len(cells.listed), particles.positions.shape[1])
     number = select_own(contacts, slots, cells.held, own)
@@ -124,7 +139,10 @@ def resolve_part(particles, part, contacts, model, step, tally, cells):
 
 @inner_parallel_kernel
 def resolve_parts(particles, contacts, lengths, periodic, numbers, step, tally, cells):
-    """`resolve_part` for all parts. numbers: those of the model, and the margin of its space."""
+    """Perform `resolve_part` for all parts.
+
+    numbers : numbers of the model, and the margin of its space
+    """
     for part in prange(len(cells.listed)):
         normal, impulse_share, inset, margin = numbers
         model = StepModel(Space(lengths, periodic, margin), normal, impulse_share, inset, None, None, None)
@@ -133,7 +151,10 @@ def resolve_parts(particles, contacts, lengths, periodic, numbers, step, tally, 
 
 @inner_allocating_kernel
 def resolve_shared(particles, found, model, step, tally, cells):
-    """`resolve_all`, by several threads. found: pairs and their order."""
+    """Perform `resolve_all` with several threads.
+
+    found : pairs and their order
+    """
     (pairs, order), threads, space = found, len(cells.listed), model.space
     contacts = Contacts(
         pairs,
@@ -155,8 +176,10 @@ def resolve_shared(particles, found, model, step, tally, cells):
 
 @inner_allocating_kernel
 def resolve_found(particles, found, model, step, tally, threads, law, cells):
-    """Resolve what one search has found, pairs and their order: shared among threads if there are several and
-    a list, and contacts are smooth."""
+    """Resolve the pairs of one search, in their order.
+
+    The work is shared among threads if there are several threads and a list, and contacts are smooth.
+    """
     if law is None:
         if cells is not None:
             if threads is not None:

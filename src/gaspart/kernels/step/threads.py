@@ -1,8 +1,8 @@
-"""The parts of a step that threads share: the motion, and making and searching a list.
+"""Parts of a step that threads share: the motion, and making and searching a list.
 
-With `threads` None there is one thread, and machine code in which others do not exist. Each part writes to
-rows of its own, and which contacts are found does not depend on which thread finds them. numba passes no
-tuples in tuples to threads: a `StepModel` or a `Space` is taken apart before and put together again there.
+With `threads` None there is one thread, and the machine code has no other threads. Each part writes to rows
+of its own, and the set of contacts does not depend on the thread that finds them. numba passes no tuples in
+tuples to threads: a `StepModel` or a `Space` is passed in parts and put together again there.
 """
 
 import numpy as np
@@ -33,12 +33,12 @@ from gaspart.kernels.step.model import (
 from gaspart.kernels.step.motion import displacement_part, fastest_part, move, move_by_rules
 from gaspart.kernels.step.neighbour_list import WIDTH, is_complete, list_part, search_pairs
 
-_BLOCK = 1024  # pairs that are tested before those that touch are looked at
+_BLOCK = 1024  # pairs that are tested before the touching ones are examined
 
 
 @inner_allocating_kernel
 def room_for(threads, room, like):
-    """Empty arrays for contacts to resolve."""
+    """Return empty arrays for contacts to resolve."""
     return Found(
         np.empty((threads, room, 2), np.uint32),
         np.empty((threads, room), like.dtype),
@@ -50,7 +50,10 @@ def room_for(threads, room, like):
 
 @inner_parallel_kernel
 def move_shared(particles, lengths, periodic, numbers, dt, tally, threads, gravity):
-    """`move` for all slots. numbers: those of the model, and the margin of its space."""
+    """Perform `move` for all slots.
+
+    numbers : numbers of the model, and the margin of its space
+    """
     count = particles.positions.shape[1]
     for part in prange(threads):
         normal, impulse_share, inset, margin = numbers
@@ -61,7 +64,7 @@ def move_shared(particles, lengths, periodic, numbers, dt, tally, threads, gravi
 
 @inner_helper
 def move_all(particles, model, dt, tally, threads, rules, cells):
-    """Make the motion of one step."""
+    """Perform the motion of one step."""
     gravity, space = model.gravity, model.space
     if rules is not None:
         move_by_rules(particles, model, dt, tally, rules, model.law, cells, gravity)
@@ -74,35 +77,35 @@ def move_all(particles, model, dt, tally, threads, rules, cells):
 
 @inner_parallel_kernel
 def locate_shared(particles, cells):
-    """`locate_part` for all parts."""
+    """Perform `locate_part` for all parts."""
     for part in prange(len(cells.listed)):
         locate_part(particles, part, cells)
 
 
 @inner_parallel_kernel
 def order_shared(cells, ordinary, shares):
-    """`order_part` for all shares (threads + 1,) of the cells."""
+    """Perform `order_part` for all shares (threads + 1,) of the cells."""
     for part in prange(len(cells.listed)):
         order_part(cells, ordinary, shares[part], shares[part + 1])
 
 
 @inner_parallel_kernel
 def permute_shared(values, order, permuted, threads):
-    """`permute` for all slots."""
+    """Perform `permute` for all slots."""
     for part in prange(threads):
         permute(values, order, part_of(part, threads, len(order)), permuted)
 
 
 @inner_parallel_kernel
 def copy_shared(permuted, values, threads):
-    """`copy` for all slots."""
+    """Perform `copy` for all slots."""
     for part in prange(threads):
         copy(permuted, part_of(part, threads, len(permuted)), values)
 
 
 @inner_parallel_kernel
 def list_shared(particles, cells, pairs, lengths, periodic, margin, tests):
-    """`list_part` for all parts."""
+    """Perform `list_part` for all parts."""
     for part in prange(len(pairs)):
         list_part(particles, part, cells, pairs, Space(lengths, periodic, margin), tests)
 
@@ -115,7 +118,7 @@ def search_part(particles, cells, pairs, space, step, found, part):
 
 @inner_parallel_kernel
 def search_shared(particles, cells, pairs, lengths, periodic, margin, step, found):
-    """`search_part` for the whole list."""
+    """Perform `search_part` for the whole list."""
     for part in prange(len(pairs)):
         search_part(particles, cells, pairs, Space(lengths, periodic, margin), step, found, part)
 
@@ -132,7 +135,7 @@ def search_list(particles, pairs, space, step, found, threads, cells):
 
 @inner_kernel
 def reorder(values, order, room, threads):
-    """values[n] becomes values[order[n]], by way of `room`; what lies beyond the order stays."""
+    """Set values[n] to values[order[n]], with `room` as workspace; later values stay."""
     permuted = room[: len(order)]
     if threads is None:
         permute(values, order, (0, len(order)), permuted)
@@ -144,7 +147,7 @@ def reorder(values, order, room, threads):
 
 @inner_allocating_kernel
 def sort_into_cells(particles, cells, threads):
-    """Bring the ordinary particles into the order of their cells."""
+    """Sort the ordinary particles in memory by their cells."""
     shares = np.empty(len(cells.listed) + 1, np.uint32)
     divide_cells(cells, particles.ordinary, shares)
     if threads is None:
@@ -168,7 +171,7 @@ def sort_into_cells(particles, cells, threads):
 
 @inner_parallel_kernel
 def fastest_shared(particles, squares):
-    """`fastest_part` for all parts, into squares (threads,)."""
+    """Perform `fastest_part` for all parts, into squares (threads,)."""
     for part in prange(len(squares)):
         slots = part_of(part, len(squares), particles.velocities.shape[1])
         squares[part] = fastest_part(particles, slots)
@@ -176,7 +179,7 @@ def fastest_shared(particles, squares):
 
 @inner_parallel_kernel
 def displacement_shared(particles, cells, lengths, periodic, margin, squares):
-    """`displacement_part` for all parts, into squares (threads,)."""
+    """Perform `displacement_part` for all parts, into squares (threads,)."""
     for part in prange(len(squares)):
         slots = part_of(part, len(squares), particles.ordinary)
         squares[part] = displacement_part(particles, slots, cells, Space(lengths, periodic, margin))
@@ -196,7 +199,7 @@ def measure_fastest(particles, threads):
 
 @inner_allocating_kernel
 def measure_displacement(particles, cells, space, threads):
-    """Measure how far any ordinary particle is from where it was when the list was made."""
+    """Measure the largest displacement of an ordinary particle since the list was made."""
     if threads is None:
         square = displacement_part(particles, (0, particles.ordinary), cells, space)
     else:
@@ -208,8 +211,11 @@ def measure_displacement(particles, cells, space, threads):
 
 @inner_allocating_kernel
 def is_outdated(particles, cells, space, threads):
-    """Whether the list is to be made anew. By how far the fastest particle may have come, first; and if that
-    is too much, by how far all have come."""
+    """Return True if the list must be renewed.
+
+    The bound of the fastest particle's displacement is tested first; if it is too large, the displacements of
+    all particles are measured.
+    """
     if is_complete(particles, cells):
         return False
     if particles.bounds[DISPLACEMENT] < np.inf:
@@ -219,7 +225,7 @@ def is_outdated(particles, cells, space, threads):
 
 @inner_allocating_kernel
 def make_list(particles, cells, pairs, space, tally, threads):
-    """Make the list anew: its pairs (threads, room), in the old room or in more."""
+    """Make the list anew; return its pairs (threads, room) in the same or a larger array."""
     sort_into_cells(particles, cells, threads)
     tests = np.zeros(len(pairs), np.int64)
     while True:
@@ -239,7 +245,7 @@ def make_list(particles, cells, pairs, space, tally, threads):
 
 @inner_allocating_kernel
 def gathered(found):
-    """What the threads have found: pairs (n, 2) and times (n,)."""
+    """Collect the pairs (n, 2) and times (n,) that the threads have found."""
     number = found.number.sum()
     pairs = np.empty((number, 2), np.uint32)
     times = np.empty(number, found.times.dtype)

@@ -1,4 +1,4 @@
-"""Contents of an archive beside the tables of its provenance: sources, results and captions."""
+"""Contents of an archive in addition to the tables of its provenance: sources, results, captions."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ from gaspart.yaml_text import read_yaml
 
 
 def scene_files(config: Any) -> list[str]:
-    """Paths of the scene files of all experiments of a merged config, each once, without "./" and the like.
+    """Return the paths of the scene files of all experiments of a merged config, each once.
 
-    They are the values of `scene` in a point and in a grid; anything else under that key is left to the
-    validation of configs.
+    Paths have no "./" and the like. They are the values of `scene` in a point and in a grid; anything else
+    under that key is left to the validation of configs.
     """
     found: dict[str, None] = {}
     blocks = [config.get("experiments") if isinstance(config, dict) else None]
@@ -59,7 +59,7 @@ _WHOLE = {"experiments", "figures"}
 
 @dataclass(frozen=True)
 class Finished:
-    """A finished run. Paths in it are relative to `root`, the folder in which the workflow ran."""
+    """Finished run; its paths are relative to `root`, the folder of the workflow."""
 
     root: Path
     results: str
@@ -78,7 +78,10 @@ class Finished:
 
     @property
     def is_copy(self) -> bool:
-        """Whether `root` is a copy of the project, not a folder with a workflow that uses it as a module."""
+        """True if `root` is a copy of the project.
+
+        Otherwise it is a folder with a workflow that uses it as a module.
+        """
         return (self.root / _RULES).is_file()
 
     @property
@@ -116,12 +119,12 @@ class Finished:
 def find_finished(results: str | Path, config: str | Path | None = None) -> Finished:
     """Find the run whose results are in a folder, `results` or `results/<run>`.
 
-    config: its config; by default the only one in the folders `config` and above with the name of this run.
+    The default of `config` is the only config in the folders `config` and above with the name of this run.
     The workflow may also be a module of another one, in a folder with its Snakefile and config. If the module
     has a prefix, the results lie in a folder below.
 
-    Raises SceneError for a folder without results, results that are not complete, and trajectories that
-    were made with other settings than those of the config.
+    Raises SceneError for a folder without results, results that are not complete, and trajectories that were
+    made with other settings than the config states.
     """
     folder = resolved(results)
     if not (folder / "tables/claims.csv").is_file():
@@ -151,7 +154,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
 
 
 def _project_of(folder: Path) -> Path | None:
-    """Return the nearest folder with a workflow, from `folder` upwards; None if there is none."""
+    """Return the nearest folder with a workflow, from `folder` upwards, or None."""
     return next(
         (
             place
@@ -163,7 +166,10 @@ def _project_of(folder: Path) -> Path | None:
 
 
 def _used(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:
-    """The points of which figures and films are made, each once: no rule of `all` makes the others."""
+    """Return the points of figures and films, each once.
+
+    No rule of `all` makes the other points.
+    """
     points = [point for figure in config["figures"] for point in figure_points(config, figure, planned)]
     films = [block for block in config.get("animations", {}).values() if block]
     points += [next(iter(planned[block["experiment"]].values())) for block in films]
@@ -171,7 +177,10 @@ def _used(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:
 
 
 def _config_of(root: Path, name: str | None) -> Path:
-    """The config of a run of this name, None for that without a name. Raises SceneError unless it is one."""
+    """Return the config of a run of this name, None for the run without a name.
+
+    Raises SceneError unless there is exactly one.
+    """
     if name is None and (root / _BASE).is_file():
         return root / _BASE
     files = [*sorted((root / "config").glob("*.y*ml")), *sorted(root.glob("*.y*ml"))]
@@ -183,7 +192,7 @@ def _config_of(root: Path, name: str | None) -> Path:
 
 
 def _is_config_of(file: Path, name: str | None) -> bool:
-    """Whether a file is a config with this key `run`, or a whole one without it."""
+    """Return True if a file is a config with this key `run`, or a whole config without it."""
     try:
         content = read_yaml(file)
     except SceneError:
@@ -194,8 +203,10 @@ def _is_config_of(file: Path, name: str | None) -> bool:
 
 
 def _check_places(run: Finished, file: Path) -> None:
-    """Refuse points that lie outside of the project's folder: their paths would have no place in an archive.
-    Raises SceneError."""
+    """Refuse points outside the project's folder: they would have no path in an archive.
+
+    Raises SceneError.
+    """
     place = Path(run.config.get("points", "results/points"))
     if place.is_absolute() or ".." in place.parts:
         raise SceneError("points", str(place), "must be in the project's folder for an archive", str(file))
@@ -215,7 +226,7 @@ def _others(count: int) -> str:
 
 
 def _check_settings(run: Finished) -> None:
-    """Raise SceneError for a trajectory whose scene, engine, seed or times are not those of the config."""
+    """Raise SceneError for a trajectory whose scene, engine, seed or times differ from the config."""
     for point, replica, path in run.trajectories():
         recipe, wanted = read_recipe(run.root / path), point.arguments
         finest = recipe.correlations.interval if recipe.correlations else recipe.sample_interval
@@ -248,9 +259,12 @@ _OF_PACKAGE = Path(__file__).parents[4]
 
 
 def sources(run: Finished) -> Iterator[str]:
-    """The files of the project with which the run can be made again: the workflow, its config and scenes, the
-    library, the locked environment. A workflow that uses this one as a module has what it has of these, and
-    CITATION.cff. Raises SceneError if one that is needed is missing."""
+    """Yield the files of the project with which the run can be repeated.
+
+    They are the workflow, its config and scenes, the library, the locked environment. A workflow that uses
+    this one as a module has those of these files that it has, and CITATION.cff. Raises SceneError if a
+    necessary file is missing.
+    """
     needed = (run.workflow, CITATION, *(_NEEDED if run.is_copy else ()))
     for name in needed:
         if not (run.root / name).is_file():
@@ -269,12 +283,12 @@ def sources(run: Finished) -> Iterator[str]:
 
 
 def folders(run: Finished) -> list[str]:
-    """The folders of sources that the project has."""
+    """Return the folders of sources that the project has."""
     return [folder for folder in FOLDERS if (run.root / folder).is_dir()]
 
 
 def _files(root: Path, folder: str) -> Iterator[str]:
-    """The files in a folder and below, without hidden ones and what Python and pip leave there."""
+    """Yield the files in a folder and below, without hidden ones and those of Python and pip."""
     for place, folders, names in os.walk(root / folder):
         folders[:] = sorted(name for name in folders if name != "__pycache__" and _is_kept(name))
         for name in sorted(filter(_is_kept, names)):
@@ -288,13 +302,13 @@ def _is_kept(name: str) -> bool:
 
 
 def report(run: Finished) -> str:
-    """The report without its pictures for narrow screens, which are not in the archive."""
+    """Return the report without its pictures for narrow screens, which are not in the archive."""
     page = (run.root / run.report).read_text(encoding="utf-8")
     return re.sub(r'<source\b[^>]*\bsrcset="figures/journal/[^>]*>', "", page)
 
 
 def captions(run: Finished) -> dict[str, str]:
-    """{path in the archive: caption} of each figure, with its measured numbers."""
+    """Return {path in the archive: caption} of each figure, with its measured numbers."""
     rows = table.read(run.root / run.results / "tables/claims.csv")
     texts = {figure: _caption(run, figure) for figure in run.figures}
     return {
@@ -305,8 +319,10 @@ def captions(run: Finished) -> dict[str, str]:
 
 
 def _caption(run: Finished, figure: str) -> str | None:
-    """The caption of a figure, with places for its measured numbers; None where only the report has it: that
-    of a module, whose files are elsewhere."""
+    """Return the caption of a figure, with places for its measured numbers.
+
+    It is None if only the report has it: the caption of a module, whose files are elsewhere.
+    """
     block = run.config["figures"][figure]
     if "kind" in block:
         return caption(block)

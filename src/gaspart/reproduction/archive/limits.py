@@ -1,4 +1,4 @@
-"""Limits of an archive: its names, and sizes that can be read in a bounded time and memory."""
+"""Limits of an archive: its names, and sizes that are read in bounded time and memory."""
 
 from __future__ import annotations
 
@@ -15,24 +15,30 @@ from gaspart.errors import SceneError
 from gaspart.trajectory.opening import opened
 
 MOST_BYTES = 1 << 25
-"""Of a manifest, and of a table: those of ten thousand points are a tenth of it."""
+"""Maximum size of a manifest, and of a table; the tables of ten thousand points are a tenth of it."""
 MOST_ROWS = 200_000
 MOST_FILES = 100_000
 _DIRECTORY = 1 << 24
 """Bytes of the list of entries at the end of a zip file; each takes about 100, and much more in memory."""
 _EXPANSION, _ALWAYS = 200, 1 << 28
-"""How many times larger than on disk contents may be, and bytes that they always may have. Tables and
-trajectories shrink to a tenth at least; a file made to fill a disk, or never to end, by a thousand."""
+"""Maximum ratio of the size of contents to their size on disk, and a size that is always allowed.
+
+Tables and trajectories shrink to a tenth at least; a file made to fill a disk, or never to end, by a
+thousand.
+"""
 _LONGEST = 1024  # characters of a name
 _LENGTHS, _DESCRIPTOR, _HAS_DESCRIPTOR = 26, 24, 8
-"""Where the header of an entry has the lengths of its name and extra field, at its end; and the most bytes of
-what may follow the contents, with the flag that states that something does."""
+"""Offset of the lengths of name and extra field in the header of an entry.
+
+The lengths are at its end. The second number is the maximum size of a descriptor after the contents, the
+third the flag that states that there is a descriptor.
+"""
 _END, _END_64 = b"PK\x05\x06", b"PK\x06\x06"
 _END_BYTES, _COMMENT = 22, (1 << 16) - 1
 
 
 def name_fault(name: str) -> str:
-    """Why a file of an archive cannot have this name; "" if it can."""
+    """Return the reason why a file of an archive cannot have this name; "" if it can."""
     parts = name.split("/")
     if not name.isprintable() or not name.strip():
         return "cannot be shown: it holds control characters, or bytes that are not UTF-8"
@@ -44,8 +50,11 @@ def name_fault(name: str) -> str:
 
 
 def check_names(path: Path, names: Iterable[str]) -> None:
-    """Raise SceneError for names that cannot be unpacked next to one another: two that are equal, perhaps but
-    for their case, a file that is also a folder, and those with a `name_fault`. Those of folders end in /."""
+    """Raise SceneError for names that cannot be unpacked next to one another.
+
+    These are two equal names, perhaps but for their case, a file that is also a folder, and names with a
+    `name_fault`. Names of folders end in /.
+    """
     seen: dict[str, str] = {}
     folders: set[str] = set()
     for given in names:
@@ -67,15 +76,17 @@ def check_names(path: Path, names: Iterable[str]) -> None:
 
 
 def check_size(path: Path, stated: int, there: int) -> None:
-    """Raise SceneError for contents of `stated` bytes that take so few on disk that they must be made up."""
+    """Raise SceneError for contents of `stated` bytes that take implausibly few bytes on disk."""
     if stated > _ALWAYS + _EXPANSION * there:
         rule = f"has contents of {stated:.3g} bytes in {there:.3g}: no archive of gaspart is so compressed"
         raise SceneError("archive", str(path), rule)
 
 
 def check_places(path: Path, file: IO[bytes], entries: Sequence[ZipInfo], end: int) -> None:
-    """Raise SceneError unless the entries of a zip file lie one after another up to `end`: what lies between
-    them other programs might unpack. May raise struct.error for a file that is cut short."""
+    """Raise SceneError unless the entries of a zip file lie one after another up to `end`.
+
+    Other programs might unpack what lies between them. May raise struct.error for a file that is cut short.
+    """
     at = gap = 0
     for entry in sorted(entries, key=lambda entry: entry.header_offset):
         if not at <= entry.header_offset <= at + gap:
@@ -91,7 +102,10 @@ def check_places(path: Path, file: IO[bytes], entries: Sequence[ZipInfo], end: i
 
 
 def check_directory(path: Path, file: IO[bytes]) -> None:
-    """Raise SceneError for a zip file whose list of entries, which is read as a whole, is too long."""
+    """Raise SceneError for a zip file whose list of entries is too long.
+
+    The list is read as a whole.
+    """
     size = file.seek(0, os.SEEK_END)
     file.seek(max(0, size - _END_BYTES - _COMMENT - 56 - 20))
     tail = file.read()
@@ -114,7 +128,10 @@ _CHECKSUM = "checksum"
 
 
 def digest(file: IO[bytes], copy: IO[bytes] | None = None) -> str:
-    """The digest of what is left of an open file, which is written to `copy` on the way, if given."""
+    """Compute the digest of the rest of an open file.
+
+    The rest is also written to `copy`, if given.
+    """
     total = hashlib.sha256()
     while data := file.read(_CHUNK):
         total.update(data)
@@ -124,16 +141,17 @@ def digest(file: IO[bytes], copy: IO[bytes] | None = None) -> str:
 
 
 def digest_of_file(path: Path) -> str:
-    """The digest of a file. May raise OSError."""
+    """Return the digest of a file; may raise OSError."""
     with path.open("rb") as file:
         return digest(file)
 
 
 def digest_of_numbers(path: Path) -> str:
-    """The digest of a trajectory's variables: equal for equal bits, whatever versions and git revision its
-    attributes state. Raises SceneError for a file that is no trajectory of gaspart.
+    """Compute the digest of a trajectory's variables.
 
-    Each variable contributes its name, type, shape and bytes, in the order of the names.
+    It is equal for equal bits, whatever versions and git revision the attributes state. Each variable
+    contributes its name, type, shape and bytes, in the order of the names. Raises SceneError for a file that
+    is no trajectory of gaspart.
     """
     total = hashlib.sha256()
     with opened(path) as file:
@@ -147,9 +165,11 @@ def digest_of_numbers(path: Path) -> str:
 
 
 def joint_digest(paths: Iterable[str], known: Mapping[str, str]) -> str:
-    """The digest of a set of files: of the lines "<digest>  <path>" in the order of the paths.
+    """Compute the digest of a set of files, from the lines "<digest>  <path>" in order of paths.
 
-    paths: files, or folders, which stand for all `known` files in them; known: the digest of each file.
+    paths : files, or folders, which stand for all `known` files in them.
+    known : digest of each file.
+
     Raises KeyError for a path that is neither.
     """
     lines: set[str] = set()

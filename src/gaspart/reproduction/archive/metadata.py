@@ -31,7 +31,7 @@ _IDENTITIES = ("orcid", "website")
 
 
 class Creator(NamedTuple):
-    """A person or an organisation. identity: an ORCID or another address; "" if there is none."""
+    """Person or organisation; `identity` is an ORCID or another address, or ""."""
 
     name: str
     is_person: bool
@@ -40,8 +40,11 @@ class Creator(NamedTuple):
 
 
 class Citation(NamedTuple):
-    """Data of CITATION.cff. licence: its identifier at spdx.org, such as BSD-3-Clause; url: of the
-    project, "" if there is none."""
+    """Data of CITATION.cff.
+
+    licence : its identifier at spdx.org, such as BSD-3-Clause.
+    url : address of the project, or "".
+    """
 
     title: str
     creators: list[Creator]
@@ -52,8 +55,10 @@ class Citation(NamedTuple):
 
 
 def read_citation(path: Path) -> Citation:
-    """Read a CITATION.cff, version 1.2.0. Raises SceneError for a file that cannot be read or lacks a key
-    that an archive needs."""
+    """Read a CITATION.cff, version 1.2.0.
+
+    Raises SceneError for a file that cannot be read or lacks a key that an archive needs.
+    """
     content = read_yaml(path)
     for key in _REQUIRED:
         if not (isinstance(content, dict) and content.get(key)):
@@ -73,7 +78,7 @@ def read_citation(path: Path) -> Citation:
 
 
 def _creator(author: Any, where: str, path: Path) -> Creator:
-    """An author: an entity has a `name`, a person `given-names` and `family-names`."""
+    """Read an author: an entity has a `name`, a person `given-names` and `family-names`."""
     known = author if isinstance(author, dict) else {}
     identity = next((str(known[key]) for key in _IDENTITIES if known.get(key)), "")
     affiliation = str(known.get("affiliation", ""))
@@ -125,9 +130,13 @@ _MEANINGS = {
 class Described:
     """Sources of the metadata.
 
-    files: (size, digest) of each file of the archive, by path; summary: as in `run.json`; jobs: as in
-    `jobs.csv`; captions: by path; claims: their number; workflow: the path of the Snakefile; folders: of
-    sources.
+    files : (size, digest) of each file of the archive, by path.
+    summary : content of `run.json`.
+    jobs : rows of `jobs.csv`.
+    captions : captions by path.
+    claims : number of claims.
+    workflow : path of the Snakefile.
+    folders : folders of sources.
     """
 
     files: Mapping[str, tuple[int, str]]
@@ -140,7 +149,7 @@ class Described:
 
 
 def metadata(described: Described, citation: Citation) -> str:
-    """The text of the file. Raises SceneError if the package rocrate is missing."""
+    """Return the text of the file; raise SceneError if the package rocrate is missing."""
     rocrate = optional("rocrate.rocrate", "archive", "archives")
     crate = rocrate.ROCrate(version="1.1")
     crate.metadata.extra_contexts.append(_TERMS)
@@ -158,7 +167,10 @@ def metadata(described: Described, citation: Citation) -> str:
 
 
 def _is_listed(path: str) -> bool:
-    """Whether a file is described by itself: those in folders of sources are described by their folder."""
+    """Return True if a file is described by itself.
+
+    Files in folders of sources are described by their folder.
+    """
     return path.partition("/")[0] not in contents.FOLDERS
 
 
@@ -171,7 +183,7 @@ def _entity(crate: ROCrate, identity: str, **properties: Any) -> ContextEntity:
 
 
 def _single(entities: list[Any]) -> Any:
-    """One entity by itself, as RO-Crate recommends, or several as they are."""
+    """Return one entity by itself, as RO-Crate recommends, or several as a list."""
     return entities[0] if len(entities) == 1 else entities
 
 
@@ -189,7 +201,7 @@ def _add_creators(crate: ROCrate, citation: Citation) -> list[ContextEntity]:
 def _describe_root(
     crate: ROCrate, described: Described, citation: Citation, creators: list[ContextEntity]
 ) -> None:
-    """Title, creators, licence and profiles of the archive."""
+    """Add title, creators, licence and profiles of the archive."""
     summary = described.summary
     crate.name = f"{citation.title}: {summary['title']}"
     crate.description = (
@@ -232,7 +244,7 @@ def _add_folder(crate: ROCrate, folder: str) -> Any:
 def _add_workflow(
     crate: ROCrate, described: Described, citation: Citation, creators: list[ContextEntity]
 ) -> Any:
-    """The main entity: the Snakefile."""
+    """Add the main entity, the Snakefile, and return it."""
     size, digest = described.files[described.workflow]
     workflow = crate.add_workflow(
         dest_path=described.workflow,
@@ -253,13 +265,13 @@ def _add_workflow(
 
 
 def _version(described: Described) -> str:
-    """The version of gaspart, with the git revision that was run."""
+    """Return the version of gaspart, with the git revision that was run."""
     summary = described.summary
     return f"{summary['gaspart']} ({summary['revision']})" if summary["revision"] else summary["gaspart"]
 
 
 def _add_parameters(crate: ROCrate, workflow: Any, described: Described, files: Mapping[str, Any]) -> None:
-    """Input and output of the workflow, with the files that they are in this run."""
+    """Add input and output of the workflow, with their files in this run."""
     results = described.summary["results"]
     profile = _entity(crate, _PARAMETER, type="CreativeWork", name="FormalParameter", version="1.0-RELEASE")
     named = {
@@ -283,7 +295,10 @@ def _add_run(
     creators: list[ContextEntity],
     files: tuple[list[Any], list[Any]],
 ) -> None:
-    """The run: from its first job to the end of its last. files: those that it used, and those it made."""
+    """Add the run, from its first job to the end of its last.
+
+    `files` are the files that it used, and the files that it made.
+    """
     ends = [
         (datetime.fromisoformat(job.ended), timedelta(seconds=float(job.seconds))) for job in described.jobs
     ]

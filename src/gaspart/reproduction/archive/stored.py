@@ -60,24 +60,27 @@ _DIGITS = 64
 
 @dataclass(frozen=True)
 class Stored:
-    """An archive: where it is, the names of its files, and how one of these is opened."""
+    """Archive: its path, the names of its files, and a function that opens a file."""
 
     path: Path
     names: frozenset[str]
     opener: Callable[[str], IO[bytes]]
 
     def refused(self, rule: str) -> SceneError:
-        """The error about this archive."""
+        """Return the error about this archive."""
         return SceneError("archive", str(self.path), rule)
 
     def open(self, name: str) -> IO[bytes]:
-        """A file of the archive. Raises SceneError for another name, and DAMAGE."""
+        """Return a file of the archive; raise SceneError for another name, and DAMAGE."""
         if name not in self.names:
             raise self.refused(f"has no file {name}")
         return self.opener(name)
 
     def text(self, name: str, most: int = MOST_BYTES) -> str:
-        """A file as text. Raises SceneError for one that is missing, damaged, or larger than `most` bytes."""
+        """Read a file as text.
+
+        Raises SceneError for a file that is missing, damaged, or larger than `most` bytes.
+        """
         try:
             with self.open(name) as file:
                 content = file.read(most + 1)
@@ -100,7 +103,7 @@ class Stored:
             raise self.refused(f"has a damaged {name}: {_reason(error)}") from None
 
     def rows(self, name: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
-        """The rows of a table that has at least these columns. Raises SceneError."""
+        """Return the rows of a table that has at least these columns; raise SceneError."""
         try:
             return rows_of(self.text(name), columns)
         except SceneError:
@@ -109,7 +112,7 @@ class Stored:
             raise self.refused(f"has a table that cannot be read, {name}: {error}") from None
 
     def digest(self, name: str) -> str:
-        """The digest of a file; "" if it cannot be read."""
+        """Return the digest of a file; "" if it cannot be read."""
         try:
             with self.open(name) as file:
                 return digest(file)
@@ -117,7 +120,10 @@ class Stored:
             return ""
 
     def summary(self) -> dict[str, Any]:
-        """The content of `run.json`, of which `verify` uses texts. Raises SceneError for another content."""
+        """Return the content of `run.json`, of which `verify` uses texts.
+
+        Raises SceneError for another content.
+        """
         try:
             found = json.loads(self.text(RUN, 1 << 20))
         except RecursionError:
@@ -132,7 +138,7 @@ class Stored:
         return dict(found)
 
     def manifest(self) -> dict[str, str]:
-        """{path: digest} as the manifest states them. Raises SceneError for another text."""
+        """Return {path: digest} as the manifest states them; raise SceneError for another text."""
         found: dict[str, str] = {}
         for line in io.StringIO(self.text(MANIFEST)):
             value, gap, name = line.removesuffix("\n").partition("  ")
@@ -148,10 +154,10 @@ def _reason(error: BaseException) -> str:
 
 @contextmanager
 def opened_archive(path: str | Path) -> Iterator[Stored]:
-    """An archive, open within the `with` block.
+    """Open an archive within the `with` block.
 
-    Raises SceneError for a file that cannot be read, or that is no archive of gaspart: one with two entries
-    of one name, names that lead out of it or cannot be shown, links, or contents of unreasonable size.
+    Raises SceneError for a file that cannot be read, or that is no archive of gaspart: with two entries of
+    one name, names that lead out of it or cannot be shown, links, or contents of unreasonable size.
     """
     path = Path(path)
     try:
@@ -194,8 +200,11 @@ def _zip_file(path: Path, source: IO[bytes]) -> Stored:
 
 
 def _check_entry(path: Path, entry: zipfile.ZipInfo) -> None:
-    """Refuse what `gaspart archive` does not write: links and the like, other compressions, folders with
-    contents, and names that readers take for different ones."""
+    """Refuse entries that `gaspart archive` does not write.
+
+    These are links and the like, other compressions, folders with contents, and names that readers interpret
+    differently.
+    """
     kind = stat.S_IFMT(entry.external_attr >> 16)
     rule = ""
     if entry.is_dir():
@@ -210,7 +219,7 @@ def _check_entry(path: Path, entry: zipfile.ZipInfo) -> None:
 
 
 def _folder(path: Path) -> Stored:
-    """An unpacked archive. Only if it has a manifest is anything else in it looked at."""
+    """Return an unpacked archive; without a manifest nothing else in the folder is read."""
     if not (path / MANIFEST).is_file():
         raise SceneError("archive", str(path), f"is no archive of gaspart: it has no {MANIFEST}")
     names, stated, there = [], 0, 0
@@ -227,8 +236,10 @@ def _folder(path: Path) -> Stored:
 
 
 def _below(folder: Path, beginning: str) -> Iterable[tuple[str, os.stat_result]]:
-    """All that is in a folder and below and is no folder, by its name from `beginning` on; links are not
-    followed."""
+    """Yield everything in a folder and below that is no folder, without following links.
+
+    Names begin with `beginning`.
+    """
     with os.scandir(folder) as entries:
         for entry in entries:
             name = beginning + entry.name
@@ -242,10 +253,10 @@ def _below(folder: Path, beginning: str) -> Iterable[tuple[str, os.stat_result]]
 
 
 def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
-    """So many points of an archive that have trajectories, drawn at random, or all if there are fewer.
+    """Return `count` points of an archive that have trajectories, drawn at random.
 
-    They are planned anew from the archive's config and scenes, which are written to `folder`. Raises
-    SceneError for a config that cannot be planned.
+    If there are fewer, all are returned. They are planned anew from the archive's config and scenes, which
+    are written to `folder`. Raises SceneError for a config that cannot be planned.
     """
     _write_config(stored, folder)
     with checked(folder / "config/config.yaml") as (_, planned):
@@ -262,8 +273,11 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
 
 
 def _write_config(stored: Stored, folder: Path) -> None:
-    """Write the config and the scene files that it names. Raises SceneError for one that is not in the
-    archive: a config of a stranger must not have files of this machine read."""
+    """Write the config and the scene files that it names.
+
+    Raises SceneError for a scene file that is not in the archive: a config of a stranger must not read files
+    of this machine.
+    """
     config = parse_yaml(stored.text(tables.CONFIG), tables.CONFIG)
     for name in scene_files(config):
         if name not in stored.names:
@@ -276,7 +290,7 @@ def _write_config(stored: Stored, folder: Path) -> None:
 
 
 def rerun(stored: Stored, point: Point, folder: Path) -> Check:
-    """Simulate all replicas of a point, and compare the bits of their numbers with the archive's digests."""
+    """Simulate all replicas of a point, and compare the digests of their numbers."""
     load_numba(ours=True)
     rows = stored.rows(tables.POINTS, tables.PointFile._fields)
     known = {
@@ -304,7 +318,7 @@ def _counted(count: int) -> str:
 
 
 def _differing(stored: Stored) -> str:
-    """How this program differs from that of the archive."""
+    """Describe the differences between this program and the program of the archive."""
     run = stored.summary()
     then = {"gaspart": run["gaspart"], "revision": run["revision"]}
     now = {"gaspart": provenance.versions()["gaspart_version"], "revision": provenance.git_revision()}
@@ -319,17 +333,17 @@ def _differing(stored: Stored) -> str:
 
 _JUDGED = ("figure", "claim", "verdict")
 _NAMED = 3
-"""How many files a message names."""
+"""Maximum number of files that a message names."""
 
 
 def verify(path: str | Path, points: int = 0) -> Iterator[Check]:
-    """Recompute the digests of an archive, a zip file or an unpacked one, and simulate points again.
+    """Recompute the digests of an archive, and simulate points again.
 
-    points: how many of the points that have trajectories, drawn at random. Gives a check for the archive as
-    a whole, its files, its claims, and each of these points. If files are damaged, nothing that follows from
-    them is checked.
+    The archive is a zip file or an unpacked one; `points` is the number of points, among those with
+    trajectories, that are drawn at random. Yields a check for the archive as a whole, its files, its claims,
+    and each of these points. If files are damaged, nothing that follows from them is checked.
 
-    Raises SceneError for what is no archive, and as simulations do.
+    Raises SceneError for anything but an archive, and as simulations do.
     """
     with opened_archive(path) as stored:
         stated = stored.manifest()
@@ -345,7 +359,7 @@ def verify(path: str | Path, points: int = 0) -> Iterator[Check]:
 
 
 def _files(stored: Stored, stated: Mapping[str, str]) -> Check:
-    """Whether the files are those of the manifest, with their digests."""
+    """Check that the files of the archive are the files of the manifest, with their digests."""
     missing = sorted(stated.keys() - stored.names)
     unknown = sorted(stored.names - stated.keys() - {MANIFEST})
     changed = [name for name in sorted(stated.keys() & stored.names) if stored.digest(name) != stated[name]]
@@ -360,8 +374,10 @@ def _shown(names: list[str]) -> str:
 
 
 def _tables(stored: Stored, stated: Mapping[str, str]) -> Iterator[Check]:
-    """The checks of what the tables state. Raises SceneError for tables that `gaspart archive` cannot have
-    written, though they have their digests."""
+    """Yield the checks of the statements of the tables.
+
+    Raises SceneError for tables that `gaspart archive` cannot have written, though they have their digests.
+    """
     try:
         yield _stated(stored)
         yield _claims(stored, stated)
@@ -374,14 +390,17 @@ def _tables(stored: Stored, stated: Mapping[str, str]) -> Iterator[Check]:
 
 
 def _stated(stored: Stored) -> Check:
-    """Which run it is; no fault can be in it."""
+    """Describe the run; this check cannot fail."""
     run = stored.summary()
     revision = f", revision {run['revision']}" if run["revision"] else ""
     return Check("run", True, f"{run['title']}; gaspart {run['gaspart']}{revision}; {run['archived'][:10]}")
 
 
 def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
-    """Whether each claim of the results is listed, with the digests of the data that are in the archive."""
+    """Check that each claim of the results is listed, with the digests of its data.
+
+    The data are in the archive.
+    """
     run, points = stored.summary(), stored.rows(tables.POINTS, tables.PointFile._fields)
     listed = stored.rows(tables.CLAIMS, tables.ClaimData._fields)
     judged = stored.rows(f"{run['results']}/tables/claims.csv", _JUDGED)
@@ -401,7 +420,7 @@ def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
 
 
 def _inputs(stored: Stored, name: str) -> list[str]:
-    """The points, or tables of claims, of which a measurement in an archive is made."""
+    """Return the points, or tables of claims, of which a measurement in an archive is made."""
     with TemporaryDirectory(prefix="gaspart-") as folder:
         copy = Path(folder, "measurement.nc")
         stored.copy(name, copy)
@@ -412,7 +431,7 @@ def _inputs(stored: Stored, name: str) -> list[str]:
 
 
 def _points(stored: Stored) -> Check:
-    """Whether the points in the archive have the digests that its table states."""
+    """Check that the points in the archive have the digests that its table states."""
     listed = stored.rows(tables.POINTS, tables.PointFile._fields)
     rows = [row for row in listed if row["path"] in stored.names]
     wrong = [row["path"] for row in rows if stored.digest(row["path"]) != row["sha256"]]

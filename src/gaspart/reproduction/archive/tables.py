@@ -1,4 +1,4 @@
-"""Where the numbers of an archive come from: tables of points, claims and jobs, and the machine."""
+"""Origin of the numbers of an archive: tables of points, claims and jobs, and the machine."""
 
 from __future__ import annotations
 
@@ -48,10 +48,11 @@ class PointFile(NamedTuple):
 
 
 class ClaimData(NamedTuple):
-    """A row of `claims.csv`: a claim and the digests of what it is made of.
+    """Row of `claims.csv`: a claim and the digests of its data.
 
-    data: the measurement from which it is judged. inputs_sha256: the joint digest of the files from which
-    that was measured, the points of the figure or the claims of other figures (see `joint_digest`).
+    data : measurement from which it is judged.
+    inputs_sha256 : joint digest of the files from which that was measured, the points of the figure or the
+        claims of other figures (see `joint_digest`).
     """
 
     figure: str
@@ -63,9 +64,9 @@ class ClaimData(NamedTuple):
 
 
 class JobTime(NamedTuple):
-    """A row of `jobs.csv`: a job of the workflow, in s and MB; when it ended, in UTC.
+    """Row of `jobs.csv`: the time, memory and end of a job of the workflow, in s, MB and UTC.
 
-    cpu_seconds, largest_memory: as the job states them; "" for one that an older version made.
+    cpu_seconds, largest_memory : as the job states them; "" for a job of an older version.
     """
 
     rule: str
@@ -77,7 +78,7 @@ class JobTime(NamedTuple):
 
 
 def point_files(run: Finished) -> list[PointFile]:
-    """The files of all points, with their digests; reads all of them."""
+    """Return the files of all points, with their digests; reads all of them."""
     rows = []
     for point in run.points:
         named = point.experiment, point.name, point.job
@@ -94,7 +95,7 @@ def point_files(run: Finished) -> list[PointFile]:
 
 
 def inputs_of(measurement: Path) -> list[str]:
-    """The points, or tables of claims, that a measurement states it is made of."""
+    """Return the points, or tables of claims, that a measurement states it is made of."""
     from netCDF4 import Dataset
 
     with Dataset(measurement) as file:
@@ -102,7 +103,7 @@ def inputs_of(measurement: Path) -> list[str]:
 
 
 def claim_rows(run: Finished, files: Iterable[PointFile]) -> list[ClaimData]:
-    """All claims with the digests of their data."""
+    """Return all claims with the digests of their data."""
     known = {file.path: file.sha256 for file in files}
     for figure in run.figures:
         path = f"{run.results}/claims/{figure}.csv"
@@ -117,8 +118,11 @@ def claim_rows(run: Finished, files: Iterable[PointFile]) -> list[ClaimData]:
 
 
 def job_times(run: Finished) -> list[JobTime]:
-    """Return the time of each job of the run, from Snakemake's benchmarks and the jobs' logs, without points
-    that the config no longer has."""
+    """Return the time of each job of the run.
+
+    The times are from Snakemake's benchmarks and the jobs' logs, without points that the config no longer
+    has.
+    """
     folder, kept = run.root / run.results / "benchmarks", {(one.experiment, one.name) for one in run.points}
     rows = []
     for path in sorted(folder.rglob("*.tsv")):
@@ -135,7 +139,7 @@ def job_times(run: Finished) -> list[JobTime]:
 
 
 def text_of(rows: Iterable[tuple], columns: tuple[str, ...]) -> str:
-    """Rows as CSV."""
+    """Return rows as CSV."""
     text = io.StringIO()
     written = csv.writer(text, lineterminator="\n")
     written.writerow(columns)
@@ -144,8 +148,11 @@ def text_of(rows: Iterable[tuple], columns: tuple[str, ...]) -> str:
 
 
 def rows_of(text: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
-    """The inverse of `text_of`, for a table that has at least these columns. Raises ValueError for another
-    text, one with a field of more than 131072 characters, and one with more than `MOST_ROWS` rows."""
+    """Return the rows of a text made by `text_of`, for a table with at least these columns.
+
+    Raises ValueError for another text, for a field of more than 131072 characters, and for more than
+    `MOST_ROWS` rows.
+    """
     lines = csv.reader(io.StringIO(text, newline=""), strict=True)
     rows: list[dict[str, str]] = []
     try:
@@ -164,7 +171,7 @@ def rows_of(text: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
 
 
 def machine() -> dict[str, Any]:
-    """Processor, memory and system of this machine, and the installed packages."""
+    """Return processor, memory and system of this machine, and the installed packages."""
     packages = {one.name: one.version for one in distributions() if one.name}
     return {
         "processor": _processor(),
@@ -178,7 +185,7 @@ def machine() -> dict[str, Any]:
 
 
 def _processor() -> str:
-    """The model of the processor, as Linux names it."""
+    """Return the model of the processor, as Linux names it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
@@ -188,8 +195,7 @@ def _processor() -> str:
 
 
 def summary_of(run: Finished, files: Iterable[PointFile], trajectories: bool) -> Mapping[str, Any]:
-    """The content of `run.json`: which run this is, at which revisions it was made, and on which machine the
-    archive was."""
+    """Return the content of `run.json`: the run, its revisions, and the machine of the archive."""
     revisions = {file.revision for file in files if file.revision}
     return {
         "title": run.config["title"],

@@ -21,7 +21,7 @@ from gaspart.yaml_text import dump_yaml
 MANIFEST = "manifest-sha256.txt"
 """The digest of every other file of an archive, in the form of the program sha256sum."""
 _TIME = (1980, 1, 1, 0, 0, 0)
-"""Of all files: the digest of an archive depends on their contents only."""
+"""Time of all files: the digest of an archive depends on their contents only."""
 _LARGE = 1 << 31
 
 
@@ -43,10 +43,11 @@ def write_archive(
     trajectories: bool = False,
     overwrite: bool = False,
 ) -> str:
-    """Write the archive of a finished run; returns a line that says what is in it.
+    """Write the archive of a finished run, and return a line on its contents.
 
-    results: the folder of its results, `results` or `results/<run>`; config: its config, by default found by
-    its name; trajectories: include them, not only their digests.
+    results : folder of its results, `results` or `results/<run>`.
+    config : its config, by default found by its name.
+    trajectories : include them, not only their digests.
 
     Raises SceneError as `find_finished` does, if a file of the project or the package rocrate is missing, and
     for a path that cannot be written.

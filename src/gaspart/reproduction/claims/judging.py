@@ -1,4 +1,4 @@
-"""Verdicts of the claims of one figure, with a correction for their number, and their joint test."""
+"""Verdicts of the claims of one figure, with a correction for their number, and a joint test."""
 
 from __future__ import annotations
 
@@ -17,8 +17,11 @@ if TYPE_CHECKING:
 
 
 CLAIM_KINDS = ("test", "identity", "reproduction", "family")
-"""test: could be false; identity: true by construction, checks the code; reproduction: a source's report;
-family: whether the deviations of a figure's value claims scatter as their uncertainties state."""
+"""Kinds of claims: a test could be false, an identity is true by construction and checks the code.
+
+A reproduction repeats a source's report, a family states that the deviations of a figure's value claims
+scatter as their uncertainties state.
+"""
 POWER = 2.0
 """Standard deviations between the expected value and the alternative that a conclusive claim must resolve."""
 NEGLIGIBLE = 0.1
@@ -29,18 +32,24 @@ UNVERIFIED = "the reference is quoted from memory and has not been verified"
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """One measured number and what is expected of it, in the unit that the claim's text gives.
+    """Measured number and its expected value, in the unit that the claim's text gives.
 
-    claim: the statement in words; expected: a plain number is exact, the uncertainty of an Estimate is the
-    allowance for that of the theory or the literature, whose origin is `allowance_source`, and which must
-    not be derived from the data; source: of the expected value; required: the largest uncertainty of the
-    measurement at which the claim means anything; fails_if: what would make it fail; kind: of CLAIM_KINDS.
-    bounds: the lowest and the highest allowed number, for a statement of bounds instead of a value (see
-    `at_least`, `at_most`, `within`). exact_deviation: for numbers that are not Gaussian, their deviation as a
-    Gaussian one (see `chi_square`). alternative: the value of a competing theory, which a claim that agrees
-    must exclude. follows: whether the number follows, or nearly, from those of other claims, so that the
-    joint test does not count it again. no_verdict: why the number is reported only, such as UNVERIFIED.
-    why: of a reproduction, why the source errs if it is not reproduced.
+    claim : the statement in words.
+    expected : a plain number is exact; the uncertainty of an Estimate is the allowance for the uncertainty of
+        the theory or the literature, whose origin is `allowance_source`, and which must not be derived from
+        the data.
+    source : source of the expected value.
+    required : largest uncertainty of the measurement at which the claim means anything.
+    fails_if : faults that would make it fail.
+    kind : one of CLAIM_KINDS.
+    bounds : lowest and highest allowed number, for a statement of bounds instead of a value (see `at_least`,
+        `at_most`, `within`).
+    exact_deviation : for numbers that are not Gaussian, their deviation as a Gaussian one (see `chi_square`).
+    alternative : value of a competing theory, which a claim that agrees must exclude.
+    follows : True if the number follows, or nearly, from other claims, so that the joint test does not count
+        it again.
+    no_verdict : reason why the number is reported only, such as UNVERIFIED.
+    why : for a reproduction, reason why the source errs if it is not reproduced.
 
     Raises ValueError for an unknown kind, an empty text, source or fails_if, a negative required uncertainty,
     and an allowance without a source.
@@ -80,22 +89,28 @@ class Claim:
 
     @classmethod
     def at_least(cls, *, claim: str, bound: Number, **others: Any) -> Claim:
-        """The measured number is `bound` or more. others: the remaining fields of the claim."""
+        """Return the claim that the measured number is `bound` or more.
+
+        `others` are the remaining fields of the claim.
+        """
         text = f"{claim} (at least {bound:g})"
         return cls(claim=text, expected=bound, bounds=(bound, math.inf), **others)
 
     @classmethod
     def at_most(cls, *, claim: str, bound: Number, **others: Any) -> Claim:
-        """The measured number is `bound` or less. others: the remaining fields of the claim."""
+        """Return the claim that the measured number is `bound` or less.
+
+        `others` are the remaining fields of the claim.
+        """
         text = f"{claim} (at most {bound:g})"
         return cls(claim=text, expected=bound, bounds=(-math.inf, bound), **others)
 
     @classmethod
     def within(cls, *, claim: str, expected: Number, half_width: Number, **others: Any) -> Claim:
-        """The measured number lies within `half_width` of `expected`. others: the remaining fields.
+        """Return the claim that the measured number lies within `half_width` of `expected`.
 
-        The required uncertainty defaults to half of half_width: the measurement's 95 % interval is then no
-        wider than the band.
+        `others` are the remaining fields. The required uncertainty defaults to half of half_width: the
+        measurement's 95 % interval is then no wider than the band.
         """
         low, high = expected - half_width, expected + half_width
         text = f"{claim} (within {low:g} to {high:g})"
@@ -107,13 +122,14 @@ class Claim:
     def chi_square(
         cls, *, chi_square: Number, degrees_of_freedom: int, error_freedom: Number = math.inf, **others: Any
     ) -> Claim:
-        """Chi-square of many deviations at once; measured is chi-square per degree of freedom, expected 1.
+        """Return a claim on chi-square per degree of freedom of many deviations, expected to be 1.
 
-        The deviation is the Gaussian one of the same two-sided probability (a chi-square far too small is
-        a fault as well: error bars too large); the uncertainty sqrt(2 / dof) is the statistic's own scatter.
-        error_freedom: degrees of freedom of the uncertainty if all deviations have one in common, from the
-        scatter of a few samples; the statistic per degree of freedom then follows Fisher's distribution.
-        others: the remaining fields of the claim.
+        The deviation is the Gaussian one of the same two-sided probability (a chi-square far too small is a
+        fault as well: error bars too large); the uncertainty sqrt(2 / dof) is the statistic's own scatter.
+
+        error_freedom : degrees of freedom of the uncertainty if all deviations have one in common, from the
+            scatter of a few samples; the statistic per degree of freedom then follows Fisher's distribution.
+        others : the remaining fields of the claim.
         """
         from scipy.special import chdtr, chdtrc, fdtr, fdtrc, ndtri
 
@@ -131,7 +147,7 @@ class Claim:
 
     @classmethod
     def joint(cls, *, claim: str, deviations: ArrayLike, **others: Any) -> Claim:
-        """`chi_square` of independent deviations in standard deviations, an array of any shape."""
+        """Return the `chi_square` of independent deviations, in standard deviations, of any shape."""
         import numpy as np
 
         deviations = np.asarray(deviations, dtype=float)
@@ -167,13 +183,13 @@ class Claim:
 
     @property
     def is_finite(self) -> bool:
-        """Whether the measured and the expected number and their uncertainties are finite."""
+        """True if the measured and the expected number and their uncertainties are finite."""
         numbers = (self.measured.value, self.measured.error, self.expected.value, self.expected.error)
         return all(map(math.isfinite, numbers))
 
     @property
     def has_power(self) -> bool:
-        """Whether the combined uncertainty would distinguish the alternative, if there is one."""
+        """True if the combined uncertainty would distinguish the alternative, if there is one."""
         if self.alternative is None:
             return True
         spread = math.hypot(self.measured.error, self.expected.error)
@@ -181,14 +197,19 @@ class Claim:
 
     @property
     def is_conclusive(self) -> bool:
-        """Whether agreement would mean something: the uncertainty is not above the required one, and the
-        alternative would be noticed."""
+        """True if agreement would mean something.
+
+        The uncertainty is not above the required one, and the alternative would be noticed.
+        """
         return self.is_finite and self.measured.error <= self.required and self.has_power
 
     @property
     def is_scattered(self) -> bool:
-        """Whether the deviation is a standard Gaussian one if the claim is true, and one of its own: a test
-        of a value, with a verdict, whose allowance is negligible beside the measurement's uncertainty."""
+        """True if the deviation of a true claim is an independent standard Gaussian one.
+
+        This holds for a test of a value, with a verdict, whose allowance is negligible relative to the
+        measurement's uncertainty.
+        """
         return (
             not self.follows
             and self.form == "value"
@@ -205,11 +226,11 @@ VERDICTS = ("agrees", "disagrees", "inconclusive", "reproduced", "source in erro
 there is a reason why), it disagrees for no known reason, or is inconclusive; no verdict: the number is
 reported only."""
 FAMILY_LEVEL = math.erfc(3.0 / math.sqrt(2.0))
-"""Chance that a family of true statements has any "disagrees": that of one two-sided 3-sigma test, 0.0027."""
+"""Chance that a family of true statements has any "disagrees", as in one two-sided 3-sigma test, 0.0027."""
 
 
 def holm(p_values: Sequence[float], level: float = FAMILY_LEVEL) -> list[bool]:
-    """Which of a family's hypotheses are rejected (list of bool), by Holm's step-down procedure.
+    """Return the rejected hypotheses of a family, as a list of bool, by Holm's step-down procedure.
 
     The smallest of m probabilities is compared with level / m, the next with level / (m-1) ... until one is
     above. The chance of any wrong rejection is at most `level`, whatever the dependences (Holm, Scand. J.
@@ -225,12 +246,12 @@ def holm(p_values: Sequence[float], level: float = FAMILY_LEVEL) -> list[bool]:
 
 
 def family_test(claims: Sequence[Claim]) -> list[Claim]:
-    """The joint test of a figure's claims: [one claim], or [] if fewer than two of them state a value that
-    is not counted exactly, or none of these scatters: beside an allowance that is not negligible, a deviation
-    is no standard Gaussian number.
+    """Return the joint test of a figure's claims, [one claim], or [].
 
-    Holm's correction notices one deviation that is too large; this chi-square, two-sided, notices many that
-    are a little too large, and uncertainties that are too large.
+    It is [] if fewer than two claims state a value that is not counted exactly, or if no such value scatters:
+    with an allowance that is not negligible, a deviation is no standard Gaussian number. Holm's correction
+    notices one deviation that is too large; this chi-square, two-sided, notices many that are a little too
+    large, and uncertainties that are too large.
     """
     tested = [claim for claim in claims if claim.form == "value" and claim.kind == "test"]
     if sum(claim.measured.error != 0.0 for claim in tested) < 2:
@@ -246,7 +267,7 @@ def family_test(claims: Sequence[Claim]) -> list[Claim]:
 
 
 def judge(claims: Sequence[Claim]) -> list[str]:
-    """Verdicts of one figure's claims, in their order.
+    """Return verdicts of one figure's claims, in their order.
 
     A deviation is significant by Holm's correction for the family of all tests and reproductions with finite
     numbers; identities do not depend on chance, and the joint test stands for all: they are judged by 3 sigma
@@ -266,7 +287,7 @@ def judge(claims: Sequence[Claim]) -> list[str]:
 
 
 def _verdict(claim: Claim, is_significant: bool) -> str:
-    """The verdict of one claim, whose deviation is significant or not."""
+    """Return the verdict of one claim, whose deviation is significant or not."""
     if claim.no_verdict:
         return "no verdict"
     if not claim.is_finite:
@@ -280,8 +301,11 @@ def _verdict(claim: Claim, is_significant: bool) -> str:
 
 
 def reason(claim: Claim, verdict: str) -> str:
-    """Why a verdict is none, or inconclusive, with the multiple of the measurement that would decide it; or
-    why the source is in error. Empty for others."""
+    """Return the reason of a verdict that is inconclusive or missing, or of a source's error.
+
+    An inconclusive one has the multiple of the measurement that would decide it. The reason is empty for
+    other verdicts.
+    """
     if verdict == "no verdict":
         return claim.no_verdict
     if verdict == "source in error":
@@ -302,9 +326,11 @@ def reason(claim: Claim, verdict: str) -> str:
 
 
 def sufficient(claim: Claim) -> float:
-    """The multiple of the measurement that would just make a claim conclusive, since its uncertainty falls as
-    the inverse root of the length: below 1 where less would do, infinite where none would. NaN without
-    numbers, and for a measurement without uncertainty."""
+    """Compute the multiple of the measurement that would just make a claim conclusive.
+
+    The uncertainty falls as the inverse root of the length. The multiple is below 1 where less would do,
+    infinite where no length would. NaN without numbers, and for a measurement without uncertainty.
+    """
     error = claim.measured.error
     if not claim.is_finite or not error > 0.0:
         return math.nan

@@ -44,17 +44,22 @@ COLUMNS = (
     "why",
     "fails_if",
 )
-"""Columns of a claims table, in this order. allowance: the uncertainty of the expected value; lowest,
-highest: the stated bounds, NaN for a value; scattered: 1 where `deviation_sigma` is a standard Gaussian
-number if the claim is true (`Claim.is_scattered`), else 0."""
+"""Columns of a claims table, in this order.
+
+allowance : uncertainty of the expected value.
+lowest, highest : stated bounds, NaN for a value.
+scattered : 1 where `deviation_sigma` is a standard Gaussian number if the claim is true
+    (`Claim.is_scattered`), else 0.
+"""
 PLURALS = {"test": "tests", "identity": "identities", "reproduction": "reproductions", "family": "families"}
 COUNTED = {"agrees": "agree", "disagrees": "disagree"}
 
 
 def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
-    """Judge the claims of `figure` and write them, with their joint test, as CSV with COLUMNS, atomically.
+    """Judge the claims of `figure` and write them as CSV with COLUMNS, atomically.
 
-    Raises ValueError if two claims have the same text: their rows could not be distinguished.
+    Their joint test is written too. Raises ValueError if two claims have the same text: their rows could not
+    be distinguished.
     """
     claims = [*claims, *family_test(claims)]
     texts = [claim.claim for claim in claims]
@@ -70,7 +75,7 @@ def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
 
 
 def _row(claim: Claim, verdict: str) -> dict[str, str]:
-    """A judged claim by column."""
+    """Return a judged claim by column."""
     lowest, highest = claim.bounds or (math.nan, math.nan)
     return {
         "claim": claim.claim,
@@ -95,7 +100,9 @@ def _row(claim: Claim, verdict: str) -> dict[str, str]:
 
 
 def read(path: str | Path) -> list[dict[str, Any]]:
-    """Rows of a claims table as dictionaries by column; the numbers as floats, NaN where pandas left none.
+    """Read the rows of a claims table as dictionaries by column, with numbers as floats.
+
+    A number that pandas left out is NaN.
 
     Raises ValueError, naming the file, if its columns are not COLUMNS or a number or verdict is invalid.
     """
@@ -116,15 +123,17 @@ def read(path: str | Path) -> list[dict[str, Any]]:
 
 
 def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
-    """All claims of several tables as one pandas DataFrame with COLUMNS, in the order of `paths`."""
+    """Join the claims of several tables to one pandas DataFrame with COLUMNS, in the order of `paths`."""
     import pandas
 
     return pandas.DataFrame([row for path in paths for row in read(path)], columns=list(COLUMNS))
 
 
 def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
-    """How many claims of each kind have each verdict: {kind: {verdict: number}}, in the order of CLAIM_KINDS
-    and VERDICTS, without those that do not occur."""
+    """Count the claims of each kind by verdict: {kind: {verdict: number}}.
+
+    Kinds and verdicts are in the order of CLAIM_KINDS and VERDICTS; absent ones are left out.
+    """
     pairs = [(row["kind"], row["verdict"]) for row in rows]
     return {
         kind: {verdict: pairs.count((kind, verdict)) for verdict in VERDICTS if (kind, verdict) in pairs}
@@ -134,8 +143,11 @@ def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
 
 
 def summary(path: str | Path) -> str:
-    """A summary of a claims table: the number of claims, a line for each kind, "tests: 205 agree, 3
-    disagree", and a line for each claim that disagrees. Raises ValueError as `read` does."""
+    """Summarise a claims table in lines.
+
+    They state the number of claims, a line for each kind, "tests: 205 agree, 3 disagree", and a line for each
+    claim that disagrees. Raises ValueError as `read` does.
+    """
     rows = read(path)
     lines = [f"{len(rows)} claims"]
     for kind, verdicts in counts(rows).items():
@@ -158,10 +170,10 @@ NOT_MEASURED = "(not measured in this run)"
 
 
 def filled(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASURED) -> str:
-    """The caption with the measured value of a claim in each place, as 0.930(16), from rows of its figure's
-    claims table, or `absent` where there is no such claim.
+    """Fill in the measured values of claims, as 0.930(16), at the places of a caption.
 
-    Raises ValueError if a place names several claims.
+    The values are from rows of its figure's claims table, or `absent` without such a claim. Raises ValueError
+    if a place names several claims.
     """
     known = list(rows)
 
@@ -178,7 +190,7 @@ def filled(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASU
 
 
 def place_fault(caption: str) -> str:
-    """The fault of the places of a caption; "" if there is none."""
+    """Return the fault of the places of a caption; "" without a fault."""
     if any(not place.strip() for place in _PLACE.findall(caption)):
         return "{{ }} must hold the beginning of a claim"
     if "{{" in _PLACE.sub("", caption):
@@ -187,12 +199,15 @@ def place_fault(caption: str) -> str:
 
 
 def _number(row: dict[str, Any], name: str) -> float:
-    """A column of a table as a number; pandas leaves nothing where there is none."""
+    """Return a column of a table as a number; NaN for an empty entry of pandas."""
     return math.nan if row[name] == "" else float(row[name])
 
 
 def concise(value: float, error: float) -> str:
-    """A number with its uncertainty in units of the last digit, two digits of it if they are below 20."""
+    """Format a number with its uncertainty in units of the last digit.
+
+    The uncertainty has two digits if they are below 20.
+    """
     if not (error > 0.0 and math.isfinite(error)):
         return f"{value:.5g}"
     digits = 1 - math.floor(math.log10(error))
@@ -204,7 +219,7 @@ def concise(value: float, error: float) -> str:
 
 
 def literal_copies(caption: str, rows: Iterable[dict[str, Any]]) -> list[str]:
-    """Numbers that a caption states itself although they are measured, "1.34: claim".
+    """Return numbers that a caption states itself although they are measured, "1.34: claim".
 
     A number with a decimal point that is the measured value of a claim, but not its expected one, both
     rounded to as many digits. By chance a few are found that have another origin.

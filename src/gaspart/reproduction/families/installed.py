@@ -29,7 +29,7 @@ _PARTS = ("measure", "claims", "figure")
 
 @cache
 def _entry_points() -> dict[str, list[EntryPoint]]:
-    """The entry points of each kind, of which there should be one."""
+    """Return the entry points of each kind, of which there should be one."""
     found: dict[str, list[EntryPoint]] = {}
     for entry_point in entry_points_of(GROUP):
         others = found.setdefault(entry_point.name, [])
@@ -39,18 +39,24 @@ def _entry_points() -> dict[str, list[EntryPoint]]:
 
 
 def kinds() -> list[str]:
-    """The kinds of installed packages, in alphabetical order; no package is imported."""
+    """Return the kinds of installed packages, in alphabetical order; no package is imported."""
     return sorted(_entry_points())
 
 
 def family(kind: str) -> str:
-    """The family of a kind: the import name of its package. Raises SceneError if several bring it."""
+    """Return the family of a kind, the import name of its package.
+
+    Raises SceneError if several packages bring it.
+    """
     return _entry_point(kind).value
 
 
 def package(kind: str) -> ModuleType:
-    """The package of a kind. Raises SceneError, with the installed package, its entry point and the reason,
-    for one that cannot be imported or does not have the form of a family."""
+    """Return the package of a kind.
+
+    Raises SceneError, with the installed package, its entry point and the reason, for a package that cannot
+    be imported or does not have the form of a family.
+    """
     with blamed(kind):
         found = import_module(family(kind))
         _check(found, kind)
@@ -64,16 +70,16 @@ def source(kind: str) -> str:
 
 
 def files(family: str) -> list[Path]:
-    """The Python files of the whole package that a family belongs to, in alphabetical order."""
+    """Return the Python files of the whole package that a family belongs to, in alphabetical order."""
     spec = find_spec(family.partition(".")[0])
     folders = (spec.submodule_search_locations if spec else None) or ()
     return sorted(path for folder in folders for path in Path(folder).rglob("*.py"))
 
 
 def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
-    """Apply the function `validate` of a kind's package, if it has one, to a figure of a config.
+    """Apply the function `validate` of a kind's package, if it exists, to a figure of a config.
 
-    Raises SceneError: that of the function, or one which blames the package.
+    Raises the SceneError of the function, or one which blames the package.
     """
     rules = getattr(package(settings["kind"]), "validate", None)
     if rules is not None:
@@ -82,7 +88,10 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
 
 
 def caption(settings: Mapping[str, Any]) -> str:
-    """The caption of a figure, as the package of its kind makes it from the settings. Raises SceneError."""
+    """Return the caption of a figure, made by the package of its kind from the settings.
+
+    Raises SceneError.
+    """
     found = package(settings["kind"])
     with blamed(settings["kind"]):
         text = found.caption(settings)
@@ -93,9 +102,9 @@ def caption(settings: Mapping[str, Any]) -> str:
 
 @contextmanager
 def blamed(kind: str, where: str = "") -> Iterator[None]:
-    """Whatever a package raises within this context becomes a SceneError of one line that names it.
+    """Convert any error of a package within this context to a SceneError that names it in one line.
 
-    where: the place of the figure in the config, unless the caller adds it.
+    `where` is the position of the figure in the config, unless the caller adds it.
     """
     try:
         yield
@@ -117,7 +126,10 @@ def _entry_point(kind: str) -> EntryPoint:
 
 
 def _check(found: ModuleType, kind: str) -> None:
-    """Raise an error with the reason unless a package has the form of a family with a kind."""
+    """Raise an error with the reason unless a package has the form of a family.
+
+    The family has the kind.
+    """
     from jsonschema import Draft202012Validator, SchemaError
 
     from gaspart.keys import record

@@ -34,43 +34,47 @@ _OWN = "own"
 
 @cache
 def _packages() -> dict[str, ModuleType]:
-    """The package of each family, in alphabetical order."""
+    """Return the package of each family, in alphabetical order."""
     names = sorted(path.parent.name for path in Path(__file__).parent.glob("*/figure.py"))
     return {name: import_module(f"gaspart.reproduction.families.{name}") for name in names}
 
 
 def titles() -> dict[str, str]:
-    """The title of each family, in alphabetical order of the families."""
+    """Return the title of each family, in alphabetical order of the families."""
     return {name: package.TITLE for name, package in _packages().items()}
 
 
 def title(figure: str, entry: Mapping[str, Any]) -> str:
-    """The title of the family of a figure of a config. entry: that of the config. Raises SceneError."""
+    """Return the title of the family of a figure of a config, given its entry.
+
+    Raises SceneError.
+    """
     family, _ = functions(figure, entry)
     return titles()[family] if family in _packages() else str(installed.package(entry["kind"]).TITLE)
 
 
 def chapter(family: str) -> str:
-    """The chapter of the report in which a family stands."""
+    """Return the chapter of the report in which a family stands."""
     return str(_packages().get(family, _packages()[_OWN]).CHAPTER)
 
 
 @cache
 def families() -> dict[str, str]:
-    """The family of each figure."""
+    """Return the family of each figure."""
     return {figure: name for name, package in _packages().items() for figure in package.FIGURES}
 
 
 @cache
 def _kinds() -> dict[str, str]:
-    """The family of each kind of figures."""
+    """Return the family of each kind of figures."""
     return {kind: name for name, package in _packages().items() for kind in getattr(package, "KINDS", {})}
 
 
 def functions(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
-    """The family of a figure of a config and the name of its functions there. entry: that of the config.
+    """Return the family of a figure of a config and the name of its functions there.
 
-    The family of another installed package has the name by which it is imported. Raises SceneError.
+    `entry` is the entry of the config. The family of another installed package has the name by which it is
+    imported. Raises SceneError.
     """
     kind = entry.get("kind")
     if kind is None:
@@ -79,31 +83,39 @@ def functions(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
 
 
 def module(family: str, part: str) -> str:
-    """The name of a module of a family: part is `measure`, `claims` or `figure`."""
+    """Return the name of a module of a family; part is `measure`, `claims` or `figure`."""
     return f"{_packages()[family].__name__ if family in _packages() else family}.{part}"
 
 
 def files(family: str) -> tuple[Path, ...]:
-    """The files of the other installed package that brings a family; none of a family of this one."""
+    """Return the files of the other installed package that brings a family.
+
+    A family of this package has none.
+    """
     return () if family in _packages() else tuple(installed.files(family))
 
 
 def package_of(entry: Mapping[str, Any]) -> str:
-    """Name and version of the other installed package that brings the kind of a figure; "" for this one."""
+    """Return name and version of the other installed package that brings a kind; "" for this one."""
     kind = entry.get("kind")
     return "" if kind is None or kind in _kinds() else installed.source(kind)
 
 
 def caption(settings: Mapping[str, Any]) -> str:
-    """The caption of a figure to which a config gives a name, from its settings there. Raises SceneError."""
+    """Return the caption of a figure to which a config gives a name, from its settings.
+
+    Raises SceneError.
+    """
     if settings["kind"] in _kinds():
         return str(_packages()[_kinds()[settings["kind"]]].caption(settings))
     return installed.caption(settings)
 
 
 def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
-    """Apply the rules of a figure to which a config gives a name, beyond the kinds of its settings. points:
-    those that it shows. Raises SceneError."""
+    """Apply the rules of a figure to which a config gives a name, beyond the kinds of its settings.
+
+    `points` are the points that it shows. Raises SceneError.
+    """
     if settings["kind"] in _kinds():
         _packages()[_kinds()[settings["kind"]]].validate(figure, settings, points)
     else:
@@ -111,46 +123,51 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
 
 
 def of_claims() -> frozenset[str]:
-    """The figures that are made of the claims of all others."""
+    """Return the figures that are made of the claims of all others."""
     stated = (package for package in _packages().values() if getattr(package, "OF_CLAIMS", False))
     return frozenset(figure for package in stated for figure in package.FIGURES)
 
 
 def series() -> dict[str, tuple[int, float]]:
-    """The dimension and the largest packing fraction to choose of each figure of an equation of state."""
+    """Return the dimension and the largest packing fraction for each figure of an equation of state."""
     parts = (getattr(package, "SERIES", {}) for package in _packages().values())
     return {figure: stated for part in parts for figure, stated in part.items()}
 
 
 def costs() -> list[str]:
-    """The figures of the cost of an accuracy."""
+    """Return the figures of the cost of an accuracy."""
     return [figure for package in _packages().values() for figure in getattr(package, "COSTS", [])]
 
 
 def settings() -> dict[str, dict[str, Kind]]:
-    """The settings of each figure's measurement."""
+    """Return the settings of each figure's measurement."""
     return {figure: keys for package in _packages().values() for figure, keys in package.FIGURES.items()}
 
 
 def kinds() -> dict[str, dict[str, Kind]]:
-    """The settings of each kind of figures of this package to which a config gives a name."""
+    """Return the settings of each kind of figures to which a config gives a name.
+
+    The kinds are of this package.
+    """
     parts = (getattr(package, "KINDS", {}) for package in _packages().values())
     return {kind: keys for part in parts for kind, keys in part.items()}
 
 
 def known_kinds() -> list[str]:
-    """The kinds of this package, and after them those of other installed ones, which are not imported."""
+    """Return the kinds of this package, then those in other installed ones, without import."""
     return [*_kinds(), *(kind for kind in installed.kinds() if kind not in _kinds())]
 
 
 def settings_of_kind(kind: str) -> dict[str, Kind]:
-    """The settings of a kind of figures, of this or another installed package. Raises SceneError."""
+    """Return the settings of a kind of figures, of this or another package; raise SceneError."""
     settings: dict[str, Kind] = kinds()[kind] if kind in _kinds() else installed.package(kind).KINDS[kind]
     return settings
 
 
 def stated_claims(entry: Mapping[str, Any]) -> list[Any]:
-    """[the claims that the config states], which the function of the claims of a figure takes beside its
-    numbers if its kind has a setting for them; [] of others. entry: that of the config."""
+    """Return [the claims of the config] if the kind of a figure has a setting for them, else [].
+
+    The function of the claims of the figure takes them in addition to its numbers.
+    """
     takes = "kind" in entry and "claims" in settings_of_kind(entry["kind"])
     return [entry.get("claims", [])] if takes else []

@@ -1,9 +1,11 @@
-"""Errors of time stepping: each setting compared with the exact, event-driven run from the same state.
+"""Errors of time stepping: each setting compared with an exact run from the same state.
+
+The exact run is event-driven.
 
 Both engines start from the same equilibrium snapshot and run for the same short time, about one collision per
 particle. Where a step finds every contact, the two runs are the same except for rounding; so their difference
-is due to missed, spurious or wrong contacts only, and its noise is that of those few contacts instead of that
-of all. (In long runs, errors of 0.01 % are hidden by the noise of 1e8 collisions.)
+is due to missed, spurious or wrong contacts only, and its noise is the noise of these few contacts instead of
+the noise of all. (In long runs, errors of 0.01 % are hidden by the noise of 1e8 collisions.)
 
 Planning reads this module, so slow imports are made inside functions.
 """
@@ -40,12 +42,12 @@ _LISTED_STEPS = 64  # a longer part adds time but little information
 
 
 def engines(point: Point) -> list[Engine]:
-    """The time-stepped engines that are compared with the exact one."""
+    """Return the time-stepped engines that are compared with the exact one."""
     return point.engines
 
 
 def arguments(point: Point) -> dict:
-    """The arguments of `compare`. Raises SceneError."""
+    """Return the arguments of `compare`; raise SceneError."""
     if point.engine.name != "step":
         raise point.refused("engine", "must be step with job: compare")
     return {"scene": point.scene, "engines": point.engines, "seed": point.seed(), **intervals(point)}
@@ -59,17 +61,19 @@ def compare(
     interval: float,
     samples: int,
 ) -> PointData:
-    """Run each of the time-stepped `engines` and the event-driven one from `samples` states of the same gas,
-    an `interval` of time apart, each for that time (rounded to whole steps, at least `LEAST_STEPS`).
+    """Run the time-stepped `engines` and the event-driven one from equal states of a gas.
 
-    equilibration, interval: in the scene's time. Returns over ``setting`` (the engines) and ``snapshot``,
-    each for both, the exact one with the prefix ``exact_``: ``collisions``; ``virial``, the sum of |dr.dp|;
-    ``memory``, sum v(0).v(t) / sum v(0)^2; ``z``, of the exact run; of the time-stepped one ``energy_drift``,
-    relative; ``deepest_overlap`` as a part of the contact distance; ``pair_tests``. In the first part of a
-    run, against the list of exact events: particles that a step should have changed and did not, ``missed``
-    (or late), or the reverse, ``made_up``; and ``listed``, the entries of that list; NaN where it takes too
-    many steps. Over ``setting``: ``time_step``, ``steps``, and ``refused``, 1 if the engine refuses that step
-    (all is NaN).
+    There are `samples` states, an `interval` of time apart; each run takes that time (rounded to whole steps,
+    at least `LEAST_STEPS`).
+
+    `equilibration` and `interval` are in the scene's time. Returns over ``setting`` (the engines) and
+    ``snapshot``, each for both, the exact one with the prefix ``exact_``: ``collisions``; ``virial``, the sum
+    of |dr.dp|; ``memory``, sum v(0).v(t) / sum v(0)^2; ``z``, of the exact run; of the time-stepped one
+    ``energy_drift``, relative; ``deepest_overlap`` as a part of the contact distance; ``pair_tests``. In the
+    first part of a run, against the list of exact events: particles that a step should have changed and did
+    not, ``missed`` (or late), or the reverse, ``made_up``; and ``listed``, the entries of that list; NaN
+    where it takes too many steps. Over ``setting``: ``time_step``, ``steps``, and ``refused``, 1 if the
+    engine refuses that step (all is NaN).
     """
     import numpy as np
 
@@ -113,7 +117,7 @@ def compare(
 
 
 def _run(scene: Scene, engine: Engine, state: State, duration: float) -> dict:
-    """The results of one engine after a time."""
+    """Return the results of one engine after a time."""
     from gaspart.state.tally import compressibility_factor
 
     dynamics = engine.start(scene, state)
@@ -133,7 +137,7 @@ def _run(scene: Scene, engine: Engine, state: State, duration: float) -> dict:
 
 
 def _pair(scene: Scene, engine: TimeStepped, state: State, steps: int, exact: dict) -> dict:
-    """One engine compared with the exact run; NaN throughout if it refuses its step."""
+    """Compare one engine with the exact run; NaN throughout if it refuses its step."""
     references = {f"exact_{name}": exact[name] for name in ("collisions", "virial", "memory", "z")}
     try:
         stepped = _run(scene, engine, state, (steps + SLACK) * engine.time_step)
@@ -149,9 +153,12 @@ def _pair(scene: Scene, engine: TimeStepped, state: State, steps: int, exact: di
 
 
 def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int, collisions: float) -> dict:
-    """Particles whose velocity a step leaves unchanged although the exact list has a contact in it (missed),
-    or changes although it has none (made up): the first time for each particle, as later ones may follow from
-    it."""
+    """Count particles with missed and with made up contacts.
+
+    A step leaves the velocity of the former unchanged although the exact list has a contact in it, and
+    changes the velocity of the latter although it has none. The first time counts for each particle, as later
+    ones may follow from it.
+    """
     import numpy as np
 
     from gaspart.engines.event_log import EventLog

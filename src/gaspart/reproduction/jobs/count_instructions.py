@@ -32,13 +32,16 @@ FEATURES = {
     "ramp", "record", "reservoirs", "row", "rules", "shear", "sliding", "sticky", "stress",
     "support", "velocity", "vibrations", "viscous", "walls", "warm",
 }  # fmt: skip
-"""Arguments of the kernels that are None for a plain gas."""
+"""Arguments of the kernels that have the value None for a plain gas."""
 COUNTED_ENGINES = ("event", "step")
 _PACKAGE = Path(__file__).parents[2]
 
 
 class Strip(ast.NodeTransformer):
-    """Resolves every test of whether a feature is None as if it is, and removes what follows a return."""
+    """Transformer that removes the branches of features that are None.
+
+    Every test of such a feature is resolved, and code after a return is removed.
+    """
 
     def _known(self, test: ast.expr) -> bool | None:
         match test:
@@ -70,25 +73,27 @@ class Strip(ast.NodeTransformer):
 
 
 def stripped(source: str) -> str:
-    """A module's source without the branches of absent features."""
+    """Return a module's source without the branches of absent features."""
     return ast.unparse(ast.fix_missing_locations(Strip().visit(ast.parse(source))))
 
 
 def engines(point: Point) -> list[Engine]:
-    """The event-driven engine; the other one's kernel is compiled within the job."""
+    """Return the event-driven engine; the other one's kernel is compiled within the job."""
     return [point.engine]
 
 
 def arguments(point: Point) -> dict:
-    """The argument of `count_instructions`. Raises SceneError."""
+    """Return the argument of `count_instructions`; raise SceneError."""
     return {"scene": point.scene}
 
 
 def count_instructions(scene: Scene) -> PointData:
-    """Instructions of each engine's main kernel for a scene, which should be a plain gas.
+    """Return the instructions of each engine's main kernel for a scene.
 
-    Returns over engine: `instructions`, and `stripped`, those without the branches of absent features. Both
-    are compiled in separate processes with separate caches.
+    The scene should be a plain gas.
+
+    Returns over engine: `instructions`, and `stripped`, the instructions without the branches of absent
+    features. Both are compiled in separate processes with separate caches.
     """
     counts = []
     with tempfile.TemporaryDirectory() as folder:

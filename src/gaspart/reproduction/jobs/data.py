@@ -19,9 +19,11 @@ _NONE: Mapping = MappingProxyType({})
 class PointData(NamedTuple):
     """Variables, coordinates and attributes, as xarray.Dataset takes them: `xr.Dataset(*data)`.
 
-    variables, coordinates: by name, their dimensions (one name, or several), values (numbers or words), and
-    attributes if there are any. Jobs neither make nor write data sets of xarray, which takes a quarter of a
-    second to load: most of them are short timings, beside which nothing may run.
+    variables, coordinates : by name, their dimensions (one name, or several), values (numbers or words), and
+        attributes if there are any.
+
+    Jobs neither make nor write data sets of xarray, which takes a quarter of a second to load: most of them
+    are short timings, at the same time as which nothing may run.
     """
 
     variables: Mapping[str, tuple]
@@ -66,7 +68,10 @@ SCAN_TIME_STEPS = listed(
 
 
 def intervals(point: Point) -> dict:
-    """The arguments of a job that divides its run after the equilibration into `samples` intervals."""
+    """Return the arguments of a job that divides its run into `samples` intervals.
+
+    The run follows the equilibration.
+    """
     times = point.schedule
     return {
         "equilibration": times.equilibration,

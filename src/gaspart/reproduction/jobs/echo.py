@@ -1,9 +1,10 @@
-"""Loschmidt's echo: run a gas, reverse all velocities, run it back, and measure the distance from its initial
-state.
+"""Loschmidt's echo: a gas is run, all velocities are reversed, and it is run back.
+
+The distance from its initial state is measured.
 
 Exact mechanics returns. Rounding errors grow by exp(lambda) with every collision of a particle, in both
-directions, so the echo's distance shows how long the memory of the initial state lasts, and its growth
-is the largest Lyapunov exponent, which the linearised dynamics of the same gas give without rounding.
+directions, so the echo's distance shows how long the memory of the initial state lasts, and its growth is the
+largest Lyapunov exponent, which the linearised dynamics of the same gas give without rounding.
 
 Planning reads this module, so slow imports are made inside functions.
 """
@@ -39,12 +40,12 @@ TANGENT_COLLISIONS = 100.0
 
 
 def engines(point: Point) -> list[Engine]:
-    """The engine that runs forward and back."""
+    """Return the engine that runs forward and back."""
     return [point.engine]
 
 
 def arguments(point: Point) -> dict:
-    """The arguments of `echo`. Raises SceneError."""
+    """Return the arguments of `echo`; raise SceneError."""
     return {"scene": point.scene, "engine": point.engine, "seeds": point.seeds, **intervals(point)}
 
 
@@ -56,14 +57,14 @@ def echo(
     interval: float,
     samples: int,
 ) -> PointData:
-    """Echoes from equilibrium states of a scene, one for each seed.
+    """Measure echoes from equilibrium states of a scene, one for each seed.
 
     Returns over ``seed`` and ``sample``, of runs of 1 ... `samples` intervals: ``collisions`` per particle
-    before the reversal, twice the number of contacts over that of particles; ``echo``, the root-mean-square
-    distance from the initial state after the return, in diameters; ``divergence``, that of two event-driven
-    runs which start `DISPLACEMENT` apart, at the reversal. Over ``seed``: ``exponent``, the largest Lyapunov
-    exponent per collision of a particle, of the event-driven engine; NaN of others. Attributes: the gas
-    (`side` in diameters) and engine.
+    before the reversal, twice the number of contacts over the number of particles; ``echo``, the
+    root-mean-square distance from the initial state after the return, in diameters; ``divergence``, the
+    distance of two event-driven runs which start `DISPLACEMENT` apart, at the reversal. Over ``seed``:
+    ``exponent``, the largest Lyapunov exponent per collision of a particle, of the event-driven engine; NaN
+    of others. Attributes: the gas (`side` in diameters) and engine.
     """
     import numpy as np
 
@@ -111,7 +112,10 @@ def echo(
 
 
 def _exponent(equilibrium: Simulation, interval: float) -> float:
-    """The Lyapunov exponent of the run, continued by intervals of time until `TANGENT_COLLISIONS`."""
+    """Measure the Lyapunov exponent of the run, continued until `TANGENT_COLLISIONS`.
+
+    It is continued by intervals of time.
+    """
     from gaspart.analysis.lyapunov import lyapunov_exponent  # loads xarray, which other jobs do not need
 
     equilibrium.reset_tally()
@@ -124,7 +128,7 @@ def _exponent(equilibrium: Simulation, interval: float) -> float:
 
 
 def _displaced(state: State, seed: tuple[int, ...]) -> State:
-    """All particles displaced at random, by so little that only touching ones can overlap."""
+    """Return all particles displaced at random, by so little that only touching ones can overlap."""
     import numpy as np
 
     away = np.random.default_rng(seed).standard_normal(state.positions.shape)
@@ -134,7 +138,7 @@ def _displaced(state: State, seed: tuple[int, ...]) -> State:
 
 
 def _distance(one: State, other: State) -> float:
-    """Root-mean-square distance of all particles between walls, in diameters."""
+    """Compute the root-mean-square distance of all particles between walls, in diameters."""
     import numpy as np
 
     apart = ((one.positions - other.positions) ** 2).sum(axis=1)

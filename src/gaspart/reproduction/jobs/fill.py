@@ -24,27 +24,28 @@ CHUNK = 1 << 16
 
 
 def engines(point: Point) -> list[Engine]:
-    """None: the particles do not move."""
+    """Return no engine: the particles do not move."""
     return []
 
 
 def arguments(point: Point) -> dict:
-    """The arguments of `fill`. Raises SceneError."""
+    """Return the arguments of `fill`; raise SceneError."""
     if "attempts" not in point.settings:
         raise point.refused("attempts", "is required with job: fill")
     return {"scene": point.scene, "attempts": point.settings["attempts"], "seeds": point.seeds}
 
 
 def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData:
-    """Offer the container ``attempts`` random positions for each particle of the scene's one species; once
-    per seed.
+    """Offer the container ``attempts`` random positions for each particle, once per seed.
 
-    The scene's count is the largest number of particles, which may exceed saturation: insertion
-    stops when all are placed or the attempts (``attempts`` times the count) are used up.
+    The scene has one species.
+
+    The scene's count is the largest number of particles, which may exceed saturation: insertion stops when
+    all are placed or the attempts (``attempts`` times the count) are used up.
 
     Returns a dataset: ``failures`` (replica, particle), failed attempts before each particle was placed, -1
-    for one never placed; ``placed`` and ``attempts`` (replica,).
-    Attributes: packing_fraction_per_particle, side, radius.
+    for one never placed; ``placed`` and ``attempts`` (replica,). Attributes: packing_fraction_per_particle,
+    side, radius.
     """
     import numpy as np
 
@@ -68,14 +69,16 @@ def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData
 
 
 def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int]:
-    """Failures before each particle (N,), -1 for one never placed; and the number of attempts."""
+    """Compute failures before each particle (N,), -1 for one never placed; and the number of attempts."""
     before, used, _ = insert(scene, attempts, seed)
     return before, used
 
 
 def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int, np.ndarray]:
-    """Failures before each particle (N,), -1 for one never placed; the number of attempts; and the positions
-    (M, d) of those placed."""
+    """Insert particles, and count failures (N,) before each one, -1 if it was never placed.
+
+    Returned are also the number of attempts and the positions (M, d) of the placed particles.
+    """
     import numpy as np
 
     from gaspart.kernels.insertion import Task, place

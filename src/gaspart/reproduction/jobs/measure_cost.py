@@ -1,9 +1,9 @@
-"""The cost of a run: work that is counted, the same on every machine, and time that is measured.
+"""Cost of a run: work that is counted, the same on every machine, and time that is measured.
 
-Every timing starts from one and the same state, so the repeated timings of an engine are of exactly the
-same work, and differ by what disturbs the clock alone; and engines that differ in their partition are timed
-in turn, in alternating order, so that a machine that slows down favours none of them. What uses several cores
-is timed by the wall's clock: processor time does not tell waiting from work.
+Every timing starts from one and the same state, so the repeated timings of an engine are of exactly the same
+work, and differ by disturbances of the clock alone; and engines that differ in their partition are timed
+alternately, in alternating order, so that a machine that slows down favours none of them. Runs on several
+cores are timed in wall-clock time: CPU time does not distinguish waiting from work.
 
 Planning reads this module, so slow imports are made inside functions.
 """
@@ -61,19 +61,21 @@ KEYS: dict[str, Kind] = {
     ),
 }
 EXTRAS = ("record_events", "stress", "copies")
-"""Keys of what is done besides: to write down all events, and forget them; to tally the stress; to do the
-same on other cores at once."""
+"""Keys of additional work.
+
+It is to write down all events, and forget them; to tally the stress; to do the same on other cores at once.
+"""
 _NONE: Mapping[str, Any] = MappingProxyType({})
 COUNTED = ("steps", "collisions", "wall_hits", "pair_tests", "box_visits", "crossings")
 
 
 def engines(point: Point) -> list[Engine]:
-    """The engines that are timed, but for those of the rival."""
+    """Return the engines that are timed, without those for the rival."""
     return point.engines
 
 
 def arguments(point: Point) -> dict:
-    """The arguments of `measure_cost`. Raises SceneError."""
+    """Return the arguments of `measure_cost`; raise SceneError."""
     extras = {key: point.settings[key] for key in EXTRAS if point.settings.get(key)}
     if "record_events" in extras and not point.engine.records_events:
         raise point.refused("record_events", "has a meaning with job: measure_cost and engine: event only")
@@ -94,8 +96,10 @@ def arguments(point: Point) -> dict:
 
 
 def _rival(point: Point) -> dict | None:
-    """The scene and engines that are timed in turn with those of a point: the point's without the settings
-    that `without` lists; None if there are none."""
+    """Return the scene and engines that are timed alternately with a point's, or None.
+
+    They are the point's without the settings that `without` lists.
+    """
     if "without" not in point.settings:
         return None
     settings = {key: value for key, value in point.settings.items() if key not in point.settings["without"]}
@@ -104,7 +108,7 @@ def _rival(point: Point) -> dict | None:
 
 
 class _Run(NamedTuple):
-    """What is timed: a run of an engine with some of `EXTRAS`, which starts from a state of a scene."""
+    """Timed run of an engine with some of `EXTRAS`, from a state of a scene."""
 
     scene: Scene
     state: State
@@ -113,7 +117,7 @@ class _Run(NamedTuple):
 
     @property
     def copies(self) -> int:
-        """How many runs advance at once."""
+        """Number of runs that advance at once."""
         return self.extras.get("copies", 1)
 
     @property
@@ -132,18 +136,20 @@ def measure_cost(
     extras: Mapping[str, Any] = _NONE,
     rival: dict[str, Any] | None = None,
 ) -> PointData:
-    """Time `samples` times, with each of the engines, the same interval of simulated time of the same gas.
+    """Time an interval of one gas `samples` times, with each of the engines.
 
-    equilibration, interval: in the scene's time; extras: of `EXTRAS`, with their values; rival: another
-    `scene` and `engines`, timed in turn with these and without extras: the last partitions. Engines without a
-    step of their own take that of the scene.
+    equilibration, interval : in the scene's time.
+    extras : some of `EXTRAS`, with their values.
+    rival : another `scene` and `engines`, timed alternately with these and without extras: the last
+        partitions. Engines without a step of their own take the scene's.
+
     Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``: ``seconds`` and
-    ``wall_seconds`` (partition, repeat), processor time of all threads and time on the wall of the advance
-    alone (filling the container, setting up and compiling are left out); over ``partition``: ``cores`` used,
+    ``wall_seconds`` (partition, repeat), CPU time of all threads and wall-clock time of the advance alone
+    (filling the container, setting up and compiling are left out); over ``partition``: ``cores`` used,
     ``boxes`` in all, ``boxes_per_side`` (of the first axis; both 0 if the engine chooses itself),
     ``duration`` (scene's time), the counts of the tally, and ``bits``, a digest of the final state and of the
     sums over collisions. Attributes: count, dimension, radius, side (first axis), packing_fraction, engine,
-    search (event-driven), model (DSMC) or time_step, extras, and cores, those that kernels may use here.
+    search (event-driven), model (DSMC) or time_step, extras, and cores, the number that kernels may use here.
     Where a run would need more of them, all run once, for their counts and bits, and all times are NaN.
 
     Raises SceneError, and SimulationError if the counted work or the bits of a repeat, or of a copy, differ
@@ -179,8 +185,10 @@ def measure_cost(
 
 
 def _in_turn(runs: Sequence[_Run], interval: float, repeats: int) -> tuple[np.ndarray, list[dict]]:
-    """Processor time and time on the wall (2, runs, repeats), and what was counted in each run. Raises
-    SimulationError where that is not the same in all repeats."""
+    """Measure CPU time and wall-clock time (2, runs, repeats), and the counts of each run.
+
+    Raises SimulationError if the counts differ between repeats.
+    """
     import numpy as np
 
     times = np.empty((2, len(runs), repeats))
@@ -197,7 +205,7 @@ def _in_turn(runs: Sequence[_Run], interval: float, repeats: int) -> tuple[np.nd
 
 
 def _attributes(scene: Scene, engine: Engine) -> dict:
-    """The attributes of a dataset: the gas, and the first engine."""
+    """Return the attributes of a dataset: the gas, and the first engine."""
     settings = engine_to_dict(engine)
     return {
         "count": scene.count,
@@ -212,7 +220,10 @@ def _attributes(scene: Scene, engine: Engine) -> dict:
 
 
 def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: float) -> State:
-    """The state from which everything is timed. No partition or search changes a bit of it."""
+    """Return the state from which everything is timed.
+
+    No partition or search changes a bit of it.
+    """
     from gaspart.simulation import Simulation
     from gaspart.state.initial import initial_state
 
@@ -226,7 +237,7 @@ def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: f
 
 
 def _timed(run: _Run, interval: float) -> tuple[tuple[float, float], dict]:
-    """Processor time and time on the wall of one interval, in s, and what was counted in it."""
+    """Measure CPU time and wall-clock time of one interval, in s, and its counts."""
     from gaspart.engines.event_log import EventLog
     from gaspart.state.optional_tallies import StressTally
 
@@ -256,7 +267,10 @@ def _timed(run: _Run, interval: float) -> tuple[tuple[float, float], dict]:
 
 
 def _counted(dynamics: Dynamics) -> dict:
-    """The counts of a tally, and a digest of the particles and of the sums over collisions."""
+    """Return the counts of a tally, and a digest of the particles and of the sums.
+
+    The sums are over collisions.
+    """
     import numpy as np
 
     tally, state = dynamics.tally, dynamics.state
@@ -268,7 +282,7 @@ def _counted(dynamics: Dynamics) -> dict:
 
 
 def _sides(engine: Engine, dimension: int) -> tuple[int, ...]:
-    """Boxes along each axis; zeros if the engine chooses them itself."""
+    """Return boxes along each axis; zeros if the engine chooses them itself."""
     settings = engine_to_dict(engine)
     if settings.get("search", "boxes") not in ("automatic", "boxes"):
         return (1,) * dimension

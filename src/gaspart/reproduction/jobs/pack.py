@@ -23,20 +23,22 @@ GROWTH = 2.0**-6
 
 
 def engines(point: Point) -> list[Engine]:
-    """None: growth has kernels that all scenes share."""
+    """Return no engine: growth has kernels that all scenes share."""
     return []
 
 
 def arguments(point: Point) -> dict:
-    """The arguments of `pack`. Raises SceneError."""
+    """Return the arguments of `pack`; raise SceneError."""
     if ("attempts" in point.settings) == (point.settings.get("arrangement") == "compressed"):
         raise point.refused("attempts", "is required with job: pack, unless the arrangement is compressed")
     return {"scene": point.scene, "attempts": point.settings.get("attempts"), "seeds": point.seeds}
 
 
 def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> PointData:
-    """Pack a scene of one species, once per seed: offer the container `attempts` random positions for each
-    particle, or, with None, let the particles grow until they jam.
+    """Pack a scene of one species, once per seed, by insertion or growth.
+
+    The container is offered `attempts` random positions for each particle, or, with None, the particles grow
+    until they jam.
 
     Returns a dataset: position (replica, particle, axis), NaN for a particle never placed; radius and
     packing_fraction (replica,); pressure (replica,), reduced, NaN for an insertion; length (axis,).

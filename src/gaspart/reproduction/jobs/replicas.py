@@ -26,8 +26,8 @@ def write_replicas(
 ) -> None:
     """Write the trajectory of each recipe; report(line) is called for each.
 
-    They lie beside `folder`, which Snakemake deletes before a rerun, until all are complete: an interrupted
-    run resumes there. overwrite: whether they replace the remainder of a run of another recipe. Raises
+    They lie next to `folder`, which Snakemake deletes before a rerun, until all are complete: an interrupted
+    run resumes there. If `overwrite`, they replace the remainder of a run of another recipe. Raises
     SceneError for a folder there in which anything else lies: only what gaspart wrote is removed.
     """
     partial = Path(f"{folder}.partial")
@@ -57,8 +57,10 @@ def _make(folder: Path) -> None:
 
 
 def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
-    """The files that runs of other recipes have left in a folder. Raises SceneError for a file that
-    gaspart did not write, and for a folder or link."""
+    """Return the files that runs of other recipes have left in a folder.
+
+    Raises SceneError for a file that gaspart did not write, and for a folder or link.
+    """
     from gaspart.trajectory.checkpoint import CHECKPOINT
     from gaspart.trajectory.opening import TRAJECTORY, UNFINISHED
 
@@ -72,5 +74,5 @@ def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
 
 
 def replica_paths(folder: Path, replicas: int) -> list[Path]:
-    """The trajectories of a folder, in the order of the seeds."""
+    """Return the trajectories of a folder, in the order of the seeds."""
     return [folder / f"replica-{replica}.nc" for replica in range(replicas)]

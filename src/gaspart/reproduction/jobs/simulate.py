@@ -10,9 +10,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaspart.keys import TEXT, Kind, choice, count, described, flag, positive
+from gaspart.keys import Kind, count, described, flag, positive
 from gaspart.reproduction.jobs.data import EQUILIBRATION_KEY
 from gaspart.reproduction.jobs.replicas import write_replicas
+from gaspart.trajectory.run_options import OPTIONS, recipe_fields
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -43,7 +44,6 @@ KEYS: dict[str, Kind] = {
         "uncertainties of transport coefficients need; a divisor of `samples`",
         default=None,
     ),
-    "displacements": flag("keep displacements in float64, for mean-squared displacements", default=False),
     "lags": count(
         "accumulate time correlations of all samples up to so many intervals apart, but at most half the "
         "length, and keep the first and the last frame only, or `frames` of them, of a sheared gas all; with "
@@ -53,46 +53,28 @@ KEYS: dict[str, Kind] = {
     "stress": flag(
         "with `lags`: correlate the stress tensor and the heat flux instead of velocities", default=False
     ),
-    "pairs": flag("count the collisions of each pair of species", default=False),
-    "impulses": described(
-        TEXT,
-        "keep impulses along an axis in so many bins, such as `z:200`, with which densities are measured",
-        default=None,
-    ),
-    "pair_impulses": described(
-        TEXT,
-        "keep impulses of pairs up to a distance in so many shells, at a share of contacts, such as "
-        "`3:300:0.5`, with which g(r) is measured",
-        default=None,
-    ),
-    "follow": count(
-        "keep only the first so many particles (single `particles` come first, then `species`); counters and "
-        "energies are those of all",
-        default=None,
-    ),
-    "keep": choice(
-        "all that frames hold of each particle; by default positions, velocities and spins",
-        *("positions", "velocities"),
-        default=None,
-    ),
+    **OPTIONS,
 }
-_NOT_WITH_UNTIL = ("lags", "frames", "stress", "pairs", "impulses", "pair_impulses", "follow", "keep")
+_NOT_WITH_UNTIL = ("lags", "frames", "stress", *(name for name in OPTIONS if name != "displacements"))
 EXAMINER = "gaspart.accuracy.reached"
 """The module that examines a run with `until`."""
 
 
 def engines(point: Point) -> list[Engine]:
-    """The engine of the trajectories."""
+    """Return the engine of the trajectories."""
     return [point.engine]
 
 
 def modules(point: Point) -> list[str]:
-    """The modules that this one imports by their names: only runs with `until` depend on the analysis."""
+    """Return the modules that this one imports by their names.
+
+    Only runs with `until` depend on the analysis.
+    """
     return [EXAMINER] if "until" in point.settings else []
 
 
 def arguments(point: Point) -> dict:
-    """The arguments of `simulate`. Raises SceneError."""
+    """Return the arguments of `simulate`; raise SceneError."""
     times, settings = point.schedule, point.settings
     given = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
     if "until" in settings:
@@ -112,15 +94,15 @@ def arguments(point: Point) -> dict:
         **given,
         "duration": times.duration,
         "sample_interval": _frame_interval(point),
-        "displacements": settings.get("displacements", False),
-        "follow": follow,
+        "displacements": False,
+        "follow": None,
         "correlations": correlations,
-        **{key: settings[key] for key in ("pairs", "impulses", "pair_impulses", "keep") if settings.get(key)},
+        **{key: settings[key] for key in OPTIONS if settings.get(key)},
     }
 
 
 def _frame_interval(point: Point) -> float:
-    """The time between two frames that are kept. Raises SceneError."""
+    """Compute the time between two frames that are kept; raise SceneError."""
     times, settings = point.schedule, point.settings
     if "frames" in settings:
         if "lags" not in settings:
@@ -131,7 +113,10 @@ def _frame_interval(point: Point) -> float:
 
 
 def simulate(folder: Path, **arguments: Any) -> None:
-    """Write a trajectory for each seed; see `write_replicas`. The other arguments are those of `recipes`."""
+    """Write a trajectory for each seed; see `write_replicas`.
+
+    The other arguments belong to `recipes`.
+    """
     write_replicas(record, recipes(**arguments), folder, print)
 
 
@@ -144,18 +129,12 @@ def record(recipe: Recipe, path: Path, overwrite: bool) -> None:
 
 
 def recipes(
-    seeds: Sequence[tuple[int, ...]],
-    correlations: dict | None = None,
-    impulses: str | None = None,
-    pair_impulses: str | None = None,
-    **settings: Any,
+    seeds: Sequence[tuple[int, ...]], correlations: dict | None = None, **settings: Any
 ) -> list[Recipe]:
-    """The recipe of each replica; settings: the other fields of `Recipe`. Raises SceneError for settings
+    """The recipe of each replica; settings: as `recipe_fields` takes them. Raises SceneError for settings
     that cannot be run."""
-    from gaspart.state.optional_tallies import impulse_tallies, pair_impulse_tallies
     from gaspart.trajectory.correlator import Correlations
     from gaspart.trajectory.recipe import Recipe
 
-    tallies = *impulse_tallies(impulses), *pair_impulse_tallies(pair_impulses)
     stated = None if correlations is None else Correlations(**correlations)
-    return [Recipe(seed=seed, correlations=stated, tallies=tallies, **settings) for seed in seeds]
+    return [Recipe(seed=seed, correlations=stated, **recipe_fields(settings)) for seed in seeds]

@@ -1,1 +1,1 @@
-"""From a config to jobs: points of grids, with their seeds, kernel variants and module dependencies."""
+"""Points of the grids of a config, with their seeds, kernel variants and module dependencies."""

@@ -21,13 +21,16 @@ if TYPE_CHECKING:
 
 
 def engine(point: Point) -> Engine:
-    """The engine that the settings describe. Raises SceneError."""
+    """Return the engine that the settings describe; raise SceneError."""
     return _made(point, point.settings)
 
 
 def scanned(point: Point) -> list[Engine]:
-    """The engine of a point, or, with a scan, one for each of its time steps or partitions; equal partitions
-    are taken once. Parts of a step are of the one that the engine has in the scene. Raises SceneError."""
+    """Return the engine of a point, or an engine for each value of its scan.
+
+    Scans are of time steps or partitions; equal partitions are taken once. Parts of a step refer to the step
+    that the engine has in the scene. Raises SceneError.
+    """
     settings = point.settings
     scans = [key for key in SCANS if key in settings]
     if not scans:
@@ -56,14 +59,16 @@ def scanned(point: Point) -> list[Engine]:
 def boxes_per_side(
     per_particle: float, count: int, radius: float, lengths: tuple[float, ...]
 ) -> tuple[int, ...]:
-    """(d,) boxes per axis: nearly cubic ones, ``per_particle`` for each particle, none smaller than a
-    diameter."""
+    """Return nearly cubic boxes per axis (d,), ``per_particle`` for each particle.
+
+    No box is smaller than a diameter.
+    """
     edge = (math.prod(lengths) / (per_particle * count)) ** (1.0 / len(lengths))
     return tuple(max(1, min(round(length / edge), int(length / (2.0 * radius)))) for length in lengths)
 
 
 def _made(point: Point, settings: dict) -> Engine:
-    """The engine of some settings, with the particles and the container of a point."""
+    """Return the engine of some settings, with the particles and the container of a point."""
     name = settings.get("engine", "event")
     _check(point, name, settings)
     fields = {key: settings[key] for key in ENGINE_KEYS[name] if key in settings}
@@ -97,9 +102,9 @@ def _check(point: Point, name: str, settings: dict) -> None:
 
 
 def chosen(settings: dict, scene: Scene, where: str) -> dict:
-    """The settings of a point with `engine: auto`, with those of the engine that it stands for.
+    """Return the settings of a point with `engine: auto`, with those for the chosen engine.
 
-    The choice is that of the table's machine, so that a config means the same everywhere. A length is set
+    The choice is made for the table's machine, so that a config means the same everywhere. A length is set
     only if none is given. Raises SceneError.
     """
     from gaspart.accuracy.plan import tabulated
@@ -133,9 +138,10 @@ _SIZES = 64  # of a polydisperse gas, by which its collision rate is estimated
 
 @dataclass(frozen=True)
 class Schedule:
-    """When a run is sampled, in the scene's time; the first ``equilibration_frames`` frames are dropped.
+    """Schedule of the samples of a run, in the scene's time.
 
-    samples_per_frame: where the run correlates more samples than it keeps frames.
+    The first ``equilibration_frames`` frames are dropped. `samples_per_frame` is set where the run correlates
+    more samples than it stores frames.
     """
 
     duration: float
@@ -151,7 +157,7 @@ class Schedule:
 
 
 def schedule(point: Point) -> Schedule:
-    """Duration and sampling of a point's runs, in the scene's time.
+    """Return duration and sampling of a point's runs, in the scene's time.
 
     The length is divided into ``samples`` intervals (whole time steps with the step engine); the
     equilibration, rounded up to complete intervals, precedes it, with ``frames`` to those between frames.
@@ -183,7 +189,10 @@ def schedule(point: Point) -> Schedule:
 
 
 def _unit_of_time(point: Point, unit: str) -> float:
-    """The scene's time in one ``unit`` of length; for collisions per particle, from Enskog's rate."""
+    """Return the scene's time in one ``unit`` of length.
+
+    For collisions per particle it follows from Enskog's rate.
+    """
     if unit == "duration":
         return 1.0
     if unit == "steps":
@@ -209,7 +218,7 @@ def _unit_of_time(point: Point, unit: str) -> float:
 
 
 def _mean_rate(mixture: Mixture) -> float:
-    """The mean collision rate of its particles; of many sizes by a part of them."""
+    """Compute the mean collision rate of its particles; of many sizes by a part of them."""
     from gaspart import theory
 
     few = mixture.thinned(_SIZES)

@@ -25,18 +25,18 @@ if TYPE_CHECKING:
 
 
 class Job(Protocol):
-    """Declarations of a job for planning, beside the function that does its work."""
+    """Declarations of a job for planning, in addition to the function that does its work."""
 
     RESULT: str
-    """Its result, in words."""
+    """Result of the job, in words."""
     KEYS: dict[str, Kind]
-    """The keys that have a meaning for it, beside those of the scene, the engine and the length."""
+    """Keys that have a meaning for the job, in addition to the scene, the engine and the length."""
 
     def engines(self, point: Point) -> list[Engine]:
-        """The engines whose kernels it compiles; none where particles are only placed."""
+        """Return the engines whose kernels it compiles, if particles are not only placed."""
 
     def arguments(self, point: Point) -> dict:
-        """The arguments of its function. Raises SceneError."""
+        """Return the arguments of its function; raise SceneError."""
 
 
 JOBS: Mapping[str, Job] = {
@@ -51,7 +51,10 @@ JOBS: Mapping[str, Job] = {
 
 
 def validate(point: Point) -> None:
-    """Make the arguments of a point's job, which may have no keys of other jobs. Raises SceneError."""
+    """Make the arguments of a point's job, which may have no keys of other jobs.
+
+    Raises SceneError.
+    """
     others = {key for job in JOBS.values() for key in job.KEYS} - JOBS[point.job].KEYS.keys()
     for key in others & point.settings.keys():
         if point.settings[key]:

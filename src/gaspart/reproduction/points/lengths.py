@@ -42,7 +42,7 @@ def scaled(job: str, settings: Mapping[str, Any], multiple: float) -> dict[str, 
 def _resampled(settings: Mapping[str, Any], multiple: float, least: int, even: bool) -> dict[str, Any]:
     """Return the length and the samples of a run that is `multiple` times as long.
 
-    even: whether all intervals between samples stay as they are, as those between lags and of timings do.
+    If `even`, all intervals between samples stay as they are, for example between lags and in timings.
     """
     found: dict[str, Any] = {}
     samples = settings.get("samples", 1)

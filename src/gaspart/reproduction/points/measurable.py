@@ -1,4 +1,4 @@
-"""Which observables the trajectories of a point can have, before they are made."""
+"""Observables that the trajectories of a point can have, before they are made."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def require_observable(name: str, point: Point) -> None:
 
 
 def distinct(points: Iterable[Point]) -> list[Point]:
-    """One of the points of each kind whose trajectories have the same observables."""
+    """Return a point of each kind whose trajectories have the same observables."""
     from gaspart.reproduction.points.point import variant
 
     kinds: dict[tuple, Point] = {}

@@ -4,7 +4,7 @@ A digest of these modules is a parameter of the stage's rules: editing one rerun
 no others. As inputs they would be half a million files for ten thousand points. Imports are found by a search
 of the text, since parsing the whole package would take most of the time of a plan; a test compares the result
 with that of a parser. A name that a package loads when it is used stands for the module that defines it, and
-such a package, where it is imported as a whole, for all of these (see `gaspart.public`).
+such a package, where it is imported as a whole, stands for all of these modules (see `gaspart.public`).
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ _PLAIN = re.compile(r"^[ \t]*import (gaspart[\w.]*)", re.MULTILINE)
 
 @cache
 def closure(*roots: str | Path) -> frozenset[Path]:
-    """Files of the package that modules (dotted names) or scripts (paths) need, directly or not.
+    """Return the files of the package that modules or scripts need, directly or not.
 
-    With a module that reads tables, the tables in the folder `data` beside it.
+    Modules are given by dotted names, scripts by paths. With a module that reads tables, the tables in the
+    folder `data` next to it are included.
     """
     files: set[Path] = set()
     queue = [root if isinstance(root, Path) else _file(root) for root in roots]
@@ -48,7 +49,7 @@ def _tables(folder: Path) -> frozenset[Path]:
 
 @cache
 def imported(path: Path) -> frozenset[Path]:
-    """Files of the package that a file imports itself, and the packages that hold them."""
+    """Return files of the package that a file imports itself, and the packages that hold them."""
     text = _TYPES.sub("", path.read_text(encoding="utf-8"))
     names = set(_PLAIN.findall(text))
     for base, items in _FROM.findall(text):
@@ -63,14 +64,14 @@ def imported(path: Path) -> frozenset[Path]:
 
 @cache
 def _homes(package: str) -> dict[str, str]:
-    """The module of each name that a package loads when it is used."""
+    """Return the module of each name that a package loads when it is used."""
     stub = PACKAGE.joinpath(*package.split(".")[1:], "__init__.pyi")
     return stated(str(stub)) if stub.is_file() else {}
 
 
 @cache
 def _file(module: str) -> Path | None:
-    """The file of a module of the package; None if there is none of this name."""
+    """Return the file of a module of the package, or None without such a module."""
     top, *below = module.split(".")
     path = PACKAGE.joinpath(*below)
     if top != PACKAGE.name:
@@ -83,21 +84,28 @@ def _file(module: str) -> Path | None:
 
 @cache
 def digest(*roots: str | Path, others: tuple[Path, ...] = ()) -> str:
-    """A short digest of the files of a closure, and of other files: those of another installed package.
-    Docstrings and comments do not change it."""
+    """Return a short digest of the files of a closure, and of other files.
+
+    The latter belong to another installed package. Docstrings and comments do not change the digest.
+    """
     return _digest_of([*_in_order(closure(*roots)), *others])
 
 
 @cache
 def kernel_digest(*roots: str | Path) -> str:
-    """A short digest of the compiled modules in a closure that `warm` may compile: jobs that need equal ones
-    share their stamps."""
+    """Return a short digest of the compiled modules in a closure that `warm` may compile.
+
+    Jobs that need equal modules share their stamps.
+    """
     needed = closure(*roots) & closure("gaspart.reproduction.points.point")
     return _digest_of([path for path in _in_order(needed) if path.is_relative_to(PACKAGE / "kernels")])
 
 
 def _in_order(paths: frozenset[Path]) -> list[Path]:
-    """By their text: paths compare their parts, which for a hundred closures takes 0.1 s."""
+    """Sort paths by their text.
+
+    Paths compare their parts, which for a hundred closures takes 0.1 s.
+    """
     return sorted(paths, key=str)
 
 

@@ -1,4 +1,4 @@
-"""A point of a grid: its name, paths and seeds, and what its settings describe, each made once."""
+"""Point of a grid: its name, paths and seeds, and objects described by its settings, each made once."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _LONGEST_NAME = 200  # of the 255 bytes of a file name, with which suffixes and 
 
 @dataclass(frozen=True)
 class Point:
-    """One point of a grid: one job of the workflow, with one output at ``path``.
+    """Point of a grid: one job of the workflow, with one output at ``path``.
 
     The properties that are made of the settings raise SceneError where these contradict each other.
     """
@@ -48,7 +48,7 @@ class Point:
 
     @property
     def path(self) -> str:
-        """Where the result lies: a folder of trajectories (see TRAJECTORIES) or one netCDF file."""
+        """Path of the result: a folder of trajectories (see TRAJECTORIES) or one netCDF file."""
         suffix = "" if self.job == TRAJECTORIES else ".nc"
         return f"{self.root}/{self.experiment}/{self.name}{suffix}"
 
@@ -58,7 +58,7 @@ class Point:
         return self.settings.get("replicas", 1)
 
     def replica_path(self, replica: int) -> str:
-        """The trajectory of one replica (of the job TRAJECTORIES only)."""
+        """Return the trajectory of one replica (of the job TRAJECTORIES only)."""
         return f"{self.path}/replica-{replica}.nc"
 
     @property
@@ -67,7 +67,10 @@ class Point:
         return [self.replica_path(k) for k in range(self.replicas)]
 
     def seed(self, replica: int = 0) -> tuple[int, ...]:
-        """Four 32-bit words that depend on the names alone, not on the point's place in its grid."""
+        """Return four 32-bit words that depend on the names alone.
+
+        They do not depend on the position of the point in its grid.
+        """
         text = f"{self.config_seed}/{self.experiment}/{self.name}/{replica}"
         digest = hashlib.sha256(text.encode()).digest()
         return tuple(int.from_bytes(digest[i : i + 4], "little") for i in range(0, 16, 4))
@@ -94,7 +97,7 @@ class Point:
 
     @cached_property
     def engines(self) -> list[Engine]:
-        """The engines that the job runs in turn: ``engine``, or one for each value of the scan."""
+        """Engines that the job runs: ``engine``, or one for each value of the scan."""
         return engine.scanned(self)
 
     @cached_property
@@ -104,8 +107,11 @@ class Point:
 
     @cached_property
     def kind_of_job(self) -> Job:
-        """The module of the job. Here and below modules are imported by their names: measurements, which read
-        points too, so depend on no job."""
+        """Module of the job.
+
+        Here and below modules are imported by their names: measurements, which read points too, so depend on
+        no job.
+        """
         return import_module(f"{_JOBS}.{self.job}")
 
     @property
@@ -121,7 +127,7 @@ class Point:
 
     @cached_property
     def arguments(self) -> dict:
-        """The arguments of the job's function: all that its result depends on, and nothing else."""
+        """Arguments of the job's function: exactly those on which its result depends."""
         return self.kind_of_job.arguments(self)
 
     @property
@@ -130,7 +136,7 @@ class Point:
         return import_module(f"{_JOBS}.arguments").to_plain(self.arguments)
 
     def refused(self, key: str, rule: str) -> SceneError:
-        """The error that a setting breaks a rule."""
+        """Return the error that a setting breaks a rule."""
         return SceneError(f"experiments.{self.experiment}.{key}", self.settings.get(key), rule)
 
     def to_dict(self) -> dict:
@@ -144,7 +150,7 @@ class Point:
 
 
 def name_of(varying: dict, where: str) -> str:
-    """The name of a point, fit for a file system: its varying keys and their values.
+    """Return the name of a point for a file system: its varying keys and their values.
 
     Raises SceneError, naming the key below ``where``, for a value that no file name can hold, and a name that
     is too long.
@@ -174,10 +180,10 @@ _NUMBERS = {"centres_to_walls", "polydispersity"}  # which change no kernel
 
 
 def variant(point: Point) -> str:
-    """The kernels of a point: engine, search or precision, dimension, and a digest of the features of its
-    scene.
+    """Return the kernels of a point, as text.
 
-    Kernels are compiled for features, not for numbers. Raises SceneError.
+    The text has engine, search or precision, dimension, and a digest of the features of its scene. Kernels
+    are compiled for features, not for numbers. Raises SceneError.
     """
     scene = point.scene
     parts = ["fill", "random", f"{scene.dimension}d"]
@@ -195,8 +201,10 @@ def variant(point: Point) -> str:
 
 
 def compiled_features(scene: Scene) -> set[str]:
-    """The names of what changes the kernels of a scene: features, and what every engine models but compiles
-    for scenes that have it."""
+    """Return the names of features that change the kernels of a scene.
+
+    They include those which every engine models but compiles only for scenes that have them.
+    """
     names = scene.features - _NUMBERS - {"contact_duration"}
     if names & _LAW:
         names = (names - _LAW) | {"law"}
@@ -211,7 +219,7 @@ def compiled_features(scene: Scene) -> set[str]:
 
 
 def _has_oversized(scene: Scene) -> bool:
-    """Whether a particle is too large for the boxes of the others."""
+    """Return True if a particle is too large for the boxes of the others."""
     if scene.largest_radius == scene.smallest_radius:
         return False
     from gaspart.state.boxes import largest_in_boxes
@@ -220,8 +228,11 @@ def _has_oversized(scene: Scene) -> bool:
 
 
 def compile_task(point: Point) -> str:
-    """The task of `compile_kernels` for a point, as JSON: its engine, its scene, with only a few particles if
-    these have all of its features, whether it tallies the stress, and whether it records events."""
+    """Return the task of `compile_kernels` for a point, as JSON.
+
+    It has its engine, its scene, with only a few particles if these have all of its features, and states if
+    it tallies the stress, and if it records events.
+    """
     from gaspart.scene.scene import Scene
 
     full, engine = point.scene, None

@@ -1,6 +1,7 @@
-"""The keys of a point that describe its scene, its engine and its length: kind, default and meaning of each.
+"""Keys of a point that describe its scene, its engine and its length: kind, default and meaning.
 
-Those of a job are declared in its module in `reproduction.jobs`; `config_keys` has those of a whole config.
+The keys of a job are declared in its module in `reproduction.jobs`; `config_keys` has the keys of a whole
+config.
 """
 
 from __future__ import annotations
@@ -77,7 +78,7 @@ GAS: dict[str, Kind] = {
         default="random",
     ),
 }
-"""One species in a container, or two of different sizes."""
+"""Keys of one species in a container, or of two species of different sizes."""
 
 SCENE_FILE: dict[str, Kind] = {
     "scene": described(
@@ -104,7 +105,10 @@ _BOXES_PER_PARTICLE = positive(
 
 
 def _settings(engine: Any) -> dict[str, Kind]:
-    """The keys of an engine, as its fields declare them. What it requires, a point with another does not."""
+    """Return the keys of an engine, as its fields declare them.
+
+    A point with another engine does not require them.
+    """
     declared = schema_of(engine)
     made = {name: Kind({"default": None, **kind}) for name, kind in declared["properties"].items()}
     for name in declared.get("required", ()):
@@ -135,7 +139,7 @@ LENGTHS: dict[str, Kind] = {
 """Exactly one of them is given."""
 
 SCANS = ("scan_boxes_per_side", "scan_boxes_per_particle", "scan_time_steps", "scan_step_parts")
-"""Keys of the jobs that run several engines in turn."""
+"""Keys of the jobs that run several engines alternately."""
 
 
 # The end of the runs of a point with `until`.
@@ -144,7 +148,10 @@ SCANS = ("scan_boxes_per_side", "scan_boxes_per_particle", "scan_time_steps", "s
 
 
 def ending(point: Point) -> dict[str, Any]:
-    """The fields of `Recipe` that follow from `until`. Raises SceneError for what no run can reach."""
+    """Return the fields of `Recipe` that follow from `until`.
+
+    Raises SceneError for accuracies that no run can reach.
+    """
     from gaspart.analysis.observables import OBSERVABLES
     from gaspart.runs.ending import Accuracy, default_sample_interval, require_end, require_measurable
     from gaspart.trajectory.until import Until

@@ -1,4 +1,4 @@
-"""The scene of a point: made of its settings, or read from a scene file in which some values are replaced.
+"""Scene of a point: made of its settings, or read from a scene file with replaced values.
 
 Planning a workflow makes the scene of every point, so slow imports are made inside functions.
 """
@@ -33,12 +33,12 @@ class Extents(NamedTuple):
 
 
 def scene(point: Point) -> Scene:
-    """The point's ``Scene``. Raises SceneError."""
+    """Return the point's ``Scene``; raise SceneError."""
     return _read(point) if "scene" in point.settings else _made(point)
 
 
 def extents(point: Point) -> Extents:
-    """The extents of a point. Raises SceneError.
+    """Return the extents of a point; raise SceneError.
 
     Three of count, radius, packing fraction and side are given and the fourth follows: a count that follows
     is rounded to a whole number; a side that follows is the same on every axis. A scene file states all of
@@ -88,13 +88,13 @@ def _check_gas(point: Point) -> None:
 
 
 def _small_count(point: Point) -> int:
-    """The number of particles of the second species."""
+    """Return the number of particles of the second species."""
     count = int(point.settings["count"])
     return min(max(round(count * point.settings["small_fraction"]), 1), count - 1)
 
 
 def _mean_volume(point: Point) -> float:
-    """The mean of the radii's power d, over that of the radius in the settings."""
+    """Compute the mean of the radii's power d, over the power of the radius in the settings."""
     from gaspart.scene.sizes import relative_radii
 
     settings = point.settings
@@ -118,7 +118,7 @@ def _mean_volume(point: Point) -> float:
 
 
 def _made(point: Point) -> Scene:
-    """The scene of one species, or of two sizes, that the settings describe."""
+    """Return the scene of one species, or of two sizes, that the settings describe."""
     from gaspart.scene.container import Container
     from gaspart.scene.scene import Scene
     from gaspart.scene.species import Species
@@ -149,7 +149,7 @@ def _made(point: Point) -> Scene:
 
 
 def _read(point: Point) -> Scene:
-    """The scene of the scene file, or of what such a file holds, with the values that settings replace."""
+    """Read the scene of the scene file, or of its content, with the values that settings replace."""
     from gaspart.scene.scene import Scene
 
     settings = point.settings
@@ -169,7 +169,7 @@ def _read(point: Point) -> Scene:
 
 
 def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
-    """The content of the scene file of a point, and its scene without changes."""
+    """Return the content of the scene file of a point, and its scene without changes."""
     try:
         changed = Path(path).stat().st_mtime_ns
     except OSError as error:
@@ -181,7 +181,7 @@ def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
 
 @cache
 def _file(path: str, changed: int) -> tuple[Any, Scene]:
-    """The content of a scene file, and its scene. Read again when it has changed."""
+    """Return the content of a scene file, and its scene, and read it again if it has changed."""
     from gaspart.scene.scene import Scene
 
     content = read_yaml(path)
@@ -189,8 +189,10 @@ def _file(path: str, changed: int) -> tuple[Any, Scene]:
 
 
 def _replace(content: dict, key: str, point: Point) -> None:
-    """Replace the value at a dotted key, `scene.` and then names in mappings and numbers in lists; what a
-    mapping does not hold yet is added."""
+    """Replace the value at a dotted key; add it if a mapping lacks it.
+
+    The key is `scene.` and then names in mappings and numbers in lists.
+    """
     _, *parents, last = key.split(".")
     block = content
     for part in parents:
@@ -202,7 +204,7 @@ def _replace(content: dict, key: str, point: Point) -> None:
 
 
 def _place(block: object, part: str, key: str, point: Point) -> str | int:
-    """Where `part` of a dotted key leads in a mapping or a list."""
+    """Return the key or index to which `part` of a dotted key leads in a mapping or a list."""
     if isinstance(block, dict):
         block.setdefault(part, None)
         return part

@@ -1,8 +1,8 @@
-"""From a config to the points of its grids.
+"""Points of the grids of a config.
 
-An *experiment* of the config holds ``point`` (defaults) and ``grid`` (a mapping from a key to the list of
-its values, whose product is taken, or a list of such mappings, which are concatenated). A key that is null
-counts as absent, so that a config merged over another can remove a key.
+An *experiment* of the config holds ``point`` (defaults) and ``grid`` (a mapping from a key to the list of its
+values, whose product is taken, or a list of such mappings, which are concatenated). A key that is null counts
+as absent, so that a config merged over another can remove a key.
 
 Measurements do not import this module, so that none depends on the trade-off's table.
 """
@@ -47,7 +47,10 @@ _TAKEN = (
 
 
 def _of_any_engine() -> dict[str, Kind]:
-    """The keys of all engines; what one means is stated for each engine that has another meaning of it."""
+    """Return the keys of all engines.
+
+    The meaning of a key is stated for each engine that has another meaning of it.
+    """
     merged: dict[str, Kind] = {}
     for engine, keys in ENGINE_KEYS.items():
         for name, kind in keys.items():
@@ -59,7 +62,7 @@ def _of_any_engine() -> dict[str, Kind]:
 
 
 def _of_any_job() -> dict[str, Kind]:
-    """The keys of all jobs, each with its meaning for every job that has it."""
+    """Return the keys of all jobs, each with its meaning for every job that has it."""
     kinds: dict[str, Kind] = {}
     meanings: dict[str, dict[str, list[str]]] = {}  # of each key: meaning, jobs
     for job, module in JOBS.items():
@@ -125,7 +128,10 @@ MULTIPLE: Kind = positive("", maximum=100)
 
 
 def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
-    """The top level of a config, given the entries of its figures, by name, and of those with other names."""
+    """Return the top level of a config, given the entries of its figures by name.
+
+    Figures with other names have the entry `own`.
+    """
     named = {"type": "object", "propertyNames": _NAME}
     return {
         "title": described({**TEXT, "minLength": 1}, "stands in the report and in each figure's data"),
@@ -174,7 +180,10 @@ MOST_POINTS = 100_000
 
 
 def points(config: dict, experiment: str) -> list[Point]:
-    """All points of an experiment. Raises SceneError for an empty grid, or two points of one name."""
+    """Return all points of an experiment.
+
+    Raises SceneError for an empty grid, or two points of one name.
+    """
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
     multiples = (config.get("lengths") or {}).get(experiment) or {}
@@ -208,7 +217,7 @@ def _plain(key: str, value: Any) -> Any:
 
 
 def _chosen(point: Point) -> Point:
-    """With the engine that `engine: auto` stands for. Raises SceneError."""
+    """Return a point with the engine that `engine: auto` chooses; raise SceneError."""
     where = f"experiments.{point.experiment}"
     if point.settings.get("engine") == "auto":
         from gaspart.reproduction.points.engine import chosen
@@ -221,7 +230,7 @@ def _chosen(point: Point) -> Point:
 
 
 def all_points(config: dict) -> dict[str, dict[str, Point]]:
-    """The points of all experiments, by experiment and name. Raises SceneError as `points` does."""
+    """Return the points of all experiments, by experiment and name; raise SceneError as `points`."""
     return {
         experiment: {point.name: point for point in points(config, experiment)}
         for experiment in config["experiments"]
@@ -229,9 +238,9 @@ def all_points(config: dict) -> dict[str, dict[str, Point]]:
 
 
 def figure_points(config: dict, figure: str, planned: Mapping[str, Mapping[str, Point]]) -> list[Point]:
-    """The points of all experiments that a figure names, in its order. planned: as from `all_points`.
+    """Return the points of all experiments that a figure names, in its order.
 
-    Raises SceneError for an unknown experiment.
+    `planned` is a result of `all_points`. Raises SceneError for an unknown experiment.
     """
     chosen: list[Point] = []
     for experiment in config["figures"][figure]["experiments"]:
@@ -242,7 +251,7 @@ def figure_points(config: dict, figure: str, planned: Mapping[str, Mapping[str, 
 
 
 def _combinations(grid: Any, where: str) -> list[dict]:
-    """The product of a mapping's lists; of a list of mappings, one after the other."""
+    """Return the product of a mapping's lists; of a list of mappings, one after the other."""
     if isinstance(grid, list):
         if not grid:
             raise SceneError(where, grid, "must not be empty")

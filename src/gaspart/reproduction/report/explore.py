@@ -1,5 +1,7 @@
-"""What a reader may choose on the page, from data that the figures have measured: the packing fraction of a
-virial series, and the observable, the packing fraction and the accuracy for which an engine is wanted.
+"""Choices of a reader on the page, from data that the figures have measured.
+
+They are the packing fraction of a virial series, and the observable, the packing fraction and the accuracy
+for which an engine is wanted.
 """
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ _STEPS = 100
 
 
 def states(paths: Mapping[str, str]) -> list[dict[str, Any]]:
-    """`series` of the measurements of figures, {figure: path}, that are equations of state."""
+    """Return `series` of the measurements of figures, {figure: path}, that are equations of state."""
     import xarray as xr
 
     stated = {figure: one for figure, one in registry.series().items() if figure in paths}
@@ -35,7 +37,10 @@ def states(paths: Mapping[str, str]) -> list[dict[str, Any]]:
 
 
 def choice_of_engine(paths: Mapping[str, str]) -> dict[str, Any] | None:
-    """`engines` of the figure of the cost of an accuracy, with its name; None unless it is on the page."""
+    """Return the `engines` of the figure of the cost of an accuracy, with its name.
+
+    None unless the figure is on the page.
+    """
     import xarray as xr
 
     found = [figure for figure in registry.costs() if figure in paths]
@@ -45,10 +50,11 @@ def choice_of_engine(paths: Mapping[str, str]) -> dict[str, Any] | None:
 def series(
     datasets: Mapping[str, xr.Dataset], states: Mapping[str, tuple[int, float]]
 ) -> list[dict[str, Any]]:
-    """For each figure of an equation of state the packing fractions to choose from, the partial sums of the
-    virial series to each order, Z of the best equation of state, and the measured Z with its standard error.
+    """Return the data of each figure of an equation of state.
 
-    states: the dimension of each figure, and the largest packing fraction to choose.
+    They are the packing fractions to choose from, the partial sums of the virial series to each order, Z of
+    the best equation of state, and the measured Z with its standard error. `states` has the dimension of each
+    figure, and the largest packing fraction to choose.
     """
     rows = []
     for figure, (dimension, largest) in states.items():
@@ -71,7 +77,7 @@ def series(
 
 
 def engines(dataset: xr.Dataset) -> dict[str, Any]:
-    """Costs and errors of all engines, from a dataset of `families.tradeoff.maps`.
+    """Return the costs and errors of all engines, from a dataset of `families.tradeoff.maps`.
 
     `count` of particles; `accuracies`; `engines`: name and colour of each; `parts`: what makes errors;
     `observables`: of each its name, its packing fractions and over packing fraction, accuracy and engine
@@ -110,14 +116,14 @@ def engines(dataset: xr.Dataset) -> dict[str, Any]:
 
 
 def _nested(values: np.ndarray) -> list:
-    """An array as nested lists of numbers as JSON has them, with three digits."""
+    """Convert an array to nested lists of numbers for JSON, with three digits."""
     if values.ndim > 1:
         return [_nested(part) for part in values]
     return [float(f"{value:.3g}") if math.isfinite(value) else None for value in values.tolist()]
 
 
 def _numbers(values: np.ndarray) -> list[float | None]:
-    """Numbers as JSON has them, with six digits; None for what is not finite."""
+    """Convert numbers for JSON, with six digits; None for numbers that are not finite."""
     return [
         float(f"{value:.6g}") if math.isfinite(value) else None for value in np.asarray(values, dtype=float)
     ]
@@ -134,8 +140,14 @@ CITATION = re.compile(r"\[([^][<>]+)\]")
 
 @dataclass(frozen=True)
 class Reference:
-    """number: from 1; key: by which texts cite it; authors: surnames, the last perhaps "others"; where:
-    journal, volume, page, or a title; doi: "" if there is none."""
+    """Reference of the literature.
+
+    number : from 1.
+    key : by which texts cite it.
+    authors : surnames, the last perhaps "others".
+    where : journal, volume, page, or a title.
+    doi : "" without a DOI.
+    """
 
     number: int
     key: str
@@ -146,25 +158,28 @@ class Reference:
 
     @property
     def is_source(self) -> bool:
-        """Whether its key is a name, such as "source A", instead of an author and a year."""
+        """True if its key is a name, such as "source A", not an author and a year."""
         return str(self.year) not in self.key
 
     @property
     def text(self) -> str:
-        """As the list of references has it, without the DOI."""
+        """Entry in the list of references, without the DOI."""
         *first, last = self.authors
         names = f"{', '.join(first)} and {last}" if first else last
         return f"{names}, {self.where} ({self.year})" + (f": {self.key}" if self.is_source else "")
 
     @property
     def short(self) -> str:
-        """As a text cites it: by one or two authors and the year."""
+        """Citation in a text, by one or two authors and the year."""
         names = self.authors if len(self.authors) < 3 else (self.authors[0], "others")
         return f"{' and '.join(names)} {self.year}"
 
 
 def read_references(path: str | Path) -> dict[str, Reference]:
-    """The references of a file by key, numbered in its order. Raises SceneError if it is not YAML."""
+    """Read the references of a file by key, numbered in its order.
+
+    Raises SceneError if it is not YAML.
+    """
     return {
         key: Reference(**{**entry, "number": number, "key": key, "authors": tuple(entry["authors"])})
         for number, (key, entry) in enumerate(read_yaml(path).items(), 1)
@@ -172,13 +187,13 @@ def read_references(path: str | Path) -> dict[str, Reference]:
 
 
 def cited(citation: re.Match[str], references: Mapping[str, Reference]) -> Reference | None:
-    """The reference that a match of `CITATION` cites; None for other texts in square brackets."""
+    """Return the reference that a match of `CITATION` cites; None for other texts in square brackets."""
     key = " ".join(citation[1].split())
     return references.get(key) or references.get(key[0].lower() + key[1:])
 
 
 def used(texts: Iterable[str], references: Mapping[str, Reference]) -> dict[str, Reference]:
-    """The references that some texts cite, by key and in the same order, numbered from 1."""
+    """Return the references that some texts cite, by key, in the same order, numbered from 1."""
     found = (cited(citation, references) for text in texts for citation in CITATION.finditer(text))
     keys = {reference.key for reference in found if reference is not None}
     kept = (reference for key, reference in references.items() if key in keys)
@@ -186,7 +201,7 @@ def used(texts: Iterable[str], references: Mapping[str, Reference]) -> dict[str,
 
 
 def linked(text: str, references: Mapping[str, Reference]) -> str:
-    """HTML in which each citation has become names and a numbered link into the list."""
+    """Return HTML in which each citation has become names and a numbered link into the list."""
 
     def link(citation: re.Match[str]) -> str:
         reference = cited(citation, references)

@@ -34,8 +34,12 @@ _LEVELS = 4
 
 @dataclass(frozen=True)
 class Dot:
-    """row: of the claims table; place: percent of the axis; level: 0, 1, ... from below, so that dots do not
-    hide one another."""
+    """Claim on the axis of deviations.
+
+    row : row of the claims table.
+    place : position in percent of the axis.
+    level : 0, 1, ... from below, so that dots do not hide one another.
+    """
 
     row: dict[str, Any]
     place: float
@@ -43,8 +47,11 @@ class Dot:
 
 
 def deviation(row: dict[str, Any]) -> float:
-    """Where a claim stands, in standard deviations: a value by its deviation; a measured number within two
-    bounds by its place between them, which are at -3 and 3; 0 if there is none."""
+    """Return the position of a claim in standard deviations.
+
+    It is the deviation of a value; a measured number within two bounds has a position between them, which are
+    at -3 and 3; 0 without a deviation.
+    """
     low, high, measured = row["lowest"], row["highest"], row["measured"]
     if math.isfinite(low) and math.isfinite(high) and math.isfinite(measured) and high > low:
         return _BAND * (2.0 * measured - low - high) / (high - low)
@@ -53,7 +60,7 @@ def deviation(row: dict[str, Any]) -> float:
 
 
 def dots(rows: Iterable[dict[str, Any]]) -> list[Dot]:
-    """The dots of some claims, from the lowest deviation to the highest."""
+    """Return the dots of some claims, from the lowest deviation to the highest."""
     last = [-math.inf] * _LEVELS
     placed = []
     for row in sorted(rows, key=deviation):
@@ -88,8 +95,12 @@ _SEEN = "*What is seen.*"
 
 @dataclass(frozen=True)
 class Caption:
-    """finding: inline HTML; plain: the same without marks, for places that hold text only; reading, details:
-    HTML, the latter perhaps empty."""
+    """Caption of a figure.
+
+    finding : inline HTML.
+    plain : the finding without marks, where only text is possible.
+    reading, details : HTML, the latter perhaps empty.
+    """
 
     finding: str
     plain: str
@@ -98,7 +109,7 @@ class Caption:
 
 
 def divided(text: str) -> Caption:
-    """The parts of a caption.
+    """Return the parts of a caption.
 
     Raises ValueError if it does not begin with words in bold, and as `html_of`.
     """
@@ -121,7 +132,7 @@ def divided(text: str) -> Caption:
 
 
 def html_of(text: str) -> str:
-    """reStructuredText as a fragment of HTML.
+    """Return reStructuredText as a fragment of HTML.
 
     Raises ValueError for marks that are not closed and other faults, and for an address whose scheme is not
     one of the web or of mail: `javascript:` would run where the report is read.
@@ -141,7 +152,7 @@ def html_of(text: str) -> str:
 
 
 def _fault(tree: nodes.document) -> str:
-    """The fault of a text that was read; "" if there is none."""
+    """Return the fault of a text that was read; "" without a fault."""
     from docutils import nodes
 
     said = [*tree.findall(nodes.system_message), *tree.parse_messages, *tree.transform_messages]
@@ -156,8 +167,10 @@ def _fault(tree: nodes.document) -> str:
 
 
 def _is_safe(address: str) -> bool:
-    """Whether an address is one of the web, of mail, or relative. Browsers skip white space and control
-    characters within a scheme."""
+    """Return True if an address is one of the web, of mail, or relative.
+
+    Browsers skip white space and control characters within a scheme.
+    """
     scheme = _SCHEME.match("".join(c for c in address if c.isprintable() and c != " ").lower())
     return scheme is None or scheme[1] in _SCHEMES
 
@@ -182,8 +195,14 @@ HEADLINE = ("test", "identity", "reproduction")
 
 @dataclass(frozen=True)
 class Section:
-    """A figure on the page. family_name: of its functions; claims: its rows of the claims table;
-    films: their names; settings: of its measurement, as text; points: the files of its simulations."""
+    """Figure on the page.
+
+    family_name : family of its functions.
+    claims : its rows of the claims table.
+    films : names of its films.
+    settings : settings of its measurement, as text.
+    points : files of its simulations.
+    """
 
     name: str
     family_name: str
@@ -195,12 +214,12 @@ class Section:
 
     @property
     def dots(self) -> list:
-        """Its claims on the axis of deviations, but for the joint test of the others."""
+        """Claims on the axis of deviations, but for the joint test of the others."""
         return dots(row for row in self.claims if row["kind"] != "family")
 
     @property
     def verdicts(self) -> dict[str, int]:
-        """How many of its claims have each verdict."""
+        """Number of its claims with each verdict."""
         return verdicts(self.claims)
 
     @property
@@ -210,7 +229,7 @@ class Section:
 
 
 def by_chapter(sections: Iterable[Section]) -> dict[str, list[Section]]:
-    """The sections of each chapter, in the order of the figures."""
+    """Return the sections of each chapter, in the order of the figures."""
     of_chapter: dict[str, list[Section]] = {title: [] for title in CHAPTERS}
     for section in sections:
         of_chapter[chapter(section.family_name)].append(section)
@@ -218,8 +237,10 @@ def by_chapter(sections: Iterable[Section]) -> dict[str, list[Section]]:
 
 
 def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) -> list[dict[str, str]]:
-    """The key findings of the figures that have claims, with their measured numbers filled in: [{figure,
-    text}]. chosen: the same with places for numbers as in a caption."""
+    """Return the key findings of the figures that have claims, [{figure, text}].
+
+    Their measured numbers are filled in; `chosen` are the findings with places for numbers as in a caption.
+    """
     present = {row["figure"] for row in rows}
     return [
         {
@@ -234,8 +255,7 @@ def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) ->
 
 
 def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """The claims on the first screen: how many there are of each kind with each verdict, and those
-    that disagree."""
+    """Return the claims on the first screen: counts by kind and verdict, and disagreements."""
     numbers = counts(rows)
     return {
         "kinds": {kind: numbers[kind] for kind in HEADLINE if kind in numbers},
@@ -244,14 +264,16 @@ def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def verdicts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
-    """How many claims have each verdict."""
+    """Count the claims with each verdict."""
     return dict(Counter(row["verdict"] for row in rows))
 
 
 @dataclass(frozen=True)
 class Picture:
-    """Addresses of a figure's picture, as it is read, in one column for narrow screens, and as a thumbnail;
-    and the sizes of the first two in pixels of the page, which so does not move while they are loaded."""
+    """Addresses of a figure's picture: full, in one column for narrow screens, and as a thumbnail.
+
+    The sizes of the first two are in pixels of the page, which so does not move while they are loaded.
+    """
 
     large: str
     narrow: str
@@ -261,10 +283,10 @@ class Picture:
 
 
 def picture(path: Path, one_file: bool) -> Picture:
-    """The picture of a figure, of which `path` is the PNG. The SVG lies beside it, and the picture in one
-    column below in journal/.
+    """Return the picture of a figure whose PNG is `path`.
 
-    one_file: the page is to hold its pictures; they are then WebP, a third of their size.
+    The SVG lies in the same folder, and the picture in one column below in journal/. If `one_file`, the page
+    is to hold its pictures; they are then WebP, a third of their size.
     """
     column = path.parent / "journal" / path.name
     size, narrow = _size(path), _size(column)
@@ -277,7 +299,7 @@ def picture(path: Path, one_file: bool) -> Picture:
 
 
 def _size(path: Path) -> tuple[int, int]:
-    """Width and height of a PNG, in pixels of the page."""
+    """Return the width and height of a PNG, in pixels of the page."""
     from PIL import Image
 
     with Image.open(path) as image:
@@ -286,15 +308,17 @@ def _size(path: Path) -> tuple[int, int]:
 
 
 def address(path: Path, one_file: bool = False) -> str:
-    """The address of a file of results/: relative to the page, or one that holds the file."""
+    """Return the address of a file of results/, relative to the page, or one that holds the file."""
     if one_file:
         return _data(mimetypes.guess_type(path.name)[0] or "", path.read_bytes())
     return f"{path.parent.name}/{path.name}"
 
 
 def films(paths: list[Path], one_file: bool) -> dict[str, str]:
-    """Name and address of each film that the page shows. One that is to hold them holds the first one only:
-    all films together are larger than everything else."""
+    """Return name and address of each film that the page shows.
+
+    A page that holds its films has the first one only: all films together are larger than everything else.
+    """
     return {path.stem: address(path, one_file) for path in (paths[:1] if one_file else paths)}
 
 
@@ -303,7 +327,7 @@ def _data(kind: str, content: bytes) -> str:
 
 
 def _webp(path: Path, width: int) -> str:
-    """The address that holds a picture of this width in pixels at most."""
+    """Return the address that holds a picture of this width in pixels at most."""
     from PIL import Image
 
     content = BytesIO()
@@ -315,5 +339,5 @@ def _webp(path: Path, width: int) -> str:
 
 
 def captioned(text: str, rows: list[dict[str, Any]]) -> Caption:
-    """The caption of a figure with its measured numbers."""
+    """Return the caption of a figure with its measured numbers."""
     return divided(filled(text, rows))

@@ -11,7 +11,7 @@ from gaspart.reproduction.table import Table, each
 from gaspart.theory.adsorption import planck_constant, slow_flux_share
 
 KINDS = ("ideal", "layer", "sticky")
-"""Of walls: wide wells, wells thinner than a particle, and the source's rule."""
+"""Kinds of walls: wide wells, wells thinner than a particle, and the source's rule."""
 LANGMUIR = (
     "Boltzmann factor of the well (exact for an ideal gas; Langmuir's formula, [source A], section 4.5); "
     "what spheres close to each other is subtracted, to first order in their density"
@@ -23,7 +23,10 @@ OWN_LENGTH = (
 
 
 def adsorption(dataset: xr.Dataset) -> list[Claim]:
-    """Slope, prefactor, hard layer, and the detailed balance that the source's own rule violates."""
+    """Return the claims on slope, prefactor, hard layer, and detailed balance.
+
+    The rule of the source violates the latter.
+    """
     walls = Table(dataset, "point")
     ideal, layer, sticky = (walls[walls.kind == kind] for kind in KINDS)
     return [*_ideal(ideal), *_layer(layer), *_sticky(sticky, ideal)]
@@ -49,7 +52,7 @@ def _ideal(wells: Table) -> list[Claim]:
 
 
 def _slopes(well: Table, depth: float) -> list[Claim]:
-    """Dependence on temperature of one well."""
+    """Return the claims on dependence on temperature of one well."""
     slope = fit_polynomial(1.0 / well.temperature, well.log_ratio)
     planck = planck_constant(1.0, well.mass, well.temperature) * well.length
     power = fit_power_law(well.temperature, planck)
@@ -74,7 +77,10 @@ def _slopes(well: Table, depth: float) -> list[Claim]:
 
 
 def _layer(layers: Table) -> list[Claim]:
-    """Coverages by the gas' pressure; and that its activity is not what counts where the coverage is low."""
+    """Return the claims on coverages by the pressure of the gas.
+
+    A further claim states that its activity does not determine the coverage where the coverage is low.
+    """
     if not layers:
         return []
     what = "coverage over that of hard discs at the gas' pressure"

@@ -19,7 +19,7 @@ from gaspart.theory.adsorption import (
 
 
 def adsorption(dataset: xr.Dataset) -> Figure:
-    """Ratio and prefactor of ideal gases, isotherms of a layer and of a sticky wall, speeds of desorption."""
+    """Draw ratio and prefactor of ideal gases, isotherms of layer and wall, speeds of desorption."""
     figure, axes = style.new((2.2, 1.1), (1.7,), (2.0,), (1.4,), (1.9,))
     walls = Table(dataset, "point")
     ideal, layer, sticky = (walls[walls.kind == kind] for kind in KINDS)
@@ -35,7 +35,7 @@ def adsorption(dataset: xr.Dataset) -> Figure:
 
 
 def _ratios(top: Axes, bottom: Axes, wells: Table) -> None:
-    """Adsorbed over free particles against 1 / kT, and the deviation from the exact ratio."""
+    """Draw adsorbed per free particles against 1 / kT, and the deviation from the exact ratio."""
     style.level(bottom, 0.0)
     inverse = np.linspace(0.0, 1.05 / wells.temperature.min(), 50)
     for kind, (depth, width, well) in enumerate(wells.by("depth", "width")):
@@ -52,7 +52,7 @@ def _ratios(top: Axes, bottom: Axes, wells: Table) -> None:
 
 
 def _lengths(axis: Axes, wells: Table) -> None:
-    """The length in Langmuir's formula, in widths of the well, against temperature."""
+    """Draw the length in Langmuir's formula, in widths of the well, against temperature."""
     temperatures = np.geomspace(0.8 * wells.temperature.min(), 1.25 * wells.temperature.max(), 50)
     axis.plot(temperatures, temperatures**-0.5, color=style.DATA, ls=":", label="a thermal wavelength")
     axis.axhline(1.0, color=style.REFERENCE, label="the width of the well")
@@ -65,7 +65,7 @@ def _lengths(axis: Axes, wells: Table) -> None:
 
 
 def _isotherm(axis: Axes, layers: Table) -> None:
-    """Coverage of a layer against the activity of the gas."""
+    """Draw the coverage of a layer against the activity of the gas."""
     eta = np.linspace(1e-3, 0.52, 300)
     axis.plot(scaled_particle_activity(eta), eta, color=style.REFERENCE, label="hard discs (SPT)")
     activity = np.geomspace(0.01, 100.0, 200)
@@ -79,7 +79,7 @@ def _isotherm(axis: Axes, layers: Table) -> None:
 
 
 def _sticky_coverage(axis: Axes, walls: Table) -> None:
-    """Coverage of a sticky wall against the density of the gas."""
+    """Draw the coverage of a sticky wall against the density of the gas."""
     density, middle = walls.gas_density.value, len(walls) // 2
     style.points(axis, density, walls.coverage, kind=1, label="sticky wall")
     line = np.geomspace(0.8 * density.min(), 1.25 * density.max(), 50)
@@ -93,7 +93,7 @@ def _sticky_coverage(axis: Axes, walls: Table) -> None:
 
 
 def _leaving(axis: Axes, wells: Table, walls: Table) -> None:
-    """Normal speeds of the particles that leave a well, and of those that leave a sticky wall."""
+    """Draw normal speeds of the particles that leave a well, and a sticky wall."""
     line = np.linspace(0.0, walls.speed[-1], 200)
     axis.plot(line, flux_density(line), color=style.REFERENCE, label=r"$v\,e^{-v^2/2}$")
     dense = walls[np.argmax(walls.gas_density.value)]

@@ -36,11 +36,12 @@ _REACH = 4.0  # of the histogram of speeds, in units of sqrt(kT/m)
 
 @dataclass(frozen=True)
 class Holder:
-    """An adsorbing wall, and the gas next to it; lengths in the scene's units.
+    """Adsorbing wall, and the gas next to it; lengths in the scene's units.
 
-    kind: "ideal" (a gas dilute also in the well), "layer" (a well narrower than a particle) or "sticky";
-    depth and width of the well, 0 if there is none; momentum below which particles stick, or 0; outside: the
-    length along x that centres of the gas can reach.
+    kind : "ideal" (a gas dilute also in the well), "layer" (a well narrower than a particle) or "sticky".
+    depth, width : of the well, 0 without a well.
+    momentum : momentum below which particles stick, or 0.
+    outside : length along x that centres of the gas can reach.
     """
 
     kind: str
@@ -55,7 +56,10 @@ class Holder:
 
     @classmethod
     def of(cls, point: Point) -> Holder:
-        """From a point of one species in three dimensions, between x_low and a thermal x_high."""
+        """Return the wall of a point of one species in three dimensions.
+
+        The gas is between x_low and a thermal x_high.
+        """
         scene = point.scene
         face, species = scene.faces["x_low"], scene.species[0]
         low, high = (ends[0] for ends in scene.reach(species.radius))
@@ -78,37 +82,42 @@ class Holder:
         )
 
     def held(self, height: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Whether particles are held: in the well, or without a velocity along x, as only stuck particles
-        are.
+        """Return True for particles in the well, or stuck.
 
-        height: of centres above the lowest place, of any shape, and velocity along x of the same.
+        Only stuck particles have no velocity along x. The heights are those of centres above the lowest
+        position, of any shape, and the velocities along x have the same shape.
         """
         return height < self.width if self.kind != "sticky" else velocity == 0.0
 
     def coverage(self, count: float | np.ndarray) -> float | np.ndarray:
-        """The share of the wall's area that so many particles cover."""
+        """Compute the fraction of the wall's area that `count` particles cover."""
         return count * particle_volume(2, 2.0 * self.radius) / self.area
 
     def gas_density(self, count: np.ndarray) -> np.ndarray:
-        """The number density of so many particles at least a diameter from both walls and from the well."""
+        """Compute the number density of `count` particles at least a diameter from walls and well."""
         return count / ((self.outside - 4.0 * self.radius) * self.area)
 
     def activity(self, density: float | np.ndarray) -> float | np.ndarray:
-        """The pressure of the gas in k_B T, as the coverage of a layer whose particles do not
-        interact: beta P w e^{depth/kT} pi sigma^2 / 4, a packing fraction (0 without a well)."""
+        """Compute the pressure of the gas in k_B T, as the coverage of an ideal layer.
+
+        Its particles do not interact: beta P w e^{depth/kT} pi sigma^2 / 4, a packing fraction (0 without a
+        well).
+        """
         eta = density * particle_volume(3, 2.0 * self.radius)
         pressure = density * compressibility_factor(eta, 3)
         return pressure * self._hold
 
     def ideal_ratio(self, held: np.ndarray, others: np.ndarray) -> np.ndarray:
-        """The ratio of so many particles in the well to the others, of an ideal gas in their place."""
+        """Compute the ratio of particles in the well to the others, for an ideal gas instead."""
         densities = held / (self.width * self.area), others / (self.outside * self.area)
         excess = excess_in_well(*densities, 2.0 * self.radius, self.width, self.outside)
         return held / others * np.exp(-excess)
 
     def filling(self, held: float, density: float, others: float) -> float:
-        """The coverage of a layer of so many particles over that of hard discs in equilibrium with a gas of
-        this density and so many others."""
+        """Compute the coverage of a layer relative to hard discs in equilibrium with a gas.
+
+        The layer has `held` particles; the gas has this density and `others` particles.
+        """
         diameter, coverage = 2.0 * self.radius, float(self.coverage(held))
         width = self.width / diameter
         discs = coverage * float(layer_diameter(width)) ** 2
@@ -120,29 +129,31 @@ class Holder:
         return self.width * np.exp(self.depth / self.temperature) * particle_volume(2, 2.0 * self.radius)
 
     def fugacity(self, density: float | np.ndarray) -> float | np.ndarray:
-        """`activity` with that of the gas, rho exp(mu_excess / kT), in the place of its pressure: what it
-        would be if the layer felt nothing of the gas in front of it."""
+        """Compute the `activity` with the gas's activity in place of its pressure.
+
+        It is rho exp(mu_excess / kT): the result if the layer felt nothing of the gas in front of it.
+        """
         eta = density * particle_volume(3, 2.0 * self.radius)
         return density * np.exp(excess_chemical_potential(eta, 3)) * self._hold
 
 
 def adsorption(points: list[Point], settings: dict) -> xr.Dataset:
-    """Adsorption on a wall, by point.
+    """Measure adsorption on a wall, by point.
 
-    settings: `blocks` of each replica, `layer_blocks` where the wall holds a layer; `near`, the distance
-    from the edge of the well, or from where particles stick, within which the velocities of leaving
+    The settings are `blocks` of each replica, `layer_blocks` where the wall holds a layer; `near`, the
+    distance from the edge of the well, or from where particles stick, within which the velocities of leaving
     particles are read; `bins` of their speeds.
 
     Dimensions point, bin. Of every point: kind, temperature, depth, width, momentum, mass and outside, as in
-    `Holder`; with _error: held, the mean number of held particles; ratio, of it to the others; coverage, the
-    share of the wall's area that they cover; gas_density far from both walls; flux (bin), the density of the
-    normal speeds of particles that leave, in units of sqrt(kT/m), and slow_share, that of those below
-    `slow_speed`, the sticky wall's limit (1 for wells; NaN both for layers). Of wide wells, whose gas is
-    ideal but for what spheres close to each other: log_ratio, ln of the ideal gas's ratio, and length, which
-    takes the place of the thermal wavelength in it. Of layers: activity, beta P w e^(depth/kT) pi sigma^2/4,
-    and filling, the coverage over that of hard discs in equilibrium with the gas (see
-    `theory.adsorption.layer_activity`); filling_by_activity, the same with the gas's activity alone in the
-    place of its pressure. `_freedom` are the degrees of freedom of the errors.
+    `Holder`; with _error: held, the mean number of held particles; ratio, its ratio to the others; coverage,
+    the fraction of the wall's area that they cover; gas_density far from both walls; flux (bin), the density
+    of the normal speeds of particles that leave, in units of sqrt(kT/m), and slow_share, the fraction of
+    speeds below `slow_speed`, the sticky wall's limit (1 for wells; NaN both for layers). Of wide wells,
+    whose gas is ideal but for what spheres close to each other: log_ratio, ln of the ideal gas's ratio, and
+    length, which takes the place of the thermal wavelength in it. Of layers: activity, beta P w e^(depth/kT)
+    pi sigma^2/4, and filling, the coverage divided by the coverage of hard discs in equilibrium with the gas
+    (see `theory.adsorption.layer_activity`); filling_by_activity, the same with the gas's activity alone in
+    the place of its pressure. `_freedom` are the degrees of freedom of the errors.
     """
     dataset = table("point", points, _measured, settings, inner=("bin",))
     return dataset.assign_coords(speed=("bin", _speeds(settings).middles[0])).set_coords("experiment")
@@ -153,7 +164,7 @@ def _speeds(settings: dict) -> Grid:
 
 
 def _measured(point: Point, settings: dict) -> dict[str, Any]:
-    """The values of one point."""
+    """Return the values of one point."""
     holder = Holder.of(point)
     slow = holder.momentum / np.sqrt(holder.mass * holder.temperature) or 1.0
     layer = holder.kind == "layer"
@@ -184,8 +195,10 @@ def _measured(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _amounts(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray) -> dict[str, tuple]:
-    """(value, error) of the adsorbed amount by name: the number, its ratio to the free particles and the
-    coverage; and of the density of the gas."""
+    """Compute (value, error) of the adsorbed amount, and of the density of the gas, by name.
+
+    The amounts are the number, its ratio to the free particles and the coverage.
+    """
     return {
         "held": jackknife(lambda inside: inside, held),
         "ratio": jackknife(lambda inside, others: inside / others, held, free),
@@ -195,7 +208,7 @@ def _amounts(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray
 
 
 def _well(holder: Holder, held: np.ndarray, free: np.ndarray) -> dict[str, tuple]:
-    """(value, error) of the ratio that an ideal gas would have, and of the length that follows from it."""
+    """Compute (value, error) of the ratio of an ideal gas, and of the length that follows."""
     depth = holder.depth / holder.temperature
 
     def length(inside: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -208,7 +221,7 @@ def _well(holder: Holder, held: np.ndarray, free: np.ndarray) -> dict[str, tuple
 
 
 def _desorption(slowly: np.ndarray, flux: np.ndarray, width: float) -> dict[str, tuple]:
-    """(value, error) of the density of normal speeds in bins of a width, and of the share of slow ones."""
+    """Compute (value, error) of the density of normal speeds in bins, and of slow ones' fraction."""
     return {
         "flux": jackknife(lambda share: share / (share.sum() * width), flux),
         "slow_share": jackknife(lambda some, share: some / share.sum(), slowly, flux),
@@ -216,8 +229,10 @@ def _desorption(slowly: np.ndarray, flux: np.ndarray, width: float) -> dict[str,
 
 
 def _isotherm(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray) -> dict[str, tuple]:
-    """(value, error) of the activity of the gas, and of the coverage over that of hard discs in equilibrium
-    with it."""
+    """Compute (value, error) of the activity of the gas, and of the relative coverage.
+
+    The coverage is relative to hard discs in equilibrium with the gas.
+    """
 
     def activity(counted: np.ndarray) -> float | np.ndarray:
         return holder.activity(holder.gas_density(counted))
@@ -237,11 +252,11 @@ def _isotherm(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarra
 
 
 def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings: dict, slow: float) -> tuple:
-    """Means over the frames of one block: held particles, the others, those of the gas that are a diameter
-    and more from both walls (and from the well); and of those that leave near the wall, the flux below the
-    speed `slow`, and (bins,) by speed.
+    """Average counts of particles and fluxes over the frames of one block.
 
-    height (T, N): of centres above the lowest place; velocity (T, N) along x.
+    The counts are of held particles, of the others, and of the gas a diameter and more from both walls (and
+    from the well); the fluxes are of particles that leave near the wall, below the speed `slow`, and (bins,)
+    by speed. `height` (T, N) are heights of centres above the lowest position, `velocity` (T, N) is along x.
     """
     held = holder.held(height, velocity)
     above = height - holder.width
@@ -257,7 +272,7 @@ def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings
 
 
 def _parts(holder: Holder, run: Run, blocks: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """(height, velocity) of each block of a run."""
+    """Return (height, velocity) of each block of a run."""
     run.block_length(blocks)
     height = run.data["coordinates"][1:, :, 0].values.astype(float) - holder.radius
     velocity = run.data["velocities"][1:, :, 0].values.astype(float)

@@ -19,21 +19,21 @@ STATISTICAL = "the statistical error of the direct simulation"
 
 
 def _name(row: Row) -> str:
-    """The particle that a row describes."""
+    """Return the particle that a row describes."""
     gas = ", gas of equal speeds" if row.equal_speeds else ""
     steps = "time-stepped, " if row.stepped else ""
     return f"{steps}mass {row.mass / row.gas_mass:g} times a gas particle's{gas}"
 
 
 def _source(row: Row) -> str:
-    """The source of what is expected of a row."""
+    """Return the source of the expected values of a row."""
     if not row.is_light:
         return LANGEVIN
     return RELAXING if row.equal_speeds else BOLTZMANN
 
 
 def brownian_paths(ds: xr.Dataset) -> list[Claim]:
-    """Distances from the start at the end of the paths."""
+    """Return the claims on distances from the start at the end of the paths."""
     return [
         Claim.chi_square(
             claim=f"ends of {row.replicas} paths over their variance from rest, {_name(row)}",
@@ -47,8 +47,11 @@ def brownian_paths(ds: xr.Dataset) -> list[Claim]:
 
 
 def brownian_msd(ds: xr.Dataset) -> list[Claim]:
-    """Equipartition, friction and diffusion of every point, and the mean free path that theory requires; the
-    same numbers by both engines where both have run a scene."""
+    """Return the claims on equipartition, friction and diffusion of every point.
+
+    They include the mean free path that theory requires, and the ratio of both engines where both have run a
+    scene.
+    """
     points = Table(ds, "point")
     claims = [claim for row in points for claim in _coefficients(row)]
     for steps in points[points.stepped]:
@@ -59,7 +62,7 @@ def brownian_msd(ds: xr.Dataset) -> list[Claim]:
 
 
 def _both_engines(steps: Row, events: Row) -> list[Claim]:
-    """What time steps give of a scene over what events do, from independent runs."""
+    """Return the claims on the ratio of time steps to events, from independent runs."""
     return [
         Claim(
             claim=f"{text} by time steps over that by events, {_name(events)}",
@@ -79,8 +82,11 @@ def _both_engines(steps: Row, events: Row) -> list[Claim]:
 
 
 def _alternative(row: Row, key: str) -> float | None:
-    """What a competing theory expects: of a gas of equal speeds, that it is in equilibrium; of one that is,
-    that the particle's own radius counts instead of the distance of contact."""
+    """Return the value of a competing theory.
+
+    For a gas of equal speeds the competing theory states that it is in equilibrium; for a gas in equilibrium,
+    that the particle's own radius counts instead of the distance of contact.
+    """
     if row.equal_speeds:
         return 1.0 if key == "equipartition" else float(row[key])
     bare = (row.radius / row.contact) ** 2

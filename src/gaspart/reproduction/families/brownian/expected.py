@@ -1,5 +1,7 @@
-"""Theory of a large particle's motion: Langevin's equation, and the linear Boltzmann equation of a light
-one."""
+"""Theory of a large particle's motion, by Langevin's and by the linear Boltzmann equation.
+
+The latter is for a light particle.
+"""
 
 from __future__ import annotations
 
@@ -15,21 +17,27 @@ from gaspart.reproduction.points.point import Point
 from gaspart.theory.boltzmann import relaxing_speeds, tagged_paths
 
 HEAVY = 10.0
-"""Mass over that of a gas particle above which Langevin's equation is taken as exact. It is a sphere's in the
-limit of a large ratio; the velocity autocorrelation of one of equal mass decays 0.6 % more slowly up to half
-a friction time."""
+"""Mass divided by a gas particle's mass above which Langevin's equation is taken as exact.
+
+It is exact for a sphere in the limit of a large ratio; the velocity autocorrelation of a particle of equal
+mass decays 0.6 % more slowly up to half a friction time.
+"""
 GROUPS, MOST = 200, 300
-"""Groups of paths of the linear Boltzmann equation, each as many as the point has replicas, up to MOST: the
-statistical error of theory is the measurement's over sqrt(200), which is negligible, or that of 60 000
-paths."""
+"""Groups of paths of the linear Boltzmann equation, and the maximum number of paths in each.
+
+Each group has as many paths as the point has replicas, up to MOST: the statistical error of theory is the
+error of the measurement divided by sqrt(200), which is negligible, or the error of 60 000 paths.
+"""
 GAS = 100_000
 """Gas particles from whose speeds those that hit are drawn."""
 
 
 @dataclass(frozen=True)
 class BrownianMotion:
-    """Theory's predictions for a point. share: the large particle's part of all mass where momentum is
-    conserved (all axes periodic), else 0."""
+    """Theory's predictions for a point.
+
+    `share` is the large particle's part of all mass where momentum is conserved (all axes periodic), else 0.
+    """
 
     mass: float
     gas_mass: float
@@ -43,12 +51,15 @@ class BrownianMotion:
 
     @property
     def is_light(self) -> bool:
-        """Whether it is too light for Langevin's equation."""
+        """True if the particle is too light for Langevin's equation."""
         return self.mass <= HEAVY * self.gas_mass
 
 
 def motion_of(point: Point) -> BrownianMotion:
-    """The motion of a point's scene; SceneError for one that has not one particle and one species."""
+    """Return the motion of a point's scene of one particle and one species.
+
+    Raises SceneError for others.
+    """
     scene, where = point.scene, f"experiments.{point.experiment}.scene"
     if len(scene.particles) != 1 or len(scene.species) != 1:
         raise SceneError(
@@ -76,10 +87,10 @@ def motion_of(point: Point) -> BrownianMotion:
 
 
 def light_paths(point: Point, motion: BrownianMotion) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Paths of the linear Boltzmann equation from rest, sampled as the point's runs, in GROUPS: times (T,),
-    displacements and velocities (T, N, 3).
+    """Yield paths of the linear Boltzmann equation from rest, in GROUPS.
 
-    A gas of equal speeds relaxes by its own collisions meanwhile.
+    They are sampled as the point's runs: times (T,), displacements and velocities (T, N, 3). A gas of equal
+    speeds relaxes by its own collisions meanwhile.
     """
     gas, times = point.scene.species[0], point.schedule
     frames = times.equilibration_frames + times.samples

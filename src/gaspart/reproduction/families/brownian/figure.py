@@ -16,11 +16,11 @@ from gaspart.reproduction.table import Row, Table
 LONGEST = 3.2
 """Friction times up to which the velocity autocorrelation is drawn: noise dominates beyond."""
 MOST = 10
-"""About so many of its points are drawn of each sphere."""
+"""Approximate number of points that are drawn for each sphere."""
 
 
 def brownian_paths(ds: xr.Dataset) -> Figure:
-    """Paths from above, a panel for each point; in the middle, the sphere to scale."""
+    """Draw paths from above, a panel for each point; in the middle, the sphere to scale."""
     from matplotlib.patches import Circle
 
     spheres = Table(ds, "point")
@@ -42,8 +42,11 @@ def brownian_paths(ds: xr.Dataset) -> Figure:
 
 
 def brownian_msd(ds: xr.Dataset) -> Figure:
-    """Mean-squared displacement and velocity autocorrelation, with those of the Langevin equation; below, the
-    deviations from it, with those that theory expects of a light particle as lines."""
+    """Draw mean-squared displacement and velocity autocorrelation, with the Langevin equation.
+
+    Below are the deviations from the Langevin equation, with the expected deviations of a light particle as
+    lines.
+    """
     figure, (far, ratio, memory, difference) = style.new((2.4, 1.1), (2.4, 1.1))
     spheres = Table(ds, "point")
     t = np.geomspace(0.05, 1.05 * np.nanmax(spheres.time), 300)
@@ -71,12 +74,12 @@ def brownian_msd(ds: xr.Dataset) -> Figure:
 
 
 def _langevin(time: np.ndarray) -> np.ndarray:
-    """The mean-squared displacement in reduced units."""
+    """Compute the mean-squared displacement in reduced units."""
     return np.asarray(theory.langevin_msd(time, 1.0 / 6.0, 1.0))
 
 
 def _displacement(axis: Axes, residual: Axes, sphere: Row, label: str, look: dict) -> None:
-    """The mean-squared displacement of one sphere, and its ratio to that of the Langevin equation."""
+    """Draw the mean-squared displacement of one sphere, and its ratio to the Langevin equation."""
     time = sphere.time[np.isfinite(sphere.time)]
     shown = np.unique(np.round(np.geomspace(1, time.size - 1, 16)).astype(int))
     msd = sphere.msd[shown]
@@ -88,7 +91,7 @@ def _displacement(axis: Axes, residual: Axes, sphere: Row, label: str, look: dic
 
 
 def _memory(axis: Axes, residual: Axes, sphere: Row, label: str, look: dict) -> None:
-    """The velocity autocorrelation of one sphere, and its difference from that of the Langevin equation."""
+    """Draw the velocity autocorrelation of one sphere, less that of the Langevin equation."""
     early = np.flatnonzero(sphere.time < LONGEST)
     if sphere.is_light:
         expected = sphere.expected_vacf[early] - np.exp(-sphere.time[early])

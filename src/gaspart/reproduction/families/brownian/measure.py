@@ -1,8 +1,9 @@
 """A large particle among small ones: its paths, its mean-squared displacement, its friction.
 
-The scene's first particle is the tracked one; its gas is the first species. Theory's time is that of the
-friction: 1 / `friction`, from the actual gas density, outside the large particle. What is expected of a
-heavy particle is Langevin's equation, of one that is not much heavier than a gas particle `expected`'s.
+The scene's first particle is the tracked one; its gas is the first species. Theory's time is the time of the
+friction: 1 / `friction`, from the actual gas density, outside the large particle. A heavy particle is
+expected to follow Langevin's equation, a particle that is not much heavier than a gas particle the theory of
+`expected`.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ NAMES = {
 
 
 def _followed(point: Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Times (T,) of each replica, displacements and velocities of its first particle (T, 1, 3)."""
+    """Yield times (T,) of each replica, displacements and velocities of its first particle (T, 1, 3)."""
     if not point.settings.get("displacements", False):
         raise SceneError(f"experiments.{point.experiment}.displacements", False, "must be true")
     for run in runs(point, first=0):
@@ -48,12 +49,12 @@ def _followed(point: Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray
 
 
 def brownian_paths(points: list[Point], settings: dict) -> xr.Dataset:
-    """The first `paths` ways of each point, and how far all of its replicas have come in the end.
+    """Measure the first `paths` paths of each point, and the final displacements of all replicas.
 
-    Lengths are the scene's. `end_chi_square`: of the components of all ends, each over the variance that is
-    expected from rest. That of the Langevin equation has the share of the gas, as in `brownian_msd`, with its
-    drift of mean square (1 - share) share k_B T / M along each axis (its momentum is drawn with the
-    velocities). Dimensions point, path, frame, axis.
+    Lengths are the scene's. `end_chi_square` is that of the components of all ends, each divided by the
+    variance that is expected from rest. The variance of the Langevin equation has the share of the gas, as in
+    `brownian_msd`, with its drift of mean square (1 - share) share k_B T / M along each axis (its momentum is
+    drawn with the velocities). Dimensions point, path, frame, axis.
     """
     return table("point", points, _ends, settings["paths"], inner=("path", "frame", "axis"))
 
@@ -73,7 +74,7 @@ def _ends(point: Point, paths: int) -> dict[str, Any]:
 
 
 def _end_variance(point: Point, motion: BrownianMotion, duration: float) -> float:
-    """Expected mean square of a component of the displacement at the end."""
+    """Compute the expected mean square of a component of the displacement at the end."""
     if motion.is_light:
         return float(np.mean([(moved[-1] ** 2).mean() for _, moved, _ in light_paths(point, motion)]))
     rest = 1.0 - motion.share
@@ -84,16 +85,18 @@ def _end_variance(point: Point, motion: BrownianMotion, duration: float) -> floa
 
 
 def brownian_msd(points: list[Point], settings: dict) -> xr.Dataset:
-    """Mean-squared displacement and velocity autocorrelation of the large particle, and the quantities
-    derived from them.
+    """Measure the displacement and velocity autocorrelation of the large particle.
 
-    In a periodic container the gas as a whole drifts, and absorbs the momentum that the particle loses:
-    with `share` s and friction g the correlation is (k_B T / M)(1 - s)(exp(-g' t) + s), g' = g / (1 - s).
-    The constant part is subtracted from correlation and msd; what follows is brought to an infinite gas:
+    Quantities derived from them are measured too.
+
+    In a periodic container the gas as a whole drifts, and absorbs the momentum that the particle loses: with
+    `share` s and friction g the correlation is (k_B T / M)(1 - s)(exp(-g' t) + s), g' = g / (1 - s). The
+    constant part is subtracted from correlation and msd; what follows is brought to an infinite gas:
     `equipartition` is M <V^2> / (3 k_B T (1 - s)), `measured_friction` (1 - s) times the decay rate, the
-    slope of ln C until FRICTION_TO, `measured_diffusion` D times the msd at DIFFUSION_AT over that of the
-    Langevin equation. `equal_speeds` and `stepped`: of the gas at the start, and by the time-stepped engine.
-    `expected_...`: the same of theory, with the statistical error of its direct simulation, if it is one.
+    slope of ln C until FRICTION_TO, `measured_diffusion` D times the msd at DIFFUSION_AT divided by the msd
+    of the Langevin equation. `equal_speeds` and `stepped` state properties of the gas at the start, and by
+    the time-stepped engine. `expected_...` are the predictions of theory, with the statistical error of its
+    direct simulation, if it is one.
 
     Dimensions point, lag: `time` in 1 / g', `vacf` in (1 - s) k_B T / M, `msd` in 6 (1 - s) k_B T / (M g'^2),
     `expected_vacf` and `expected_msd`. Errors: standard errors over replicas (bootstrap for the numbers).
@@ -120,7 +123,7 @@ def _statistics(point: Point) -> dict[str, Any]:
 def _reduced(
     point: Point, motion: BrownianMotion, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> tuple[dict[str, Any], dict[str, Estimate]]:
-    """The correlations of paths in reduced units, and their errors, and the quantities derived from them."""
+    """Compute the correlations of paths in reduced units, their errors, and derived quantities."""
     rest = 1.0 - motion.share
     rate, curves = motion.friction / rest, _curves(point, motion, paths)
     time = rate * curves[0].time
@@ -138,7 +141,7 @@ def _reduced(
     both = np.concatenate([vacf[:, : early.size + 1], msd[:, [late]]], axis=1)
 
     def decay(x: np.ndarray) -> float:
-        """Slope of the line through -ln C / C(0), which is 0 at the first lag."""
+        """Compute the slope of the line through -ln C / C(0), which is 0 at the first lag."""
         logarithm = np.log(x[:, 1:-1].mean(axis=0) / x[:, 0].mean())
         return -float(early @ logarithm / (early @ early))
 
@@ -169,7 +172,7 @@ def _curves(
 
 
 def _facts(point: Point, motion: BrownianMotion) -> dict[str, Any]:
-    """The columns of every row."""
+    """Return the columns of every row."""
     return {
         "equal_speeds": point.scene.species[0].speed is not None,
         "stepped": point.settings.get("engine") == "step",

@@ -20,14 +20,17 @@ _NEAREST = 4
 
 
 def buoyancy(ds: xr.Dataset) -> list[Claim]:
-    """Archimedes's principle; the displaced radius; the heights of free discs, and of the source's."""
+    """Return the claims on Archimedes's principle, the displaced radius, and heights of discs.
+
+    The heights are of free discs, and of the source's discs.
+    """
     fixed, free, source = (Table.prefixed(ds, kind) for kind in ("fixed", "free", "source"))
     largest = Table(ds, "height").displaced.max()
     return [*_fixed(fixed), *(_free(disc, largest) for disc in free), *(_source(source) if source else [])]
 
 
 def _fixed(discs: Table) -> list[Claim]:
-    """The force on fixed discs."""
+    """Return the claims on the force on fixed discs."""
     of_all = discs.force_radius.weights @ discs.radius_expected
     return [
         *each(
@@ -63,12 +66,15 @@ def _fixed(discs: Table) -> list[Claim]:
 
 
 def _nearer(radius: float | np.ndarray) -> np.ndarray:
-    """R or R + r, as 0 or 1, whichever is nearer."""
+    """Compute R or R + r, as 0 or 1, whichever is nearer."""
     return np.where(radius < 0.5, 0.0, 1.0)
 
 
 def _free(disc: Row, largest: float) -> Claim:
-    """A free disc floats where it displaces its mass, or lies on the floor if it always displaces less."""
+    """Return the claim on the height of a free disc.
+
+    It floats where it displaces its mass, or lies on the floor if it always displaces less.
+    """
     if disc.mass <= largest:
         return _floating(disc, "a free disc")
     return Claim.at_most(
@@ -82,7 +88,7 @@ def _free(disc: Row, largest: float) -> Claim:
 
 
 def _floating(disc: Row, name: str) -> Claim:
-    """The mean height of a disc that floats."""
+    """Return the claim on the mean height of a disc that floats."""
     return Claim(
         claim=f"mean height of {name} of mass {disc.mass:g}",
         measured=disc.height,
@@ -94,7 +100,10 @@ def _floating(disc: Row, name: str) -> Claim:
 
 
 def _source(discs: Table) -> list[Claim]:
-    """Source C's discs of many densities: which float, where, and which one in the middle."""
+    """Return the claims on source C's discs of many densities.
+
+    They state which discs float, at which height, and the density of the one in the middle.
+    """
     near = np.minimum(discs.expected - discs.lowest, discs.highest - discs.expected)
     middle = 0.5 * (discs.lowest[0] + discs.highest[0])
     afloat, lying = discs[near > AFLOAT], discs[near < LYING]
@@ -111,7 +120,7 @@ def _source(discs: Table) -> list[Claim]:
 
 
 def _lying(distance: Estimate, which: str) -> Claim:
-    """Discs that are held at floor or ceiling: the one that is farthest from it."""
+    """Return the claim on the disc that is farthest from floor or ceiling, among discs held there."""
     farthest = distance[np.argmax(distance.value)]
     return Claim.at_most(
         claim=f"largest mean distance of {len(distance)} of the source's {which}",
@@ -124,7 +133,10 @@ def _lying(distance: Estimate, which: str) -> Claim:
 
 
 def _neutral(discs: Table, middle: float) -> Claim:
-    """The density at which a disc floats in the middle, from a line through the heights about it."""
+    """Return the claim on the density at which a disc floats in the middle.
+
+    It follows from a line through the heights about the middle.
+    """
     near = discs[np.argsort(abs(discs.height.value - middle))[:_NEAREST]]
     density, height = near.density, near.height - middle
     offset, slope = fit_polynomial(density, height).values

@@ -13,7 +13,7 @@ from gaspart.theory.brownian import displaced_area
 
 
 def buoyancy(ds: xr.Dataset) -> Figure:
-    """Force against density, the radius that counts as displaced, and the heights of free discs."""
+    """Draw force against density, the displaced radius, and the heights of free discs."""
     fixed, free, source = (Table.prefixed(ds, kind) for kind in ("fixed", "free", "source"))
     figure, axes = style.new((2.1, 2.1), (2.1,), *([(2.1,)] if source else []))
     top, middle, bottom = axes[:3]
@@ -26,8 +26,10 @@ def buoyancy(ds: xr.Dataset) -> Figure:
 
 
 def _displaced(top: Axes, middle: Axes, discs: Table, ratio: float) -> None:
-    """What fixed discs displace, and the radius that counts, from the force and from the small discs that are
-    missing, with theory."""
+    """Draw the mass that fixed discs displace, and the displaced radius, with theory.
+
+    The radius follows from the force and from the small discs that are missing.
+    """
     packing = discs.packing_fraction.value
     eta = np.linspace(0.0, 1.1 * packing.max(), 200)
     for area, label, dashes in (
@@ -48,7 +50,7 @@ def _displaced(top: Axes, middle: Axes, discs: Table, ratio: float) -> None:
 
 
 def _heights(axis: Axes, discs: Table, fluid: Table) -> None:
-    """Free discs: mean heights and their fluctuations, with theory."""
+    """Draw free discs: mean heights and their fluctuations, with theory."""
     axis.plot(fluid.displaced, fluid.height, color=style.DATA, label=r"displaces $M$", zorder=2)
     for disc in discs:
         label = "fluctuates" if disc.mass == discs.mass[0] else None
@@ -62,7 +64,10 @@ def _heights(axis: Axes, discs: Table, fluid: Table) -> None:
 
 
 def _source(axis: Axes, discs: Table) -> None:
-    """The source's discs of many densities: mean heights, with theory, from the floor to the ceiling."""
+    """Draw the mean heights of the source's discs of many densities, with theory.
+
+    The axis is from the floor to the ceiling.
+    """
     density = discs.density / discs.source_density
     for end in (discs.lowest[0], discs.highest[0]):
         style.level(axis, end, ls=":")

@@ -1,8 +1,8 @@
-"""A large disc in a fluid of small ones under gravity: the force on it held fast, where it floats set free.
+"""A large disc in a fluid of small ones under gravity: its force if fixed, its height if free.
 
-The force on a fixed disc is what is missing in the fluid's balance of momentum, and so is exact over any
-time: floor - ceiling - weight - gain of momentum. The large disc is the scene's first particle, and the small
-ones its one species. Stretches and errors are those of `gaspart.reproduction.families.gravity.measure`.
+The force on a fixed disc is the missing term in the fluid's balance of momentum, and so is exact over any
+time, floor - ceiling - weight - gain of momentum. The large disc is the scene's first particle, and the small
+ones its one species. Stretches and errors are defined in `gaspart.reproduction.families.gravity.measure`.
 """
 
 from __future__ import annotations
@@ -32,19 +32,20 @@ from gaspart.theory.tables import excess_chemical_potential, packing_fraction_at
 
 
 def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
-    """Fixed discs at several heights, and free ones of several masses, in one and the same fluid; and the
-    source's free discs in its own fluid.
+    """Measure fixed and free discs in one fluid, and the source's free discs in its own fluid.
 
-    settings: `source`, the experiments of the source's fluid; `bins` of height; `blocks` of each replica;
-    `clear`, the small diameters next to floor and ceiling where layers are, not hydrostatics; `far`, the
-    small diameters across from the large disc's edge from which on the fluid is undisturbed; `near`, those
-    within which it is disturbed, and the small discs that are missing are counted; `source_density`, at which
-    a disc floats in the middle by the source's estimate.
+    The fixed discs are at several heights, the free ones of several masses.
+
+    The settings are `source`, the experiments of the source's fluid; `bins` of height; `blocks` of each
+    replica; `clear`, the small diameters next to floor and ceiling where layers are, not hydrostatics; `far`,
+    the small diameters across from the large disc's edge from which on the fluid is undisturbed; `near`, the
+    small diameters within which it is disturbed, and the small discs that are missing are counted;
+    `source_density`, at which a disc floats in the middle by the source's estimate.
 
     Dimensions fixed, free, source, and height of a theoretical curve: the mass displaced in the mean fluid of
-    the fixed points. Heights are those of `columns`; masses are in those of a small disc. `force_radius` is
-    how much larger than the large disc, in small radii, is the disc of undisturbed fluid whose weight is the
-    force; `count_radius`, that of as many discs as are missing.
+    the fixed points. Heights are those that `columns` defines; masses are in masses of a small disc.
+    `force_radius` is how much larger than the large disc, in small radii, is the disc of undisturbed fluid
+    whose weight is the force; `count_radius` is the same for as many discs as are missing.
     """
     of_source = [point for point in points if point.experiment in settings["source"]]
     own = [point for point in points if point not in of_source]
@@ -68,17 +69,17 @@ def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _heights(place: Field) -> np.ndarray:
-    """Those of the curve of the mass displaced."""
+    """Return the heights of the curve of the displaced mass."""
     return np.linspace(0.0, place.height, 201)
 
 
 def _mass(point: Point) -> float:
-    """Of the large disc."""
+    """Return the mass of the large disc."""
     return point.scene.particles[0].mass
 
 
 def _of_blocks(function: Callable[..., Any], *samples: np.ndarray) -> Estimate:
-    """A function of means over blocks, with its error from their scatter."""
+    """Compute a function of means over blocks, with its error from their scatter."""
     return Estimate(*jackknife(function, *samples), len(samples[0]) - 1)
 
 
@@ -87,7 +88,10 @@ def _grid(place: Field, settings: dict) -> Grid:
 
 
 def _far(place: Field, stretch: Stretch, radius: float, settings: dict) -> np.ndarray:
-    """(B,) density of the small discs far from the large one, of this radius, in bins of height."""
+    """Compute the density (B,) of small discs far from the large one, in bins of height.
+
+    `radius` is the radius of the large disc.
+    """
     across = np.abs(stretch.positions[..., 0] - stretch.positions[:, :1, 0])
     distance = radius + settings["far"] * place.diameter
     far = np.minimum(across, place.width - across) > distance
@@ -99,7 +103,10 @@ def _far(place: Field, stretch: Stretch, radius: float, settings: dict) -> np.nd
 def _fluid(
     place: Field, density: np.ndarray, temperature: float, settings: dict
 ) -> Callable[[np.ndarray], float | np.ndarray]:
-    """The packing fraction at any heights: hydrostatics with as many discs as there are, layers excepted."""
+    """Return a function of height: the packing fraction by hydrostatics, without layers.
+
+    The number of discs is the actual one.
+    """
     width = place.height / len(density)
     skip = int(np.ceil(settings["clear"] * place.diameter / width))
     z = np.linspace(skip * width, (len(density) - skip) * width, 1001)
@@ -112,8 +119,10 @@ def _fluid(
 
 
 def _fixed(point: Point, settings: dict) -> dict:
-    """Force and effective radius of a fixed disc, and the fluid at its height; `fluid`, the packing fraction
-    of the undisturbed one at `_heights`."""
+    """Measure force and effective radius of a fixed disc, and the fluid at its height.
+
+    `fluid` is the packing fraction of the undisturbed fluid at `_heights`.
+    """
     place, found = field(point), stretches(point, settings["blocks"])
     radius, height = _large(point, place)
     ratio, volume = 2.0 * radius / place.diameter, particle_volume(2, place.diameter)
@@ -152,13 +161,13 @@ def _fixed(point: Point, settings: dict) -> dict:
 
 
 def _disc(radius: float, points: int = 400) -> tuple[np.ndarray, np.ndarray]:
-    """Strips of a disc: area and height above its centre, (points,) each."""
+    """Compute strips of a disc: area and height above its centre, (points,) each."""
     up = radius * ((np.arange(points) + 0.5) * 2.0 / points - 1.0)
     return 2.0 * np.sqrt(radius**2 - up**2) * 2.0 * radius / points, up
 
 
 def _inside(place: Field, stretch: Stretch, height: float, radius: float) -> float:
-    """Mean number of small discs within `radius` of the large one's centre."""
+    """Compute the mean number of small discs within `radius` of the large one's centre."""
     across = np.abs(stretch.positions[:, 1:, 0] - stretch.positions[:, :1, 0])
     across = np.minimum(across, place.width - across)
     square = across**2 + (stretch.heights[:, 1:] - height) ** 2
@@ -166,7 +175,10 @@ def _inside(place: Field, stretch: Stretch, height: float, radius: float) -> flo
 
 
 def _free(point: Point, settings: dict) -> dict:
-    """Where a free disc is, and where Boltzmann's factor of its weight and the displaced one's wants it."""
+    """Measure the position of a free disc, and compute it from Boltzmann's factor.
+
+    The factor is of its weight and the displaced weight.
+    """
     place, found = field(point), stretches(point, settings["blocks"])
     radius, _ = _large(point, place)
     ratio, mass = 2.0 * radius / place.diameter, _mass(point)
@@ -197,6 +209,6 @@ def _free(point: Point, settings: dict) -> dict:
 
 
 def _large(point: Point, place: Field) -> tuple[float, float]:
-    """Radius of the large disc, and the height of its place in the scene file."""
+    """Return the radius of the large disc, and its height in the scene file."""
     particle = point.scene.particles[0]
     return particle.radius, particle.position[1] - 0.5 * place.diameter

@@ -15,7 +15,7 @@ _IDLE = "the uncertainty has what other programs took of the cores, for which ru
 
 
 def cores(dataset: xr.Dataset) -> list[Claim]:
-    """Any number of threads gives the bits of one; on two cores they are faster."""
+    """Return the claims that threads give the bits of one thread, and that two cores are faster."""
     runs = Table.prefixed(dataset, "run")
     two = runs[runs.cores == 2]
     threads = two[(two.copies == 1) & (two.count >= LARGE)]
@@ -51,7 +51,7 @@ def cores(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _bits(engine: str, runs: Table) -> Claim:
-    """One claim for all runs of an engine."""
+    """Return one claim for all runs of an engine."""
     return Claim(
         claim=f"runs on several cores that differ from one core in any bit, {engine}, of {len(runs)}",
         measured=Estimate(float((runs.same == 0).sum())),

@@ -17,8 +17,11 @@ _LABEL = "speed over one core"
 
 
 def cores(dataset: xr.Dataset) -> Figure:
-    """Speed on two cores against the number of particles, by threads and by runs at once, with the model; and
-    against the number of cores."""
+    """Draw speed on several cores against the number of particles and of cores, with the model.
+
+    The first panels are for two cores, by threads and by runs at once; the last one is against the number of
+    cores.
+    """
     figure, axes = style.new((2.6,), (2.6,), (2.6,), (2.6,))
     runs, models = Table.prefixed(dataset, "run"), Table.prefixed(dataset, "model")
     fractions = sorted(set(runs.packing_fraction.tolist()))
@@ -36,7 +39,7 @@ def cores(dataset: xr.Dataset) -> Figure:
 
 
 def _by_count(axis: Axes, runs: Table, models: Table, fractions: list[float]) -> None:
-    """The runs of an engine, by the colours of their packing fractions."""
+    """Draw the runs of an engine, by the colours of their packing fractions."""
     named: set[str] = set()  # each in the legend once
     for engine, fraction, copies, gas in runs.by("engine", "packing_fraction", "copies"):
         kind = fractions.index(fraction)
@@ -56,7 +59,10 @@ def _by_count(axis: Axes, runs: Table, models: Table, fractions: list[float]) ->
 
 
 def _by_cores(axis: Axes, runs: Table, models: Table, available: int) -> None:
-    """The gases that run on the most cores, and the model of threads; dotted beyond the machine's cores."""
+    """Draw the gases that run on the most cores, and the model of threads.
+
+    Lines are dotted beyond the machine's cores.
+    """
     fine = np.linspace(1.0, _MOST, 100)
     axis.plot(fine, fine, "--", color=style.GREY, linewidth=0.6, label="ideal")
     for kind, widest in enumerate(runs[runs.cores == runs.cores.max()].sorted_by("copies")):
@@ -75,14 +81,14 @@ def _by_cores(axis: Axes, runs: Table, models: Table, available: int) -> None:
 
 
 def _once(label: str, named: set[str]) -> str:
-    """A label unless it is among those named before, and then none."""
+    """Return a label unless it was named before; then ""."""
     new = label not in named
     named.add(label)
     return label if new else ""
 
 
 def _modelled(models: Table, run: Row, cores: float | np.ndarray, count: float | np.ndarray) -> np.ndarray:
-    """The speed of a run's gas and engine by the model, on so many cores and with so many particles."""
+    """Compute the speed of a run's gas and engine by the model, for numbers of cores and particles."""
     same = (models.engine == run.engine) & (models.packing_fraction == run.packing_fraction)
     model = models[same][0]
     return speed_up(cores, count, model.serial.value, model.overhead.value)

@@ -1,8 +1,8 @@
-"""What several cores gain: threads of one run, and equal runs at once.
+"""Gain by several cores: threads of one run, and equal runs at once.
 
-Each job times them in turn with one run on one core, by the wall's clock. Equal runs at once wait for nothing
-but a core, so the time for which they wait is what other programs took of the cores: of p cores as much is
-part of the uncertainty of each speed on p cores.
+Each job times them alternately with one run on one core, in wall-clock time. Equal runs at once wait for
+nothing but a core, so the time for which they wait is the time that other programs took. For p cores, p times
+this fraction is part of the uncertainty of each speed on p cores.
 """
 
 from __future__ import annotations
@@ -26,13 +26,14 @@ _KNOWN = 0.15  # the relative uncertainty up to which speeds are fitted
 
 
 def cores(points: list[Point], settings: dict) -> xr.Dataset:
-    """Speed-ups, and a model of those by threads.
+    """Measure speed-ups, and fit a model of the speed-ups by threads.
 
-    Over run: engine, packing_fraction, count of particles; copies, of runs at once, 1 for threads; cores
-    used; speed, the work in a time over that of one run on one core, NaN where the machine has too few; same,
-    whether all bits are those of one core. Over model, each gas and engine with threads: engine,
-    packing_fraction, and serial and overhead of `speed_up`. The attribute cores: of the machine, for kernels;
-    waiting: the share of their time for which runs at once waited for a core, NaN if none were timed.
+    Over run: engine, packing_fraction, count of particles; copies, the number of runs at once, 1 for threads;
+    cores used; speed, the work in a time divided by that of one run on one core, NaN where the machine has
+    too few; same, 1 if all bits are those of one core. Over model, each gas and engine with threads: engine,
+    packing_fraction, and serial and overhead of `speed_up`. The attribute cores is the number of the machine,
+    for kernels; waiting is the fraction of their time for which runs at once waited for a core, NaN if no
+    such runs were timed.
     """
     jobs = [_job(point) for point in points]
     waits = [job.pop("waiting") for job in jobs]
@@ -50,7 +51,10 @@ def cores(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _job(point: Point) -> dict:
-    """The row of one job, with its uncertainty from its repeats and from what disturbs entire runs."""
+    """Return the row of one job, with its uncertainty from its repeats.
+
+    The uncertainty includes disturbances of entire runs.
+    """
     copies = point.settings.get("copies", 1)
     with xr.open_dataset(point.path) as run:
         own, alone = np.log(run.wall_seconds.values)
@@ -72,8 +76,11 @@ def _job(point: Point) -> dict:
 
 
 def _model(gas: Table) -> dict:
-    """1 / speed - 1 / p = s (1 - 1 / p) + N_0 / N, fitted to all counts and cores (but see `SLABS`); neither
-    is negative, and one that would be has the uncertainty 0. NaN where fewer than two speeds are known."""
+    """Fit 1 / speed - 1 / p = s (1 - 1 / p) + N_0 / N to all counts and cores (but see `SLABS`).
+
+    Neither parameter is negative, and one that would be has the uncertainty 0. NaN where fewer than two
+    speeds are known.
+    """
     engine = gas.engine[0]
     used = gas.speed.error < _KNOWN * gas.speed.value  # not where there is none, NaN
     if engine in SLABS:

@@ -12,8 +12,13 @@ unevenly, which Amdahl's law does not know."""
 
 
 def speed_up(cores: ArrayLike, count: ArrayLike, serial: float, overhead: float) -> np.ndarray:
-    """Amdahl's law (AFIPS Conf. Proc. 30, 483 (1967)), 1 / (s + (1 - s) / p + N_0 / N) for p cores and N
-    particles. serial: the share s of the work that one core does alone; overhead: N_0, the number of
-    particles whose work on one core takes the time in which threads are begun and waited for."""
+    """Compute the speed-up by Amdahl's law, 1 / (s + (1 - s) / p + N_0 / N).
+
+    There are p cores and N particles (AFIPS Conf. Proc. 30, 483 (1967)).
+
+    serial : fraction s of the work that one core does alone.
+    overhead : N_0, number of particles whose work on one core takes the time in which threads are begun and
+        awaited.
+    """
     shared, waited = (1.0 - serial) / np.asarray(cores), overhead / np.asarray(count)
     return np.asarray(1.0 / (serial + shared + waited))

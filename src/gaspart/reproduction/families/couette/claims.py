@@ -23,7 +23,10 @@ FAST = 2.2
 NEAR = 0.005
 """Packing fractions that differ by less are compared: the ratio to Enskog's changes by less than 1 %."""
 SECOND = 4.0
-"""Of the square of stress over pressure: a bound of terms of second order, 2.5 times `NORMAL_STRESSES`."""
+"""Bound of terms of second order, relative to the square of stress over pressure.
+
+It is 2.5 times `NORMAL_STRESSES`.
+"""
 
 
 ALLOWED = "terms of second order in stress over pressure a: 4 a^2 as 3 sigma"
@@ -34,7 +37,10 @@ RESPONSE: dict[str, Any] = {
 
 
 def couette(ds: xr.Dataset) -> list[Claim]:
-    """Viscosity from the response, slip, free flight, heating and normal stresses."""
+    """Return the claims on viscosity, slip, free flight, heating and normal stresses.
+
+    The viscosity follows from the response.
+    """
     gases = Table(ds, "point")
     gases = gases.assign(gas=[_named(gas) for gas in gases])
     flows, sheared, still = (gases[gases.part == name] for name in ("flows", "sheared", "equilibrium"))
@@ -53,19 +59,19 @@ def couette(ds: xr.Dataset) -> list[Claim]:
 
 
 def _named(gas: Row) -> str:
-    """Engine and gap or density of a gas."""
+    """Return the name of a gas: its engine and gap, or its density."""
     if gas.packing_fraction < DILUTE_SLIP:
         return f"dilute spheres, mean free path {gas.knudsen:.2g} of the gap, {gas.engine} engine"
     return f"spheres at packing fraction {gas.packing_fraction:.2f}"
 
 
 def _second(flows: Table) -> Estimate:
-    """1, with what terms of the second order in the stress may add, as 3 sigma."""
+    """Return 1 with the possible terms of second order in the stress, as 3 sigma."""
     return Estimate(1.0, SECOND * flows.reduced_rate.value**2 / 3.0)
 
 
 def _dilute(dilute: Table) -> list[Claim]:
-    """The viscosity of dilute gases, and their slip at the walls, from both engines."""
+    """Return the claims on viscosity and slip of dilute gases, from both engines."""
     return [
         *each(
             dilute,
@@ -91,7 +97,7 @@ def _dilute(dilute: Table) -> list[Claim]:
 
 
 def _dense(dense: Table) -> list[Claim]:
-    """The viscosity of dense gases, against Enskog."""
+    """Return the claims on the viscosity of dense gases, against Enskog."""
     return each(
         dense,
         "stress over gradient, over Enskog's viscosity, {gas}",
@@ -105,7 +111,10 @@ def _dense(dense: Table) -> list[Claim]:
 
 
 def _over_equilibrium(responses: Table, still: Table) -> dict[str, Estimate]:
-    """The viscosity of gases over that from the fluctuations at the same density, if it is known."""
+    """Compute viscosity divided by its value from fluctuations at the same density.
+
+    Gases without such a value are left out.
+    """
     ratios = {}
     for gas in responses:
         apart = np.abs(still.packing_fraction - gas.packing_fraction)
@@ -115,8 +124,11 @@ def _over_equilibrium(responses: Table, still: Table) -> dict[str, Estimate]:
 
 
 def _equilibrium(dense: Table, still: Table) -> list[Claim]:
-    """The viscosity of dense gases, against that from the fluctuations of the stress: of each, and of all
-    together."""
+    """Return the claims on the viscosity of dense gases relative to equilibrium.
+
+    There is a claim for each gas, and one for all together; in equilibrium the viscosity follows from the
+    fluctuations of the stress.
+    """
     ratios = _over_equilibrium(dense, still)
     stated = {name: (ratio, 0.03) for name, ratio in ratios.items()}
     stated["spheres at all densities"] = combine_estimates(list(ratios.values())), 0.015
@@ -134,7 +146,7 @@ def _equilibrium(dense: Table, still: Table) -> list[Claim]:
 
 
 def _uniform(sheared: Table, still: Table) -> list[Claim]:
-    """The same of gases that are sheared without walls."""
+    """Return the claims on the viscosity of gases that are sheared without walls."""
     return [
         Claim(
             claim=f"viscosity from uniform shear over that from equilibrium, {name}",
@@ -148,7 +160,7 @@ def _uniform(sheared: Table, still: Table) -> list[Claim]:
 
 
 def _pressure(slow: Table) -> list[Claim]:
-    """The pressure on the walls against density and temperature in the middle."""
+    """Return the claims on the pressure on the walls against density and temperature in the middle."""
     normal = NORMAL_STRESSES[0] * slow.reduced_rate.value**2
     return each(
         slow,
@@ -164,7 +176,10 @@ def _pressure(slow: Table) -> list[Claim]:
 
 
 def _free(narrow: Table) -> list[Claim]:
-    """The stress of free flight: the first correction is about minus the gap over the mean free path."""
+    """Return the claims on the stress of free flight.
+
+    The first correction is about minus the gap divided by the mean free path.
+    """
     return each(
         narrow,
         "shear stress over that of free flight, {gas}",
@@ -179,7 +194,7 @@ def _free(narrow: Table) -> list[Claim]:
 
 
 def _heating(flow: Row) -> Claim:
-    """The parabola of the temperature."""
+    """Return the claim on the parabola of the temperature."""
     return Claim(
         claim=f"-dT/du^2 over half of viscosity over conductivity, walls of speed {flow.speed:g}",
         measured=flow.heating / float(theory.viscous_heating(flow.packing_fraction, 3)),
@@ -192,7 +207,10 @@ def _heating(flow: Row) -> Claim:
 
 
 def _normal(flow: Row) -> list[Claim]:
-    """Normal stresses, of second order in the rate: on the walls, and in the middle along two axes."""
+    """Return the claims on normal stresses, of second order in the rate.
+
+    They are on the walls, and in the middle along two axes.
+    """
     square = flow.reduced_rate.value**2
     across, along, _ = NORMAL_STRESSES
     source = "moments of the Boltzmann equation (gaspart.theory.shear), exact for Maxwell molecules to "

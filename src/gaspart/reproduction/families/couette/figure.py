@@ -17,8 +17,10 @@ DSMC, EVENT = "DSMC", "event-driven"
 
 
 def couette(ds: xr.Dataset) -> Figure:
-    """Profiles of velocity and temperature; the stress by the Knudsen number; viscosity, slip and normal
-    stresses."""
+    """Draw profiles of velocity and temperature, the stress, and viscosity, slip and normal stresses.
+
+    The stress is drawn against the Knudsen number.
+    """
     figure, axes = style.new(*[(2.4,)] * 6)
     gases = Table(ds, "point")
     flows = gases[gases.part == "flows"]
@@ -35,7 +37,7 @@ def couette(ds: xr.Dataset) -> Figure:
 
 
 def _velocity(axis: Axes, slow: Table) -> None:
-    """The velocity across the gap: free flight, a dilute and a dense gas."""
+    """Draw the velocity across the gap: free flight, a dilute and a dense gas."""
     kinds = {
         "free flight": slow[slow.knudsen > FREE],
         "dilute": slow[(slow.knudsen < SLIP_FLOW) & (slow.packing_fraction < DILUTE_SLIP)],
@@ -54,7 +56,7 @@ def _velocity(axis: Axes, slow: Table) -> None:
 
 
 def _temperature(axis: Axes, wide: Table) -> None:
-    """The temperature against the square of the velocity, with the slope of viscous heating."""
+    """Draw the temperature against the square of the velocity, with the slope of viscous heating."""
     kinds = {"fast walls": wide[wide.speed > FAST], "slow walls": wide[wide.speed < FAST]}
     for kind, (name, flows) in enumerate(kinds.items()):
         if flows:
@@ -69,7 +71,7 @@ def _temperature(axis: Axes, wide: Table) -> None:
 
 
 def _stress(axis: Axes, dilute: Table) -> None:
-    """The shear stress over that of free flight by the Knudsen number."""
+    """Draw the shear stress, divided by that of free flight, against the Knudsen number."""
     for kind, engine in enumerate((DSMC, EVENT)):
         own = dilute[dilute.engine == engine]
         style.points(axis, own.knudsen, own.stress, kind=kind, hollow=kind == 1, label=engine)
@@ -83,7 +85,7 @@ def _stress(axis: Axes, dilute: Table) -> None:
 
 
 def _viscosity(axis: Axes, slow: Table, gases: Table) -> None:
-    """The viscosity over Enskog's by density, from the response and from equilibrium."""
+    """Draw the viscosity over Enskog's by density, from the response and from equilibrium."""
     for kind, engine in enumerate((DSMC, EVENT)):
         own = slow[slow.engine == engine]
         style.points(axis, own.packing_fraction, own.viscosity, kind=kind, label=f"response, {engine}")
@@ -98,7 +100,7 @@ def _viscosity(axis: Axes, slow: Table, gases: Table) -> None:
 
 
 def _slip(axis: Axes, slow: Table) -> None:
-    """The slip in mean free paths by density."""
+    """Draw the slip in mean free paths by density."""
     for kind, engine in enumerate((DSMC, EVENT)):
         own = slow[slow.engine == engine]
         style.points(axis, own.packing_fraction, own.slip, kind=kind, label=engine)
@@ -109,7 +111,7 @@ def _slip(axis: Axes, slow: Table) -> None:
 
 
 def _normal(axis: Axes, dilute: Table) -> None:
-    """The normal stresses of dilute gases over their mean, by the square of the reduced rate."""
+    """Draw the normal stresses of dilute gases over their mean, against the squared reduced rate."""
     square = dilute.reduced_rate.value**2
     fine = np.linspace(0.0, 1.1 * square[dilute.knudsen < SLIP_FLOW].max(), 2)
     names = {

@@ -29,22 +29,22 @@ from gaspart.scene.scene import Scene
 from gaspart.theory.dsmc import cell_factor, step_factor
 
 NUMBERS = ("viscosity", "slip", "heating", "normal_x", "normal_y", "normal_z", "pressure", "reduced_rate")
-"""What is found of a flow; see `couette`."""
+"""Names of the numbers of a flow; see `couette`."""
 
 
 def couette(points: list[Point], settings: dict) -> xr.Dataset:
-    """Flows between sliding walls, and the viscosity from equilibrium beside them.
+    """Measure flows between sliding walls, and the viscosity from equilibrium.
 
-    settings: `parts`, the experiments of each part; `blocks` of each run; `bins` across the gap; `clear`.
-    Dimension point, and bin; `_error` and `_freedom`, the degrees of freedom of the error. part, engine,
-    packing_fraction (of flows that in the middle), knudsen (mean free path over gap), speed (difference of
-    the walls'); stress, over that of free flight. Of the middle, `clear` off the walls: viscosity, stress
-    over gradient, over Enskog's at its density and temperature (with the errors of cells and steps of DSMC);
-    slip, the velocity of the gas relative to the wall, extrapolated, over mean free path and gradient there;
-    heating, -dT/du^2; normal_x, _y, _z, the kinetic energy of each component over their mean, minus 1;
-    pressure on the walls over that of the equation of state; reduced_rate, stress over pressure. place,
-    flow and temperature by bin. Of sheared gases what `uniform` states. Of equilibrium points
-    packing_fraction and `viscosity` by Green and Kubo.
+    The settings are `parts`, the experiments of each part; `blocks` of each run; `bins` across the gap;
+    `clear`. Dimensions are point and bin; `_error` and `_freedom`, the degrees of freedom of the error. part,
+    engine, packing_fraction (for flows the value in the middle), knudsen (mean free path over gap), speed
+    (difference between the walls); stress, divided by the stress of free flight. Of the middle, `clear` off
+    the walls: viscosity, stress over gradient, over Enskog's at its density and temperature (with the errors
+    of cells and steps of DSMC); slip, the velocity of the gas relative to the wall, extrapolated, over mean
+    free path and gradient there; heating, -dT/du^2; normal_x, _y, _z, the kinetic energy of each component
+    over their mean, minus 1; pressure on the walls divided by the pressure of the equation of state;
+    reduced_rate, stress over pressure. place, flow and temperature by bin. Of sheared gases what `uniform`
+    states. Of equilibrium points packing_fraction and `viscosity` by Green and Kubo.
     """
     gases = [
         (part, point)
@@ -57,7 +57,7 @@ def couette(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _row(gas: tuple[str, Point], settings: dict) -> dict[str, Any]:
-    """The numbers of a point of this part."""
+    """Return the numbers of a point of this part."""
     part, point = gas
     row = {"part": part, "engine": point.engine.title}
     if part == "flows":
@@ -66,16 +66,23 @@ def _row(gas: tuple[str, Point], settings: dict) -> dict[str, Any]:
 
 
 def _equilibrium(point: Point) -> dict[str, Any]:
-    """The viscosity over Enskog's, as of an infinite gas."""
+    """Measure the viscosity divided by Enskog's, for an infinite gas."""
     row = coefficient(point, "shear", theory.enskog_viscosity)
     return {"packing_fraction": row["packing_fraction"], "viscosity": row["value"] / row["finite"]}
 
 
 @dataclass(frozen=True)
 class FlowBetweenPlates:
-    """A flow and its bins. gap: its size; speed, by which the velocities of the walls differ; diameter of
-    the spheres; dilute: whether they take no room, as in DSMC; coarse: the viscosity by the engine's cells
-    and steps over the exact one; place (B,), of the bins; middle (B,), which are clear of the walls."""
+    """Flow between plates, and its bins.
+
+    gap : its size.
+    speed : difference of the velocities of the walls.
+    diameter : diameter of the spheres.
+    dilute : True if they take no volume, as in DSMC.
+    coarse : viscosity by the engine's cells and steps divided by the exact one.
+    place : (B,), positions of the bins.
+    middle : (B,), bins that are clear of the walls.
+    """
 
     gap: Gap
     speed: float
@@ -87,7 +94,7 @@ class FlowBetweenPlates:
 
     @classmethod
     def of(cls, point: Point, settings: dict) -> FlowBetweenPlates:
-        """That of a point."""
+        """Return the flow of a point."""
         scene = point.scene
         gap, diameter, dilute = Gap.of(scene), 2.0 * scene.smallest_radius, point.engine.equation != "exact"
         path = float(_path(scene.count / (gap.length * gap.area), diameter, dilute))
@@ -98,25 +105,28 @@ class FlowBetweenPlates:
         return cls(gap, _speed(scene), diameter, dilute, coarse, place, middle)
 
     def packing_fraction(self, density: float) -> float:
-        """That which matters for theory at a number density."""
+        """Return the packing fraction that theory uses at a number density."""
         return 0.0 if self.dilute else float(theory.packing_fraction(density, 3, self.diameter))
 
 
 def _speed(scene: Scene) -> float:
-    """By how much the velocities of the walls along the second axis differ."""
+    """Return the difference of the velocities of the walls along the second axis."""
     low, high = (thermal_face(scene, name).velocity or (0.0, 0.0) for name in ("x_low", "x_high"))
     return high[1] - low[1]
 
 
 def _path(density: float, diameter: float, dilute: bool) -> float:
-    """The mean free path, of spheres that take no room if `dilute`."""
+    """Compute the mean free path, of spheres that take no room if `dilute`."""
     eta = float(theory.packing_fraction(density, 3, diameter))
     path = float(theory.mean_free_path(eta, 3, diameter))
     return path * float(theory.contact_value(eta, 3)) if dilute else path
 
 
 def _coarseness(point: Point, gap: Gap, path: float) -> float:
-    """The viscosity by cells and steps over the exact one; only widths across the gap matter."""
+    """Compute the viscosity by cells and steps divided by the exact one.
+
+    Only widths across the gap matter.
+    """
     engine = asdict(point.engine.resolved(point.scene, point.schedule.sample_interval))
     width = gap.length / engine["cells_per_side"][0] / path
     step = engine["time_step"] * math.sqrt(2.0) / path
@@ -125,9 +135,14 @@ def _coarseness(point: Point, gap: Gap, path: float) -> float:
 
 @dataclass(frozen=True)
 class Averages:
-    """Averages over K blocks of time: stress (K,) on the walls and pressure (K,) on them; density (K, B) of
-    particles in bins, flow (K, B), their momentum, and squares (K, B, d) of their velocities, per volume;
-    changes (K, 2), of the momentum of all particles and of its first moment."""
+    """Averages over K blocks of time.
+
+    stress, pressure : (K,), on the walls.
+    density : (K, B), particles in bins, per volume.
+    flow : (K, B), their momentum, per volume.
+    squares : (K, B, d), squares of their velocities, per volume.
+    changes : (K, 2), changes of the momentum of all particles and of its first moment.
+    """
 
     stress: np.ndarray
     pressure: np.ndarray
@@ -145,7 +160,7 @@ class Averages:
 
 
 def _blocks(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
-    """Averages over the measured part of all replicas, each cut into `blocks`."""
+    """Return averages over the measured part of all replicas, each cut into `blocks`."""
     found = [_blocks_of(run, gap, blocks, bins) for run in runs(point)]
     return Averages(*(np.concatenate([getattr(one, key) for one in found]) for key in vars(found[0])))
 
@@ -173,7 +188,7 @@ def _blocks_of(run: Run, gap: Gap, blocks: int, bins: int) -> Averages:
 
 
 def _flow(point: Point, settings: dict) -> dict[str, Any]:
-    """The numbers of one flow."""
+    """Return the numbers of one flow."""
     setting = FlowBetweenPlates.of(point, settings)
     gap, speed = setting.gap, setting.speed
     blocks = _blocks(point, gap, settings["blocks"], settings["bins"])
@@ -202,7 +217,7 @@ def _flow(point: Point, settings: dict) -> dict[str, Any]:
 def _profile(
     density: np.ndarray, flow: np.ndarray, squares: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(B,) the velocity of the gas, (B,) its temperature, and (B, d) that of each component."""
+    """Compute velocity (B,), temperature (B,), and temperature of each component (B, d) of the gas."""
     velocity = flow / density
     energies = squares / density[:, None]
     energies[:, 1] -= velocity**2
@@ -210,7 +225,7 @@ def _profile(
 
 
 def _numbers(setting: FlowBetweenPlates, stress: float, pressure: float, *averages: np.ndarray) -> np.ndarray:
-    """The stress and `NUMBERS`, from averages over a run.
+    """Compute the stress and `NUMBERS`, from averages over a run.
 
     Across the gap T + b u^2 is constant (`theory.viscous_heating`), and the viscosity grows like the root of
     T: u = g x (1 + c x^2) with c = b g^2 / 6 T to first order in c, g the gradient in the middle.
@@ -245,6 +260,6 @@ def _numbers(setting: FlowBetweenPlates, stress: float, pressure: float, *averag
 
 
 def _slope(x: np.ndarray, y: np.ndarray, weight: np.ndarray) -> float:
-    """That of y over x by weighted least squares; weight: of sum 1."""
+    """Compute the slope of y against x by weighted least squares; the weights have the sum 1."""
     apart = x - weight @ x
     return float(weight @ (apart * y) / (weight @ apart**2))

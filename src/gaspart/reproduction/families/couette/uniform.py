@@ -21,10 +21,14 @@ _AXES = {"y": 0, "x": 1, "z": 2}  # of the container, by name as of walls across
 
 
 def uniform(point: Point, blocks: int) -> dict[str, Any]:
-    """The numbers of a sheared gas, as of a flow between walls: viscosity, the response over Enskog's at the
-    temperature of the time; reduced_rate, stress over pressure; normal_x, _y, _z, the pressure along
-    gradient, flow and vorticity over their mean, minus 1. Errors are by leaving out each stretch of time, of
-    which each run has `blocks`."""
+    """Measure the numbers of a sheared gas, like those of a flow between walls.
+
+    viscosity : response divided by Enskog's viscosity at the temperature of the time.
+    reduced_rate : stress over pressure.
+    normal_x, _y, _z : pressure along gradient, flow and vorticity over their mean, minus 1.
+
+    Errors are by leaving out each block of time, of which each run has `blocks`.
+    """
     scene = point.scene
     series = [
         np.concatenate(parts) for parts in zip(*(_blocks(run, blocks) for run in runs(point)), strict=True)
@@ -35,7 +39,7 @@ def uniform(point: Point, blocks: int) -> dict[str, Any]:
 
 
 def _blocks(run: Run, blocks: int) -> tuple[np.ndarray, np.ndarray]:
-    """(K, d, d) the pressure tensor of stretches of a run, and (K,) the stress that Enskog states."""
+    """Compute the pressure tensor (K, d, d) in blocks of a run, and the stress (K,) by Enskog."""
     parts, scene = Blocks(run, blocks), run.scene
     pressures = parts.growth("stress_sum") / scene.container.volume
     root = np.sqrt(run.temperatures)
@@ -45,7 +49,7 @@ def _blocks(run: Run, blocks: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _numbers(pressures: np.ndarray, expected: float) -> np.ndarray:
-    """The numbers of `uniform`, from averages over stretches."""
+    """Compute the numbers of `uniform`, from averages over stretches."""
     along = np.diag(pressures)
     mean, stress = along.mean(), -pressures[1, 0]
     return np.array([stress / expected, stress / mean, *(along[list(_AXES.values())] / mean - 1.0)])

@@ -17,11 +17,17 @@ ERPENBECK_WOOD = "[Erpenbeck 1991]"
 REQUIRED = 0.015
 """Relative uncertainty of D above which the claim is inconclusive."""
 REQUIRED_SHORT = 0.001
-"""That of the msd at short times; an exponential with the rate of Enskog's D would be 0.001 to 0.002 off."""
+"""Required uncertainty of the msd at short times.
+
+An exponential with the rate of Enskog's D would be 0.001 to 0.002 off.
+"""
 
 
 def msd_spheres(ds: xr.Dataset) -> list[Claim]:
-    """D against Enskog where the gas is dilute, and against simulations of the literature where it is not."""
+    """Return the claims on D, against Enskog in dilute gases, against simulations in dense ones.
+
+    The simulations are from the literature.
+    """
     points = Table(ds, "point")
     largest = points[points.largest]
     dilute = largest.packing_fraction <= ENSKOG_LIMIT * (1.0 + 1e-6)
@@ -44,12 +50,15 @@ def msd_spheres(ds: xr.Dataset) -> list[Claim]:
 
 
 def infinite(points: Table) -> Estimate:
-    """D in an infinite container."""
+    """Compute D in an infinite container."""
     return points.diffusion + Estimate(points.correction, points.correction_uncertainty)
 
 
 def _dilute_limit(dilute: Table) -> Claim:
-    """Mean of D over Enskog's at the lowest packing fractions, weighted by the errors."""
+    """Return the claim on D over Enskog's at the lowest packing fractions, a weighted mean.
+
+    The weights are by the errors.
+    """
     return Claim.within(
         claim=f"D over Enskog's in the dilute limit (packing fraction {ENSKOG_LIMIT:g} and below)",
         measured=combine_estimates(infinite(dilute) / theory.enskog_diffusion(dilute.packing_fraction, 3)),
@@ -76,7 +85,7 @@ def _size_slope(points: Table) -> Claim:
 
 
 def msd_discs(ds: xr.Dataset) -> list[Claim]:
-    """The slope of D(t) against ln t; no D, since none exists."""
+    """Return the claims on the slope of D(t) against ln t; no D, since none exists."""
     points = Table(ds, "point")
     long = points[np.isfinite(points.logarithmic_slope.value)]
     return [
@@ -95,7 +104,10 @@ def msd_discs(ds: xr.Dataset) -> list[Claim]:
 
 
 def _short_times(points: Table) -> list[Claim]:
-    """From the finely sampled runs: the ballistic start, and Einstein's D(t) against Green and Kubo's."""
+    """Return the claims from finely sampled runs.
+
+    They are on the ballistic start, and on Einstein's D(t) against Green and Kubo's.
+    """
     claims = []
     for run in points[np.isfinite(points.integral_difference.value)]:
         eta = run.packing_fraction

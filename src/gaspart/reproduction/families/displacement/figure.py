@@ -18,7 +18,7 @@ from gaspart.reproduction.table import Row, Table
 
 
 def msd_spheres(ds: xr.Dataset) -> Figure:
-    """The msd; D(t) from displacements and from velocities; D against packing fraction; D against 1/L."""
+    """Draw the msd, D(t) from displacements and velocities, and D against density and 1/L."""
     figure, axes = style.new((2.4,), (2.4,), (2.3,), (2.3,))
     points = Table(ds, "point")
     _displacement(axes[0], points)
@@ -32,7 +32,7 @@ def msd_spheres(ds: xr.Dataset) -> Figure:
 
 
 def msd_discs(ds: xr.Dataset) -> Figure:
-    """The msd; D(t), which does not converge; its slope against ln t, by packing fraction."""
+    """Draw the msd; D(t), which does not converge; its slope against ln t, by packing fraction."""
     figure, axes = style.new((2.6,), (2.2,), (2.2,))
     points = Table(ds, "point")
     _displacement(axes[0], points)
@@ -44,19 +44,19 @@ def msd_discs(ds: xr.Dataset) -> Figure:
 
 
 def _fractions(points: Table) -> np.ndarray:
-    """The packing fractions with finely sampled runs: those whose curves are drawn from the start."""
+    """Return the packing fractions with finely sampled runs, whose curves are drawn from the start."""
     fine = points[np.isfinite(points.integral_difference.value)]
     return np.unique(fine.packing_fraction.round(6))
 
 
 def _spread(first: int, last: int) -> np.ndarray:
-    """Indices from first to last - 1, about eight in each decade."""
+    """Compute indices from first to last - 1, about eight in each decade."""
     number = int(np.ceil(8.0 * np.log10(last / first))) + 1
     return np.unique(np.geomspace(first, max(last - 1, first), number).round().astype(int))
 
 
 def _pieces(points: Table, eta: float) -> Iterator[tuple[Row, np.ndarray]]:
-    """(run, lags) of one packing fraction: the finely sampled run, then the long ones."""
+    """Yield (run, lags) of one packing fraction: the finely sampled run, then the long ones."""
     runs = list(points[np.isclose(points.packing_fraction, eta, atol=1e-5)].sorted_by("interval"))
     ends, begin = [run.time[1] for run in runs[1:]] + [np.inf], 0.0
     for run, end in zip(runs, ends, strict=True):
@@ -67,7 +67,7 @@ def _pieces(points: Table, eta: float) -> Iterator[tuple[Row, np.ndarray]]:
 
 
 def _displacement(axis: Axes, points: Table) -> None:
-    """The msd against time, both in reduced units, with Enskog's curves and the ballistic limit."""
+    """Draw the msd against time, both in reduced units, with Enskog's curves and the ballistic limit."""
     longest, dimension = 0.0, points.dimension
     for kind, eta in enumerate(_fractions(points)):
         for number, (run, lags) in enumerate(_pieces(points, eta)):
@@ -87,7 +87,10 @@ def _displacement(axis: Axes, points: Table) -> None:
 
 
 def _running(axis: Axes, points: Table) -> None:
-    """D(t), half the msd's slope over d, over Enskog's D: displacements as points, velocities as lines."""
+    """Draw D(t), half the msd's slope over d, relative to Enskog's D.
+
+    Displacements are points, velocities are lines.
+    """
     fractions, dimension = np.unique(points.packing_fraction.round(6)), points.dimension
     axis.set_xscale("log")
     for kind, eta in enumerate(fractions):
@@ -115,12 +118,12 @@ def _running(axis: Axes, points: Table) -> None:
 
 
 def _enskog(eta: float, dimension: int) -> tuple[float, float]:
-    """D and the collision rate."""
+    """Compute D and the collision rate."""
     return float(theory.enskog_diffusion(eta, dimension)), float(theory.collision_rate(eta, dimension))
 
 
 def _predicted(axis: Axes, run: Row, eta: float, kind: int) -> None:
-    """The logarithm's predicted slope over the fitted interval, through D(t) in its middle."""
+    """Draw the logarithm's predicted slope over the fitted interval, through D(t) in its middle."""
     enskog, rate = _enskog(eta, 2)
     ends, known = np.array([run.fit_from, run.fit_to]), np.isfinite(run.time)
     middle = np.sqrt(ends.prod())
@@ -130,7 +133,7 @@ def _predicted(axis: Axes, run: Row, eta: float, kind: int) -> None:
 
 
 def _density(axis: Axes, largest: Table) -> None:
-    """D over Enskog's against packing fraction, as measured and corrected for the container's size."""
+    """Draw D over Enskog's against packing fraction, measured and corrected for the container."""
     eta = largest.packing_fraction
     enskog = theory.enskog_diffusion(eta, 3)
     curve = np.linspace(0.0, 1.08 * eta.max(), 200)
@@ -145,7 +148,10 @@ def _density(axis: Axes, largest: Table) -> None:
 
 
 def _size(axis: Axes, sizes: Table) -> None:
-    """D_L against 1/L at one packing fraction: the fitted line, and the slope that hydrodynamics predicts."""
+    """Draw D_L against 1/L at one packing fraction: the fitted line, and the predicted slope.
+
+    The prediction is by hydrodynamics.
+    """
     if not sizes:
         axis.set_axis_off()
         return

@@ -37,7 +37,7 @@ GREEN_KUBO_FROM, GREEN_KUBO_TO = 8.0, 16.0
 LOGARITHM_FROM = 30.0
 """Collisions per particle after which hydrodynamic modes describe discs' velocity autocorrelation."""
 ABSENT = Estimate(math.nan, math.nan, math.nan)
-"""What a point does not measure."""
+"""Value of a number that a point does not measure."""
 ABOUT = {"reduced_time": "diameter sqrt(mass / temperature)"}
 UNITS = {
     "side": "diameter",
@@ -54,7 +54,7 @@ UNITS = {
 
 
 def replicas(point: Point, longest: float) -> list[Curves]:
-    """The curves of each replica, to the lag `longest` (reduced time) or to the last one that they have.
+    """Return the curves of each replica, to the lag `longest` (reduced time) or to their last lag.
 
     Raises SceneError for a point without displacements or lags, or a single replica.
     """
@@ -70,12 +70,14 @@ def replicas(point: Point, longest: float) -> list[Curves]:
 
 
 def msd_spheres(points: list[Point], settings: dict) -> xr.Dataset:
-    """Mean-squared displacement and diffusion coefficient of spheres; see `spheres` for a point's numbers.
+    """Measure mean-squared displacement and diffusion of spheres.
 
-    Dimensions point and lag (NaN beyond a point's own lags). `largest`: the long run with the most particles
-    at its packing fraction. `in_series`: one of three or more sizes at one packing fraction; through these
-    goes the line size_intercept + size_slope / L, or with Yeh and Hummer's slope one from `size_limit`.
-    Raises SceneError for a run too short for its straight stretch.
+    The numbers of a point are in `spheres`.
+
+    Dimensions point and lag (NaN beyond a point's own lags). `largest` marks the long run with the most
+    particles at its packing fraction. `in_series` marks one of three or more sizes at one packing fraction;
+    through these goes the line size_intercept + size_slope / L, or with Yeh and Hummer's slope one from
+    `size_limit`. Raises SceneError for a run too short for its straight stretch.
     """
     dataset = table("point", points, spheres, inner=("lag",), units=UNITS).assign_attrs(dimension=3, **ABOUT)
     runs = Table(dataset, "point")
@@ -87,8 +89,10 @@ def msd_spheres(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def size_series(dataset: xr.Dataset) -> xr.Dataset:
-    """The data set with the lines of D against 1/L through the points `in_series`, if there are any; see
-    `msd_spheres`."""
+    """Add the lines of D against 1/L through the points `in_series`, if there are any.
+
+    See `msd_spheres`.
+    """
     runs = Table(dataset, "point")
     sizes = runs[runs.in_series]
     if not sizes:
@@ -101,12 +105,12 @@ def size_series(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def msd_discs(points: list[Point], settings: dict) -> xr.Dataset:
-    """Mean-squared displacement of discs and the growth of its slope with ln t; see `_discs`."""
+    """Measure the displacement of discs and the growth of its slope with ln t; see `_discs`."""
     return table("point", points, _discs, inner=("lag",), units=UNITS).assign_attrs(dimension=2, **ABOUT)
 
 
 def _state(point: Point) -> dict[str, Any]:
-    """Theory's predictions for a point's scene: collision rate, decay time of the slowest shear mode ..."""
+    """Return theory's predictions for a scene, such as collision rate and decay time of shear modes."""
     gas, lengths = plain_gas(point.scene), point.scene.container.lengths
     eta, dimension = gas.packing_fraction, gas.dimension
     density = theory.number_density(eta, dimension)
@@ -128,7 +132,7 @@ def _state(point: Point) -> dict[str, Any]:
 
 
 def _common(point: Point, state: dict, curves: list[Curves]) -> dict[str, Any]:
-    """The columns of every point: its state, its sampling in collisions per particle, its curves."""
+    """Return the columns of every point: state, sampling in collisions per particle, curves."""
     time = np.mean([one.time for one in curves], axis=0)
     rate = state["collision_rate"]
     row = state | {
@@ -146,16 +150,16 @@ def _common(point: Point, state: dict, curves: list[Curves]) -> dict[str, Any]:
 
 
 def spheres(point: Point) -> dict[str, Any]:
-    """D, D of the infinite system, and the curves.
+    """Measure D, D of the infinite system, and the curves.
 
-    Of N particles whose total momentum is zero, D is (N - 1) / N of that of N particles without this
-    condition (exact for a dilute gas, where the others carry -1 / (N - 1) of a particle's momentum each): all
-    curves are multiplied by N / (N - 1). The rest of the finite size is hydrodynamic: Yeh and Hummer's
-    correction with the measured viscosity (`theory.viscosity_ratio`), to which rho D is added, because a
-    particle leaves a vortex by its own diffusion too: each mode decays with nu + D, as in the long-time tail
-    (Ernst, Hauge and van Leeuwen 1970); half of it in a dilute gas. Its uncertainty is that of the viscosity,
-    and (2 pi mean free path / side)^2 of it, the next order of hydrodynamics in the slowest mode, but not
-    more than all of it.
+    Of N particles whose total momentum is zero, D is (N - 1) / N of its value without this condition (exact
+    for a dilute gas, where the others carry -1 / (N - 1) of a particle's momentum each): all curves are
+    multiplied by N / (N - 1). The rest of the finite size is hydrodynamic: Yeh and Hummer's correction with
+    the measured viscosity (`theory.viscosity_ratio`), to which rho D is added, because a particle leaves a
+    vortex by its own diffusion too: each mode decays with nu + D, as in the long-time tail (Ernst, Hauge and
+    van Leeuwen 1970); half of it in a dilute gas. Its uncertainty is the uncertainty of the viscosity, and (2
+    pi mean free path / side)^2 of it, the next order of hydrodynamics in the slowest mode, but not more than
+    all of it.
     """
     state = _state(point)
     start = max(LINEAR_FROM / state["collision_rate"], SETTLE_SHEAR_TIMES * state["shear_time"])
@@ -192,8 +196,9 @@ def spheres(point: Point) -> dict[str, Any]:
 
 
 def _discs(point: Point) -> dict[str, Any]:
-    """The slope of D(t), the msd's derivative over 2d, against ln t, and the curves; `slope_expected`, that
-    of the hydrodynamic modes of the container, fitted in the same way.
+    """Measure the slope of D(t), the msd's derivative over 2d, against ln t, and the curves.
+
+    `slope_expected` is the slope of the hydrodynamic modes of the container, fitted in the same way.
 
     Until sound has crossed the container a particle is not affected by its size, but is affected at once by
     the fact that the total momentum is zero: without this condition all would share a velocity of mean square
@@ -228,7 +233,7 @@ def _discs(point: Point) -> dict[str, Any]:
 
 
 def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict[str, Estimate]:
-    """The integral of the velocity autocorrelation, and how far it is from the msd's slope.
+    """Compute the integral of the velocity autocorrelation, and how far it is from the msd's slope.
 
     `integral_difference`: (slope of the twice integrated correlation) / (slope of the msd over 2d) - 1, both
     by a line from GREEN_KUBO_FROM to GREEN_KUBO_TO collisions per particle; the first from velocities alone,
@@ -249,5 +254,5 @@ def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict[str, 
 
 
 def _mean(samples: Sequence[Any]) -> Estimate:
-    """Mean over replicas."""
+    """Compute the mean over replicas."""
     return Estimate(*means_of(samples), len(samples) - 1)

@@ -20,7 +20,10 @@ HEATED = (
 
 
 def driven_gas(ds: xr.Dataset) -> list[Claim]:
-    """The temperature at which contacts lose what kicks give, and the deviation from Maxwell velocities."""
+    """Return the claims on the steady temperature and the deviation from Maxwell velocities.
+
+    At this temperature contacts lose the energy that kicks give.
+    """
     gases = Table(ds, "gas")
     claims = [claim for gas in gases for claim in _of_gas(gas)]
     return claims + [_heated(own, dimension) for dimension, own in gases.by("dimension")]
@@ -62,7 +65,10 @@ def _of_gas(gas: Row) -> list[Claim]:
 
 
 def _heated(gases: Table, dimension: int) -> Claim:
-    """Where the cumulants of all gases of a dimension lie, by least squares: a single one does not decide."""
+    """Return the claim on the cumulants of all gases of a dimension, by least squares.
+
+    A single gas does not decide.
+    """
     heated, cooling = (
         theory.finite_size_cumulant(of(gases.restitution, dimension), gases.count, dimension)
         for of in (theory.driven_cumulant, theory.fourth_cumulant)

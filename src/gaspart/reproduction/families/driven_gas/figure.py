@@ -13,7 +13,7 @@ from gaspart.reproduction.table import Table
 
 
 def driven_gas(ds: xr.Dataset) -> Figure:
-    """Two panels over the restitution: steady temperature over the energy balance's, and fourth cumulant."""
+    """Draw steady temperature over the energy balance's, and fourth cumulant, against restitution."""
     figure, (upper, lower) = style.new((2.5,), (2.5,))
     table = Table(ds, "gas")
     curve = np.linspace(0.95 * table.restitution.min(), 1.0, 200)

@@ -14,9 +14,12 @@ from gaspart.reproduction.table import table
 
 
 def means(run: Run) -> dict[str, float]:
-    """temperature: m <v^2> / d about the centre of mass, mean over the frames; cumulant: d <v^4> / ((d + 2)
-    <v^2>^2) - 1 of all velocities in these; given, lost: energies per particle and time, of kicks and in
-    contacts."""
+    """Compute averages of a run.
+
+    temperature : m <v^2> / d about the centre of mass, mean over the frames.
+    cumulant : d <v^4> / ((d + 2) <v^2>^2) - 1 of all velocities in these.
+    given, lost : energies per particle and time, of kicks and in contacts.
+    """
     squares, dimension = (run.peculiar**2).sum(axis=2), run.dimension
     second = squares.mean(axis=1)  # by frame, so that a temperature that fluctuates adds no cumulant
     fourth = (squares**2).mean(axis=1)
@@ -29,7 +32,7 @@ def means(run: Run) -> dict[str, float]:
 
 
 def driven_gas(points: list[Point], settings: dict) -> xr.Dataset:
-    """The steady temperature and the fourth cumulant of driven gases.
+    """Return the steady temperature and the fourth cumulant of driven gases.
 
     Returns over `gas`: dimension, restitution, packing_fraction, count, power; temperature, cumulant, given
     and lost (see `means`), with their errors from replicas.

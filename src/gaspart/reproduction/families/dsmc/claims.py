@@ -16,11 +16,11 @@ from gaspart.theory.dsmc import CELL_COEFFICIENTS, STEP_COEFFICIENTS, cell_facto
 CELLS = "[Alexander 1998]"
 STEPS = "[Hadjiconstantinou 2000]; [Garcia 2000]"
 POWER = 0.1
-"""Of a coefficient: the largest uncertainty with which it is tested."""
+"""Largest uncertainty with which a coefficient is tested, relative to the coefficient."""
 SEEN = 0.02
 """Change of a transport coefficient from which on a point tests the coefficient of that change."""
 SONINE = {"viscosity": 1.0160, "conductivity": 1.0252, "diffusion": 1.01895}
-"""Exact coefficients of dilute spheres over those of the first Sonine approximation."""
+"""Exact coefficients of dilute spheres divided by those in the first Sonine approximation."""
 WIDE = 1.5
 """Mean free paths: cells in which the diffusion coefficient is tested."""
 POINTLIKE = 0.003
@@ -29,7 +29,7 @@ less than 4 of it."""
 
 
 def dsmc_convergence(dataset: xr.Dataset) -> list[Claim]:
-    """Of cells and steps, of the dense gas, and of plates."""
+    """Return the claims on cells and steps, on the dense gas, and on plates."""
     gases = Table(dataset, "point")
     parts = {
         name: gases[gases.part == name] for name in ("fluxes", "paths", "dense", "plates", "event_plates")
@@ -46,12 +46,12 @@ def dsmc_convergence(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _predicted(gases: Table, quantity: str) -> np.ndarray:
-    """(points,) a transport coefficient over the exact one, by cells and steps."""
+    """Compute a transport coefficient over the exact one, by cells and steps, shape (points,)."""
     return np.asarray(cell_factor(quantity, gases.width) * step_factor(quantity, gases.step))
 
 
 def _limit(quantity: str, gases: Table) -> Claim:
-    """The coefficient of narrow cells and short steps."""
+    """Return the claim on the coefficient of narrow cells and short steps."""
     fine = gases[_predicted(gases, quantity) < 1.0 + SEEN]
     return Claim(
         claim=f"{quantity} over Chapman and Enskog's, with narrow cells and short steps",
@@ -65,7 +65,7 @@ def _limit(quantity: str, gases: Table) -> Claim:
 
 
 def _narrow_cells(gases: Table) -> Claim:
-    """What cells add to the viscosity, over what the literature states."""
+    """Return the claim on the increase of the viscosity by cells, against the literature."""
     cells = CELL_COEFFICIENTS["viscosity"]
     return Claim(
         claim="coefficient of (width/l)^2 in the viscosity, narrow cells",
@@ -79,7 +79,7 @@ def _narrow_cells(gases: Table) -> Claim:
 
 
 def _of_steps(quantity: str, gases: Table, coefficient: float) -> Claim:
-    """What steps add to a transport coefficient."""
+    """Return the claim on the increase of a transport coefficient by steps."""
     long = gases[step_factor(quantity, gases.step) - 1.0 > SEEN]
     added = getattr(long, quantity) / cell_factor(quantity, long.width) - 1.0
     strength = combine_estimates(added / (step_factor(quantity, long.step) - 1.0))
@@ -95,7 +95,7 @@ def _of_steps(quantity: str, gases: Table, coefficient: float) -> Claim:
 
 
 def _wide_cells(paths: Table) -> Claim:
-    """D does not depend on cells."""
+    """Return the claim that D does not depend on cells."""
     wide = paths[paths.width > WIDE]
     return Claim(
         claim=f"diffusion over Chapman and Enskog's, with cells wider than {WIDE:g} mean free paths",
@@ -109,7 +109,10 @@ def _wide_cells(paths: Table) -> Claim:
 
 
 def _dense(gases: Table) -> list[Claim]:
-    """The Enskog model against its own equation; and Enskog's theory against what spheres do."""
+    """Return the claims on the Enskog model, and on Enskog's theory against spheres.
+
+    The model is compared with its own equation.
+    """
     where = "in the Enskog model at packing fraction {packing_fraction:g}"
     given: dict[str, Any] = {
         "expected": 1.0,
@@ -133,7 +136,7 @@ def _dense(gases: Table) -> list[Claim]:
 
 
 def _plates(gases: Table, event: Table) -> list[Claim]:
-    """The flux at each Knudsen number against that of the event-driven engine."""
+    """Return the claims on the flux at each Knudsen number against the event-driven engine."""
     claims = []
     for gas in gases:
         beside = event[np.abs(event.knudsen / gas.knudsen - 1.0) < 0.02]

@@ -14,12 +14,14 @@ from gaspart.theory.dsmc import cell_factor, step_factor
 
 QUANTITIES = {"viscosity": "viscosity", "conductivity": "heat conductivity", "diffusion": "self-diffusion"}
 FINE = {"width": 0.3, "step": 0.3}
-"""Of cells and steps, whose effect is so small that the other one is seen."""
+"""Width of cells and length of steps up to which their effect is too small to hide the other one."""
 
 
 def dsmc_convergence(dataset: xr.Dataset) -> Figure:
-    """Transport coefficients against the width of cells and the length of steps; the flux between plates; the
-    dense gas."""
+    """Draw transport coefficients against cells and steps, the flux, and the dense gas.
+
+    The flux is between plates.
+    """
     figure, axes = style.new((2.4,), (2.4,), (2.4,), (2.4,))
     cells, steps, plates, dense = axes
     gases = Table(dataset, "point")
@@ -34,8 +36,10 @@ def dsmc_convergence(dataset: xr.Dataset) -> Figure:
 
 
 def _coarse(axis: Axes, gases: Table, along: str, other: str) -> None:
-    """Each coefficient over its exact value, where the `other` coarseness is fine, without its effect, and
-    theory's curve."""
+    """Draw each coefficient over its exact value where the `other` coarseness is fine.
+
+    The effect of the `other` coarseness is removed; theory's curve is drawn.
+    """
     factors = {"width": cell_factor, "step": step_factor}
     fine = gases[getattr(gases, other) < FINE[other]]
     curve = np.linspace(0.0, 1.08 * np.nanmax(getattr(gases, along)), 200)
@@ -53,7 +57,7 @@ def _coarse(axis: Axes, gases: Table, along: str, other: str) -> None:
 
 
 def _plates(axis: Axes, gases: Table) -> None:
-    """The flux over that of free flight, against the Knudsen number."""
+    """Draw the flux, divided by free flight's, against the Knudsen number."""
     for kind, (part, title) in enumerate({"event_plates": "event-driven", "plates": "DSMC"}.items()):
         own = gases[gases.part == part]
         style.points(axis, own.knudsen, own.flux, kind=kind, hollow=kind == 1, label=title)
@@ -63,7 +67,7 @@ def _plates(axis: Axes, gases: Table) -> None:
 
 
 def _dense(axis: Axes, model: Table, spheres: Table) -> None:
-    """The Enskog model over Enskog's theory, and what spheres do."""
+    """Draw the Enskog model over Enskog's theory, and what spheres do."""
     eta = model.packing_fraction
     style.points(axis, eta - 0.004, model.excess, kind=0, label="$Z-1$, DSMC")
     style.points(axis, eta, model.rate, kind=1, label="collision rate, DSMC")

@@ -1,8 +1,8 @@
-"""What cells, steps and models of the DSMC engine do to a gas, beside the event-driven engine.
+"""Effects of cells, steps and models of the DSMC engine, compared with the event-driven engine.
 
-Widths of cells are in mean free paths l of the dilute gas, 1 / (sqrt 2 pi n sigma^2), steps in l / c with
-c = sqrt(2 k_B T / m), in which the discretisation errors of the literature are stated. Transport coefficients
-are over those of Chapman and Enskog, without the change that a finite number of particles makes.
+Widths of cells are in mean free paths l of the dilute gas, 1 / (sqrt 2 pi n sigma^2), steps in l / c with c =
+sqrt(2 k_B T / m), in which the discretisation errors of the literature are stated. Transport coefficients are
+divided by Chapman and Enskog's, without the change that a finite number of particles makes.
 """
 
 from __future__ import annotations
@@ -32,21 +32,21 @@ from gaspart.theory.heat import free_molecular_flux
 from gaspart.trajectory.reading import open_trajectory
 
 SHORT, NARROW = 1.0, 0.6
-"""Of steps and widths: up to which the transfer at collisions is fitted."""
+"""Length of steps and width of cells up to which the transfer at collisions is fitted."""
 NONE = 1e-12
 """Packing fraction of a gas so dilute that only the Boltzmann equation matters."""
 
 
 def dsmc_convergence(points: list[Point], settings: dict) -> xr.Dataset:
-    """Viscosity, conductivity and diffusion by cells and steps; the dense gas; the flux between plates.
+    """Measure transport coefficients by cells and steps, the dense gas, and the flux between plates.
 
-    settings: `parts`, the experiments of each part; `blocks`, the stretches of each run between plates.
-    Dimension point; `_error` and `_freedom`, the degrees of freedom of the error. part and engine of each
-    point; of dilute gases width and step, and viscosity, conductivity and diffusion, each over its exact
-    value, and `transfer`, the part of the viscosity that passes at collisions, likewise; of dense ones
-    packing_fraction, `excess`, Z - 1, `rate`, the collision rate, and diffusion over Enskog's; of plates
-    knudsen, l over the gap of centres, and `flux` over that of free flight. Without dimension: coefficient,
-    width_slope and step_slope, see `_narrow`.
+    The settings are `parts`, the experiments of each part; `blocks`, the time blocks of each run between
+    plates. The dimension is point; `_error` and `_freedom`, the degrees of freedom of the error. part and
+    engine of each point; of dilute gases width and step, and viscosity, conductivity and diffusion, each over
+    its exact value, and `transfer`, the part of the viscosity that passes at collisions, over the exact
+    viscosity; of dense ones packing_fraction, `excess`, Z - 1, `rate`, the collision rate, and diffusion over
+    Enskog's; of plates knudsen, l over the gap of centres, and `flux` divided by the flux of free flight.
+    Without dimension: coefficient, width_slope and step_slope, see `_narrow`.
     """
     measures = {
         "fluxes": _fluxes,
@@ -73,11 +73,13 @@ def dsmc_convergence(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _narrow(gases: Table) -> dict[str, Estimate]:
-    """What collisions transfer over width^2 with narrow cells and short steps, and its slopes by both.
+    """Fit the transfer at collisions over width^2 with narrow cells and short steps.
 
-    In a wider cell a particle is often still near the place of its last collision at the next one, and
-    passes back on what it was given; so it is after several collisions in a step. The transfer is less than
-    its limit by parts that are linear in width and step.
+    The fit has slopes in both.
+
+    In a wider cell a particle is often still near the place of its last collision at the next one, and passes
+    back on what it was given; so it is after several collisions in a step. The transfer is less than its
+    limit by parts that are linear in width and step.
     """
     names = ("coefficient", "width_slope", "step_slope")
     fluxes = gases[gases.part == "fluxes"]
@@ -90,14 +92,14 @@ def _narrow(gases: Table) -> dict[str, Estimate]:
 
 
 def _dilute_path(point: Point) -> float:
-    """The mean free path l of the dilute gas."""
+    """Compute the mean free path l of the dilute gas."""
     gas = plain_gas(point.scene)
     path = theory.mean_free_path(gas.packing_fraction, 3, gas.diameter)
     return float(path * theory.contact_value(gas.packing_fraction, 3))
 
 
 def _resolution(point: Point) -> dict[str, float]:
-    """Width of the cells and length of a step."""
+    """Compute the width of the cells and length of a step."""
     gas, path = plain_gas(point.scene), _dilute_path(point)
     engine = asdict(point.engine.resolved(point.scene, point.schedule.sample_interval))
     sides = np.array(point.scene.container.lengths) / np.array(engine["cells_per_side"])
@@ -106,14 +108,14 @@ def _resolution(point: Point) -> dict[str, float]:
 
 
 def _runs(point: Point) -> Iterator[Run]:
-    """Each replica from its start, which is in equilibrium, to its end; some keep few frames."""
+    """Yield each replica from its start, which is in equilibrium, to its end; some keep few frames."""
     for path in point.replica_paths:
         with open_trajectory(path) as trajectory:
             yield Run(point.scene, trajectory["time"].values, trajectory)
 
 
 def _fluxes(point: Point, settings: dict) -> dict[str, Any]:
-    """Viscosity and conductivity, by Green and Kubo to the longest lag, as of an infinite gas."""
+    """Measure viscosity and conductivity by Green and Kubo to the longest lag, for an infinite gas."""
     gas = plain_gas(point.scene)
     shear, heat = (
         theory.transport_finite_size_factor(gas.count, 3, name) for name in ("viscosity", "conductivity")
@@ -132,7 +134,9 @@ def _fluxes(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _running_diffusion(point: Point) -> np.ndarray:
-    """(R,) D of each replica at the longest lag, over that of a dilute gas by Chapman and Enskog.
+    """Compute D of each replica (R,) at the longest lag, relative to Chapman and Enskog's.
+
+    The latter is D of a dilute gas.
 
     With N - 1 partners a particle keeps its velocity longer by as much as the mean square of velocities is
     lower about the centre of mass: at a given density this D does not depend on N.
@@ -143,13 +147,16 @@ def _running_diffusion(point: Point) -> np.ndarray:
 
 
 def _paths(point: Point, settings: dict) -> dict[str, Any]:
-    """D of a dilute gas."""
+    """Return D of a dilute gas."""
     return {**_resolution(point), "diffusion": mean_of(_running_diffusion(point))}
 
 
 def _dense(point: Point, settings: dict) -> dict[str, Any]:
-    """Z, the collision rate and D of the Enskog model, over those of Carnahan and Starling's contact value,
-    which it is given. It has N (N - 1) pairs where the equation of state has N^2, and a fixed energy."""
+    """Measure Z, the collision rate and D of the Enskog model, relative to theory.
+
+    The theory has Carnahan and Starling's contact value, which the model is given. It has N (N - 1) pairs
+    where the equation of state has N^2, and a fixed energy.
+    """
     gas = plain_gas(point.scene)
     eta, partners = gas.packing_fraction, 1.0 - 1.0 / gas.count
     approach = approach_factor(3, gas.count)
@@ -166,7 +173,7 @@ def _dense(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _event_paths(point: Point, settings: dict) -> dict[str, Any]:
-    """D of the event-driven engine in an infinite container, over Enskog's."""
+    """Return D of the event-driven engine in an infinite container, over Enskog's."""
     row = spheres(point)
     enskog = float(theory.enskog_diffusion(row["packing_fraction"], 3))
     infinite = row["diffusion"] + Estimate(row["correction"], row["correction_uncertainty"])
@@ -174,7 +181,7 @@ def _event_paths(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _plates(point: Point, settings: dict) -> dict[str, Any]:
-    """The flux between plates over that of free flight."""
+    """Measure the flux between plates, divided by the flux of free flight."""
     scene = point.scene
     gap, kind = Gap.of(scene), scene.kinds[0]
     density = scene.count / (gap.length * gap.area)

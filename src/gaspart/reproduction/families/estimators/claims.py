@@ -11,8 +11,11 @@ _DILUTE, _NARROW = 0.1, 0.15
 
 
 def estimators(dataset: xr.Dataset) -> list[Claim]:
-    """Counts and impulses agree; the mixture has the smaller variance, by far in a dilute gas. So have
-    pressures with what is known."""
+    """Return the claims that counts and impulses agree, and that their mixture is better.
+
+    The mixture has the smaller variance, by far in a dilute gas. Pressures with known means have a smaller
+    variance too.
+    """
     cases = Table(dataset, "case")
     narrow = cases[cases.width < _NARROW]
     dilute, dense = narrow[narrow.packing_fraction < _DILUTE], narrow[narrow.packing_fraction >= _DILUTE]
@@ -42,7 +45,7 @@ def estimators(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _densities(cases: Table, dilute: Table, dense: Table) -> list[Claim]:
-    """Those of densities."""
+    """Return the claims on densities."""
     return [
         *each(
             cases,

@@ -10,8 +10,10 @@ from gaspart.reproduction.table import Table
 
 
 def estimators(dataset: xr.Dataset) -> Figure:
-    """How many times other estimators must have as long a run, against the packing fraction: counts in all
-    bins and at walls, and impulses of walls alone."""
+    """Draw the relative run length that other estimators need, against the packing fraction.
+
+    They are counts in all bins and at walls, and impulses of walls alone.
+    """
     figure, axes = style.new((2.0, 2.0), (2.0,))
     everywhere, at_walls, pressure = axes
     cases = Table(dataset, "case")

@@ -1,5 +1,7 @@
-"""The density between two walls by counts, by impulses and by their mixture, and the pressure on them, of the
-same runs."""
+"""Density between two walls by counts, by impulses and by their mixture, and the pressure on walls.
+
+All are from the same runs.
+"""
 
 from __future__ import annotations
 
@@ -21,18 +23,21 @@ from gaspart.reproduction.table import table
 
 _BLOCKS = 32
 _FILLED = 0.2
-"""Of the mean density: bins that walls close in part are left out."""
+"""Fraction of the mean density below which bins, which walls close in part, are left out."""
 
 
 def estimators(points: list[Point], settings: dict) -> xr.Dataset:
-    """Variances of densities along the last axis, of gases between walls across it; settings: `widths`.
+    """Measure variances of densities along the last axis, for gases between walls across it.
+
+    The setting is `widths`.
 
     Returns over `case`, each point with each width of bins: packing_fraction; width, in diameters; mixture
-    and impulses, the variance of counts over that of these, the median of all bins; at_walls, the first in
-    the two bins at the walls, each the mean over replicas, by blocks of time; mean_square, of the difference
-    of counts and impulses over its error, over that of Student's distribution; additions, of the tally for
-    each pair of particles that the engine has tested; pressure, the squared error of the pressure on a wall
-    by its impulses over that with what is known, and pressures_apart, the difference of both over the latter.
+    and impulses, the variance of counts divided by their variance, the median of all bins; at_walls, the
+    first in the two bins at the walls, each the mean over replicas, by blocks of time; mean_square, of the
+    difference of counts and impulses over its error, divided by its value for Student's distribution;
+    additions, of the tally for each pair of particles that the engine has tested; pressure, the squared error
+    of the pressure on a wall by its impulses divided by the squared error with known means, and
+    pressures_apart, the difference of both over the latter.
     """
     cases = [(point, width) for point in points for width in settings["widths"]]
     return table("case", cases, _row)
@@ -47,7 +52,7 @@ def _row(case: tuple[Point, float]) -> dict[str, Any]:
 
 
 def _compared(run: Run, width: float) -> dict[str, float]:
-    """One run, in bins of this width."""
+    """Compare the estimators of one run, in bins of this width."""
     counted, impulses = blocks_of(run, width)
     filled = np.flatnonzero(counted.mean(axis=0) > _FILLED * counted.mean())
     counted, impulses = counted[:, filled], impulses[:, filled]
@@ -66,7 +71,10 @@ def _compared(run: Run, width: float) -> dict[str, float]:
 
 
 def pressures_of(run: Run) -> dict[str, float]:
-    """One run: of both walls, which with what is known have the same pressure but for rounding, the means."""
+    """Compare the pressures of one run on both walls, by two estimators; return the means.
+
+    With the known means both walls have the same pressure but for rounding.
+    """
     start = float(run.time[0])
     both = (components(data, "pressure", start) for data in (run.data.assign_attrs(tallies="[]"), run.data))
     plain, better = ([one.estimate for one in found.values()] for found in both)
@@ -78,8 +86,10 @@ def pressures_of(run: Run) -> dict[str, float]:
 
 
 def blocks_of(run: Run, width: float) -> tuple[np.ndarray, np.ndarray]:
-    """(blocks, bins) the mean number of particles in bins of this width by counts and by impulses. Raises
-    SceneError for a width that the bins of the run do not divide."""
+    """Compute the mean numbers of particles (blocks, bins), by counts and by impulses.
+
+    Raises SceneError for a width that the bins of the run do not divide.
+    """
     axis, has = run.dimension - 1, kept(run.data)
     length = float(run.scene.container.lengths[axis])
     bins = round(length / width)

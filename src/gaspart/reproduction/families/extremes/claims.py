@@ -19,8 +19,11 @@ ROUNDING: dict[str, Any] = {
 
 
 def stability_extremes(dataset: xr.Dataset) -> list[Claim]:
-    """Each row passes, or is refused with one line where that is expected, in every engine; where it passes,
-    nothing drifts, overlaps or is missed beyond rounding in the event-driven engine."""
+    """Return the claims that each row passes, or is refused in one line, in every engine.
+
+    A row is refused where that is expected; where it passes, nothing drifts, overlaps or is missed beyond
+    rounding in the event-driven engine.
+    """
     scenes = Table(dataset, "row")
     one_line = np.vectorize(lambda message: bool(message) and "\n" not in message)(scenes.message)
     refused = (scenes.verdict == "refused") & one_line
@@ -41,7 +44,7 @@ def stability_extremes(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _exact(event: Table) -> list[Claim]:
-    """Errors of the event-driven engine, over all rows that pass."""
+    """Return the claims on errors of the event-driven engine, over all rows that pass."""
     passed = event[event.verdict == "passes"]
     return [
         Claim.at_most(

@@ -28,7 +28,7 @@ BLOCKS = {
     "overlap": "overlap",
     "missed": "missed\ncontacts",
 }
-"""What is drawn, and the head of its columns."""
+"""Drawn quantities, and the heads of their columns."""
 GAP = 0.5
 """Between blocks, in columns."""
 FLOOR = 1e-17
@@ -49,7 +49,10 @@ OTHER = "?", "another reason, in the data"
 
 
 def stability_extremes(dataset: xr.Dataset) -> Figure:
-    """A line per row; in each block a column per engine, with an error or the letter of a refusal."""
+    """Draw a line per row; in each block a column per engine.
+
+    A cell has an error or the letter of a refusal.
+    """
     scenes = Table(dataset, "row")
     rows, engines = scenes.verdict.shape
     wide = style.width() > style.COLUMN
@@ -81,14 +84,14 @@ def stability_extremes(dataset: xr.Dataset) -> Figure:
 
 
 def _size(outcome: Row, name: str) -> float:
-    """An error as a number below 1; of contacts the missed or spurious part."""
+    """Return an error as a number below 1; for contacts, the missed or spurious fraction."""
     if name == "missed":
         return abs(outcome.missed) / max(1, outcome.contacts + outcome.missed)
     return abs(getattr(outcome, name))
 
 
 def _draw_cell(axis: Axes, left: float, top: int, cell: tuple[str, Any, str], letters: float) -> None:
-    """A cell, (text, background, ink), with its upper left corner at a place."""
+    """Draw a cell, (text, background, ink), with its upper left corner at a position."""
     text, colour, ink = cell
     axis.add_patch(Rectangle((left, top), 1, 1, facecolor=colour, edgecolor="white", linewidth=0.4))
     if text:
@@ -96,8 +99,11 @@ def _draw_cell(axis: Axes, left: float, top: int, cell: tuple[str, Any, str], le
 
 
 def _cell(outcome: Row, name: str, wide: bool) -> tuple[str, Any, str]:
-    """Text, background and ink of a cell: an error's power of ten, of contacts their number, if there is
-    room; a dot where walls take momentum up."""
+    """Return text, background and ink of a cell.
+
+    The text is an error's power of ten, for contacts their number, if there is space; a dot where walls
+    absorb momentum.
+    """
     if outcome.verdict == "refused":
         return _reason(outcome.message)[0], "#e6e6e6", "black"
     if outcome.verdict != "passes":
@@ -111,14 +117,14 @@ def _cell(outcome: Row, name: str, wide: bool) -> tuple[str, Any, str]:
 
 
 def _reason(message: str) -> tuple[str, str]:
-    """The letter and the text of a refusal's reason."""
+    """Return the letter and the text of a refusal's reason."""
     return next(
         ((letter, text) for letter, text, parts in REASONS if any(part in message for part in parts)), OTHER
     )
 
 
 def _key(scenes: Table, columns: int) -> str:
-    """The reasons that occur, with their letters, a few in a line."""
+    """Return the reasons that occur, with their letters, a few in a line."""
     found = sorted({_reason(message) for message in scenes.message[scenes.verdict == "refused"]})
     texts = [f"{letter}: {text}" for letter, text in found]
     lines = ["; ".join(texts[n : n + columns]) for n in range(0, len(texts), columns)]

@@ -11,10 +11,12 @@ from gaspart.errors import SceneError
 
 
 def guarded(work: Callable, items: Sequence, limit: float) -> list:
-    """`work(item)` for each item, in order; None for one that takes more than `limit` seconds, or ends its
-    process. Compiled code cannot be interrupted, so it is run in a child process, which can be killed.
+    """Return `work(item)` for each item, in order, or None.
 
-    Raises SceneError where the system cannot fork processes, such as Windows."""
+    It is None for an item that takes more than `limit` seconds, or ends its process. Compiled code cannot be
+    interrupted, so it is run in a child process, which can be killed. Raises SceneError where the system
+    cannot fork processes, such as Windows.
+    """
     if not hasattr(os, "fork"):
         raise SceneError("system", os.name, "this figure needs one that forks processes: Linux or macOS")
     results: list = []

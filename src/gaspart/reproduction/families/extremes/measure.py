@@ -26,12 +26,12 @@ _ALL_PAIRS = "event, all pairs"
 
 
 def stability_extremes(points: list[Point], settings: dict) -> xr.Dataset:
-    """Run all rows of the table, or those whose group is in the setting `groups`. There are no points.
+    """Run all rows of the table, or the rows of the setting `groups`, without points.
 
-    Returns over row and engine: verdict ("passes", "refused", "fails", "hangs"), message, what was refused or
-    failed; energy, momentum, overlap, contacts, missed (see `extremes.trial.Outcome`), seconds; refusal,
-    whether a refusal is the expected result. Over row:
-    group; expected, the contacts that there must be by an exact answer, -1 where all pairs are the referee.
+    Returns over row and engine: verdict ("passes", "refused", "fails", "hangs"), message, of the refusal or
+    failure; energy, momentum, overlap, contacts, missed (see `extremes.trial.Outcome`), seconds; refusal, 1
+    if a refusal is the expected result. Over row: group; expected, the contacts that there must be by an
+    exact answer, -1 where all pairs are the referee.
     """
     groups = settings.get("groups")
     rows = [row for row in ROWS if groups is None or row.group in groups]
@@ -54,7 +54,7 @@ def _columns(of: tuple[Row, list[Outcome]]) -> dict[str, Any]:
 
 
 def run_row(row: Row) -> list[Outcome]:
-    """What becomes of a row in each engine; the search through all pairs first, for it is the referee."""
+    """Run a row in each engine; the search through all pairs first, as the referee."""
     trial = partial(attempt, row)
     referee = trial(_ALL_PAIRS)
     return [referee if engine == _ALL_PAIRS else trial(engine, referee) for engine in TRIAL_ENGINES]

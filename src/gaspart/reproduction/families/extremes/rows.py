@@ -17,13 +17,17 @@ FLOAT32 = "step, float32"
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the table.
+    """Line of the table.
 
-    name; group; scene, a function that makes it, which may be refused; duration and time_step,
-    in the scene's time; contacts: the exact number of those of particles and walls, where it is known;
-    else that of the search of all pairs counts. chaotic: a gas, in which an engine with other rounding
-    has the same number of contacts only on average. refused: where a refusal, and nothing else, is the
-    expected result: the beginning of the names of engines, as "step"; "" for all; NOWHERE for none.
+    name, group : its name and its group.
+    scene : function that makes the scene, which may be refused.
+    duration, time_step : in the scene's time.
+    contacts : exact number of contacts of particles and walls, where it is known; otherwise the search of all
+        pairs decides.
+    chaotic : True for a gas, in which an engine with other rounding has the same number of contacts only on
+        average.
+    refused : engines where only a refusal is the expected result, by the beginning of their names, as "step";
+        "" for all; NOWHERE for none.
     """
 
     name: str
@@ -37,7 +41,10 @@ class Row:
 
 
 def _galperin(ratio: float, duration: float, time_step: float) -> Row:
-    """The light ball becomes sqrt(ratio) times as fast as the heavy one: above 1e4, too fast for steps."""
+    """Return the row of two balls of a mass ratio.
+
+    The light ball becomes sqrt(ratio) times as fast as the heavy one: above 1e4, too fast for steps.
+    """
     contacts = exact.galperin(ratio, 2.0, 1.0, duration)
     return Row(
         f"mass ratio 1e{math.log10(ratio):.0f}: {contacts} contacts", "masses",
@@ -47,7 +54,7 @@ def _galperin(ratio: float, duration: float, time_step: float) -> Row:
 
 
 def _speed(speed: float, text: str) -> Row:
-    """Twenty diameters of flight, in steps of a thousandth of a diameter."""
+    """Return twenty diameters of flight, in steps of a thousandth of a diameter."""
     moderate = 1e-100 < speed < 1e100
     scale = 1.0 / speed if moderate else 1.0
     return Row(
@@ -57,7 +64,7 @@ def _speed(speed: float, text: str) -> Row:
 
 
 def _bounce(gravity: float) -> Row:
-    """A hundred periods of a fall from a height of 2, and a quarter."""
+    """Return a hundred periods of a fall from a height of 2, and a quarter."""
     period = 2.0 * math.sqrt(4.0 / gravity)
     return Row(
         f"gravity {gravity:g}: 100 bounces", "gravity",

@@ -16,45 +16,47 @@ GRAZE = 2.0**-50
 
 
 def between_walls(lengths: tuple[float, ...], *particles: Particle, **rest: Any) -> Scene:
-    """A few particles in a container with walls."""
+    """Return the scene of a few particles in a container with walls."""
     return Scene(Container(lengths), particles=particles, **rest)
 
 
 def galperin(ratio: float) -> Scene:
-    """A wall, a light disc at rest, 1 from it, and a heavy one, 1 from that, which approaches with speed
-    1."""
+    """Return the scene of a wall, a light disc at rest, and a heavy disc.
+
+    The light disc is 1 from the wall, the heavy one 1 from the light one; it approaches with speed 1.
+    """
     light, heavy = Particle((1.5, 2.0), (0.0, 0.0), 0.5), Particle((3.5, 2.0), (-1.0, 0.0), 0.5, mass=ratio)
     return between_walls((20.0, 4.0), light, heavy)
 
 
 def gas(*species: Species, side: float = 8.0, dimension: int = 2) -> Scene:
-    """A gas without walls."""
+    """Return a gas without walls."""
     return Scene(Container((side,) * dimension, "periodic"), species)
 
 
 def fast_gas(speed: float) -> Scene:
-    """Twelve discs of one speed."""
+    """Return a gas of twelve discs of one speed."""
     return gas(Species(12, 0.5, speed=speed))
 
 
 def slow_beside_fast() -> Scene:
-    """Half of the discs 1e24 times as fast as the others."""
+    """Return a gas in which half of the discs are 1e24 times as fast as the others."""
     return gas(Species(6, 0.5, speed=1e-12), Species(6, 0.5, speed=1e12))
 
 
 def unequal_masses() -> Scene:
-    """Equal numbers of discs of mass 1 and of mass 1e16, at one temperature."""
+    """Return a gas of equal numbers of discs of mass 1 and of mass 1e16, at one temperature."""
     return gas(Species(10, 0.5, mass=1.0, temperature=1.0), Species(10, 0.5, mass=1e16, temperature=1.0))
 
 
 def unequal_sizes(dimension: int = 2) -> Scene:
-    """A particle of radius 1 among 200 of 1e-4."""
+    """Return a gas of a particle of radius 1 among 200 of 1e-4."""
     species = Species(200, 1e-4, temperature=1.0), Species(1, 1.0, temperature=1.0)
     return gas(*species, side=4.0, dimension=dimension)
 
 
 def grazing(nearer: float) -> Scene:
-    """Two discs of diameter 1 whose centres' tracks are 1 - `nearer` apart."""
+    """Return two discs of diameter 1 whose centres' tracks are 1 - `nearer` apart."""
     return between_walls(
         (4.0, 4.0),
         Particle((1.0, 1.0), (1.0, 0.0), 0.5),
@@ -63,31 +65,34 @@ def grazing(nearer: float) -> Scene:
 
 
 def cradle() -> Scene:
-    """Newton's: a disc hits four that touch."""
+    """Return Newton's cradle: a disc hits four that touch."""
     still = (Particle((4.0 + n, 2.0), (0.0, 0.0), 0.5) for n in range(4))
     return between_walls((12.0, 4.0), Particle((2.0, 2.0), (1.0, 0.0), 0.5), *still)
 
 
 def four_at_once() -> Scene:
-    """Four discs approach one point from four sides, and touch at one instant."""
+    """Return four discs that approach one point from four sides, and touch at one instant."""
     sides = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
     particles = (Particle((4.0 - 2.0 * x, 4.0 - 2.0 * y), (x, y), 0.5) for x, y in sides)
     return between_walls((8.0, 8.0), *particles)
 
 
 def corner(dimension: int) -> Scene:
-    """A particle moves into a corner, where all faces are hit at once."""
+    """Return a particle that moves into a corner, where all faces are hit at once."""
     particle = Particle((2.0,) * dimension, (-1.0,) * dimension, 0.5)
     return between_walls((4.0,) * dimension, particle)
 
 
 def one_fast() -> Scene:
-    """One disc that crosses its container a hundred times in a time of 1."""
+    """Return a disc that crosses its container a hundred times in a time of 1."""
     return between_walls((10.0, 10.0), Particle((5.0, 5.0), (1234.5, 777.0), 0.5))
 
 
 def crystal(packing_fraction: float, dimension: int) -> Scene:
-    """Discs on a triangular lattice, spheres on a face-centred cubic one, expanded from close packing."""
+    """Return discs on a triangular lattice, or spheres on a face-centred cubic one.
+
+    The lattice is expanded from close packing.
+    """
     shape = (10.0, 10.0 * math.sqrt(0.75)) if dimension == 2 else (3.0 * math.sqrt(2.0),) * 3
     stretch = (CLOSE_PACKING[dimension] / packing_fraction) ** (1.0 / dimension)
     kind = Species(100 if dimension == 2 else 108, 0.5, temperature=1.0, arrangement="lattice")
@@ -95,25 +100,25 @@ def crystal(packing_fraction: float, dimension: int) -> Scene:
 
 
 def jammed() -> Scene:
-    """Four discs that touch each other and all walls."""
+    """Return four discs that touch each other and all walls."""
     moves = {(0.5, 0.5): (1.0, 0.5), (1.5, 0.5): (-1.0, 0.5), (0.5, 1.5): (1.0, 0.5), (1.5, 1.5): (1.0, 0.5)}
     return between_walls((2.0, 2.0), *(Particle(place, move, 0.5 - 1e-6) for place, move in moves.items()))
 
 
 def touching() -> Scene:
-    """Four discs that touch each other through periodic faces too, without any gap."""
+    """Return four discs that touch each other through periodic faces too, without any gap."""
     moves = {(0.5, 0.5): (1.0, 0.5), (1.5, 0.5): (-1.0, 0.5), (0.5, 1.5): (1.0, 0.5), (1.5, 1.5): (1.0, 0.5)}
     particles = tuple(Particle(place, move, 0.5) for place, move in moves.items())
     return Scene(Container((2.0, 2.0), "periodic"), particles=particles)
 
 
 def wedged() -> Scene:
-    """A disc exactly as wide as its container."""
+    """Return a disc exactly as wide as its container."""
     return between_walls((1.0, 4.0), Particle((0.5, 2.0), (1.0, 0.5), 0.5))
 
 
 def pair_in(side: float) -> Scene:
-    """Two discs of diameter 1 in a container of any size."""
+    """Return two discs of diameter 1 in a container of any size."""
     place = side / 8.0
     return between_walls(
         (side, side),
@@ -126,7 +131,7 @@ LINE_STARTS, LINE_VELOCITIES = (123456.7, 401234.5, 812345.6), (0.7, -0.9, 0.45)
 
 
 def line() -> Scene:
-    """Three discs on a line, far apart between two walls."""
+    """Return three discs on a line, far apart between two walls."""
     places = ((x + 5.0 + 10.0 * n, 10.0) for n, x in enumerate(LINE_STARTS))
     moves = ((v, 0.0) for v in LINE_VELOCITIES)
     return between_walls(
@@ -135,26 +140,26 @@ def line() -> Scene:
 
 
 def sticking() -> Scene:
-    """A disc hits another, and they separate at zero speed."""
+    """Return a disc that hits another, after which they separate at zero speed."""
     particles = Particle((2.0, 2.0), (1.0, 0.0), 0.5), Particle((5.0, 2.0), (0.0, 0.0), 0.5)
     return between_walls((10.0, 4.0), *particles, restitution=Restitution(0.0))
 
 
 def dissipative_gas() -> Scene:
-    """Sixty discs that retain 1e-12 of their speed of approach at each contact."""
+    """Return sixty discs that retain 1e-12 of their speed of approach at each contact."""
     return Scene(Container((16.0, 16.0)), [Species(60, 0.5, temperature=1.0)], restitution=Restitution(1e-12))
 
 
 def bouncing(gravity: float) -> Scene:
-    """A disc falls from a height of 2 on to a floor, and bounces."""
+    """Return a disc that falls from a height of 2 on to a floor, and bounces."""
     return between_walls((4.0, 4.0), Particle((1.0, 2.5), (0.0, 0.0), 0.5), gravity=(0.0, -gravity))
 
 
 def falling_gas(gravity: float) -> Scene:
-    """Eight discs that fall."""
+    """Return eight discs that fall."""
     return Scene(Container((8.0, 8.0)), [Species(8, 0.5, temperature=1.0)], gravity=(0.0, -gravity))
 
 
 def few(count: int) -> Scene:
-    """This number of discs, and a species without any."""
+    """Return a gas of this number of discs, and of a species without any."""
     return gas(Species(count, 0.5, speed=1.0), Species(0, 0.7, temperature=1.0), side=3.0)

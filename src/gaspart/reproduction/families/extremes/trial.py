@@ -1,4 +1,4 @@
-"""One scene of the table in one engine: drifts, missed contacts, and the verdict."""
+"""Trial of a scene of the table in one engine: drifts, missed contacts, and the verdict."""
 
 from __future__ import annotations
 
@@ -31,16 +31,20 @@ error."""
 MOST_EVENTS, MOST_TESTS = 10_000_000, 50_000_000
 """Contacts after which an event-driven run ends; with the search of all pairs, pair tests."""
 CHECKS = 8
-"""How often a run is checked for overlaps."""
+"""Number of times that a run is checked for overlaps."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """The outcome of one scene in one engine.
+    """Outcome of one scene in one engine.
 
-    verdict; message: of the refusal or failure; energy, momentum: relative drifts (momentum nan where walls
-    absorb some); overlap: the deepest observed, in contact distances; contacts: of particles and walls, and
-    how many were missed (negative: spurious); seconds; bits: a digest of the last state.
+    verdict : the verdict.
+    message : message of the refusal or failure.
+    energy, momentum : relative drifts (momentum nan where walls absorb some).
+    overlap : the deepest observed one, in contact distances.
+    contacts, missed : contacts of particles and walls, and the number of missed ones (negative: spurious).
+    seconds : time.
+    bits : digest of the last state.
     """
 
     verdict: str
@@ -55,7 +59,10 @@ class Outcome:
 
 
 def attempt(row: Row, engine: str, referee: Outcome | None = None) -> Outcome:
-    """Run a row in one of `TRIAL_ENGINES`; `referee` gives the number of contacts where none is exact."""
+    """Run a row in one of `TRIAL_ENGINES`.
+
+    `referee` gives the number of contacts where none is exact.
+    """
     start = time.perf_counter()
     try:
         with warnings.catch_warnings():
@@ -108,7 +115,7 @@ def _advance(simulation: Simulation, until: float) -> bool:
 
 
 def _faults(row: Row, engine: Engine, found: dict, expected: int | None) -> dict:
-    """The verdict, if any of the numbers shows that the run is incorrect."""
+    """Return the verdict, if any of the numbers shows that the run is incorrect."""
     drift = ENERGY_DRIFT[engine.precision]
     allowed = 0.0
     if row.chaotic and engine.name == "step" and expected:
@@ -125,7 +132,10 @@ def _faults(row: Row, engine: Engine, found: dict, expected: int | None) -> dict
 
 
 def energy_drift(before: State, after: State, dissipated: float) -> float:
-    """Relative to the kinetic energy, and to what a fall through the container brings."""
+    """Compute the drift of the energy relative to the kinetic energy.
+
+    The energy that a fall through the container brings is added to the latter.
+    """
     scale = max(before.kinetic_energy, after.kinetic_energy)
     if after.gravity is not None:
         scale += float(after.masses.sum() * (abs(after.gravity) @ after.lengths))
@@ -133,13 +143,13 @@ def energy_drift(before: State, after: State, dissipated: float) -> float:
 
 
 def momentum_drift(before: State, after: State) -> float:
-    """Relative to the sum of the sizes of all momenta."""
+    """Compute the drift of the momentum relative to the sum of the sizes of all momenta."""
     scale = float((before.masses * before.speeds).sum())
     return float(np.abs(after.momentum - before.momentum).max()) / (scale or 1.0)
 
 
 def deepest_overlap(state: State, periodic: tuple[bool, ...]) -> float:
-    """The deepest overlap of any pair, in contact distances, from a look at all pairs."""
+    """Compute the deepest overlap of any pair, in contact distances, from a look at all pairs."""
     deepest = 0.0
     for n in range(state.count - 1):
         apart = state.positions[n + 1 :] - state.positions[n]

@@ -16,15 +16,20 @@ CONTACT = "contact theorem (exact: momentum balance at a hard wall)"
 
 
 def thin_film(dataset: xr.Dataset) -> list[Claim]:
-    """The contact theorem, the bulk far from the walls, and how the pressure oscillates with the width."""
+    """Return the claims on the contact theorem, the bulk, and the oscillation of the pressure.
+
+    The bulk is far from the walls; the pressure oscillates with the width.
+    """
     slits = Table(dataset, "width")
     claims = [*_contact(slits), _bulk(slits[-1]), _potential(slits[-1])]
     return claims + (_oscillation(slits) if len(slits) >= 6 else [])
 
 
 def contact_ratio(slits: Table) -> Estimate:
-    """k_B T times the density at the wall over the pressure on it, of each slit; the error of the
-    extrapolation to the wall counts."""
+    """Compute k_B T times the density at the wall over the pressure on it, for each slit.
+
+    The error of the extrapolation to the wall counts.
+    """
     density = slits.contact + Estimate(0.0, slits.truncation)
     return density / slits.pressure
 
@@ -51,7 +56,7 @@ def _contact(slits: Table) -> list[Claim]:
 
 
 def _of_density(function: Callable[[float], float], density: Estimate) -> Estimate:
-    """A function of the density, at one that was measured."""
+    """Compute a function of the density, at one that was measured."""
     step = 1e-4
     here, above = function(density.value), function(density.value + step)
     return Estimate(here, (above - here) / step * density.error, density.freedom)
@@ -62,7 +67,7 @@ def _eta(density: float) -> float:
 
 
 def _bulk(widest: Row) -> Claim:
-    """The wall's pressure is the bulk's at the density found in the middle."""
+    """Return the claim that the wall's pressure is the bulk's at the density in the middle."""
     bulk = _of_density(lambda x: x * float(theory.compressibility_factor(_eta(x), 3)), widest.middle)
     return Claim(
         claim=f"pressure on the walls over the bulk's at the density in the middle, width {widest.width:g}",

@@ -13,7 +13,7 @@ from gaspart.reproduction.table import Row, Table
 
 
 def thin_film(dataset: xr.Dataset) -> Figure:
-    """Density above a wall, the contact theorem at every width, and the pressure against the width."""
+    """Draw density above a wall, the contact theorem at every width, and pressure against width."""
     figure, (profile, contact, pressure) = style.new((2.8,), (1.3, 2.1))
     slits = Table(dataset, "width")
     _profile(profile, slits[-1])
@@ -57,6 +57,9 @@ def _solvation(axis: Axes, slits: Table) -> None:
 
 
 def _shown(slits: Table) -> np.ndarray:
-    """(width,) places on the axis: the widest slit is drawn at its end, and labelled with its width."""
+    """Return the positions (width,) on the axis.
+
+    The widest slit is drawn at its end, and labelled with its width.
+    """
     end = min(slits.width[-1], slits.theory_width.max() + 0.3)
     return np.append(slits.width[:-1], end)

@@ -1,4 +1,4 @@
-"""A dense fluid between two hard walls: layers, the contact theorem, and the pressure against the width."""
+"""Dense fluid between two hard walls: layers, the contact theorem, and pressure against width."""
 
 from __future__ import annotations
 
@@ -28,11 +28,13 @@ _BINS, _BLOCKS = 20, 16
 
 @dataclass(frozen=True)
 class Slit:
-    """One run between walls at z = 0 and z = H, reduced by the diameter and k_B T.
+    """Run between walls at z = 0 and z = H, reduced by the diameter and k_B T.
 
-    pressure: (samples,) from the momentum given to both walls in each interval; heights: (samples, N) of
-    centres above the contact plane of the nearer wall; width H; area of one wall; positions: (samples, N,
-    3) and sides (3,).
+    pressure : (samples,), from the momentum given to both walls in each interval.
+    heights : (samples, N), heights of centres above the contact plane of the nearer wall.
+    width : H.
+    area : area of one wall.
+    positions, sides : (samples, N, 3) and (3,).
     """
 
     pressure: np.ndarray
@@ -44,20 +46,21 @@ class Slit:
 
 
 def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
-    """Profiles and pressures of slits of several widths, whose numbers of spheres are those of one chemical
-    potential.
+    """Measure profiles and pressures of slits of several widths at one chemical potential.
 
-    settings: bulk_packing_fraction of the fluid with which all slits are (nearly) in equilibrium;
-    insertions, the number of Widom's trial insertions for each width; theory_widths [first, last, number]
-    of the curve.
+    The numbers of spheres are chosen so.
 
-    Returns over `width` (surface to surface, in diameters): pressure, contact (rho(0), k_B T = 1), each
-    with _error; truncation, the cubic's error for the density functional's contact value;
-    chemical_potential with _error; at_bulk, the pressure at exactly the bulk's chemical potential, to first
-    order, with _error; functional_pressure; count. Over `bin`: place, density, density_error of the widest
-    slit, and functional, at these places. Of the widest slit: middle, the density in the middle two
-    diameters, with _error. Over `theory_width`: curve. Attributes: bulk_density, bulk_pressure,
-    bulk_chemical_potential; period, period_error of the damped oscillation.
+    The settings are bulk_packing_fraction of the fluid with which all slits are (nearly) in equilibrium;
+    insertions, the number of Widom's trial insertions for each width; theory_widths [first, last, number] of
+    the curve.
+
+    Returns over `width` (surface to surface, in diameters): pressure, contact (rho(0), k_B T = 1), each with
+    _error; truncation, the cubic's error for the density functional's contact value; chemical_potential with
+    _error; at_bulk, the pressure at exactly the bulk's chemical potential, to first order, with _error;
+    functional_pressure; count. Over `bin`: place, density, density_error of the widest slit, and functional,
+    at these places. Of the widest slit: middle, the density in the middle two diameters, with _error. Over
+    `theory_width`: curve. Attributes: bulk_density, bulk_pressure, bulk_chemical_potential; period,
+    period_error of the damped oscillation.
     """
     points = sorted(points, key=lambda point: point.extents[2][2])
     eta = settings["bulk_packing_fraction"]
@@ -86,8 +89,10 @@ def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
 def _row(
     point: Point, slits: list[Slit], insertions: int, place: np.ndarray, functional: np.ndarray
 ) -> dict[str, Any]:
-    """Pressure, density at contact and chemical potential: means over the replicas; functional (B,): density
-    by the functional at `place`."""
+    """Return pressure, density at contact and chemical potential: means over the replicas.
+
+    `functional` (B,) is the density by the functional at `place`.
+    """
     contact = average([_contact(slit) for slit in slits])
     potentials = [_widom(slit, insertions, point.seed(k)) for k, slit in enumerate(slits)]
     return {
@@ -102,8 +107,10 @@ def _row(
 
 
 def _at_the_bulks_potential(dataset: xr.Dataset) -> xr.Dataset:
-    """With the pressures corrected for chemical potentials that differ slightly from the bulk's, and with the
-    periods."""
+    """Correct the pressures to the bulk's chemical potential, and add the periods.
+
+    The chemical potentials of the slits differ slightly from the bulk's.
+    """
     slits = Table(dataset, "width")
     response = _responses(slits.bulk_density, slits.width)
     pressure = slits.pressure + response * (slits.bulk_chemical_potential - slits.chemical_potential)
@@ -116,8 +123,10 @@ def _at_the_bulks_potential(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _responses(bulk: float, widths: np.ndarray) -> np.ndarray:
-    """dP/dmu of slits of fixed widths, by the density functional; that of a bulk, rho (Gibbs and Duhem),
-    holds for the widest only."""
+    """Compute dP/dmu of slits of fixed widths, by the density functional.
+
+    The value of a bulk, rho (Gibbs and Duhem), holds for the widest only.
+    """
     densities = bulk * np.array([0.99, 1.01])
     eta = theory.packing_fraction(densities, 3)
     potentials = np.log(densities) + theory.excess_chemical_potential(eta, 3)
@@ -126,14 +135,20 @@ def _responses(bulk: float, widths: np.ndarray) -> np.ndarray:
 
 
 def _truncation(place: np.ndarray, density: np.ndarray) -> float:
-    """Relative error of the extrapolation by a cubic, for the density functional's profile (B,)."""
+    """Compute the relative error of the extrapolation of a profile (B,) by a cubic.
+
+    The profile is that of the density functional,
+    """
     near = place <= NEAR
     cubic = fit_polynomial(place[near], density[near], powers=range(4)).values[0]
     return abs(cubic / density[0] - 1.0)
 
 
 def slit_of(run: Run) -> Slit:
-    """That of a run of spheres between walls across the third axis. Raises SceneError for any other scene."""
+    """Return the slit of a run of spheres between walls across the third axis.
+
+    Raises SceneError for any other scene.
+    """
     diameter = plain_gas(run.scene).diameter
     positions, sides = run.positions[1:] / diameter, np.array(run.scene.container.lengths) / diameter
     pressure = face_pressures(run)[:, 4:6].mean(axis=1) * diameter**3 / run.temperature
@@ -142,14 +157,17 @@ def slit_of(run: Run) -> Slit:
 
 
 def _densities(slit: Slit, grid: Grid) -> np.ndarray:
-    """(blocks, bins) density in bins of height above both walls, in blocks of frames."""
+    """Compute the density (blocks, bins) in bins of height above both walls, in blocks of frames."""
     block = np.arange(len(slit.heights)) * _BLOCKS // len(slit.heights)
     counts = grid.sums(grid.cells(slit.heights[..., None]), blocks=block)
     return counts / (np.bincount(block)[:, None] * 2.0 * slit.area * grid.volume)
 
 
 def _contact(slit: Slit) -> Estimate:
-    """Density extrapolated to the contact plane, with the scatter of blocks of frames as its error."""
+    """Compute the density extrapolated to the contact plane; the error is the scatter of blocks.
+
+    Blocks consist of frames.
+    """
     grid = Grid.line(0.0, NEAR, _BINS)
     (middles,) = grid.middles
     fits = [fit_polynomial(middles, counts, powers=range(4)) for counts in _densities(slit, grid)]
@@ -157,10 +175,10 @@ def _contact(slit: Slit) -> Estimate:
 
 
 def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> Estimate:
-    """mu / k_B T = ln[(N + 1) / (V p)], p the chance that a further sphere fits (Widom, J. Chem. Phys. 39,
-    2808 (1963)).
+    """Estimate mu / k_B T = ln[(N + 1) / (V p)] by Widom's insertion.
 
-    V is the volume accessible to centres; lengths in diameters, no thermal wavelength.
+    p is the probability that a further sphere fits (Widom, J. Chem. Phys. 39, 2808 (1963)), V is the volume
+    accessible to centres; lengths in diameters, no thermal wavelength.
     """
     from scipy.spatial import cKDTree
 
@@ -183,7 +201,10 @@ def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> Estimate
 
 
 def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr.Dataset:
-    """Density above the nearer wall of the widest slit, to its middle, and its mean around the middle."""
+    """Compute the density above the nearer wall of the widest slit, to its middle, and around it.
+
+    The mean around the middle is a number.
+    """
     top = 0.5 * (slits[0].width - 1.0)
     grid = Grid.line(0.0, top, 4 * _BINS * round(slits[0].width / 4.0))
     density = means_of(np.concatenate([_densities(slit, grid) for slit in slits]))
@@ -197,8 +218,10 @@ def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr
 
 
 def _period(width: np.ndarray, excess: Estimate) -> Estimate:
-    """The period of a damped oscillation that is fitted to the excess of the pressure over the bulk's against
-    the width; NaN through fewer than six widths."""
+    """Fit the period of a damped oscillation of the pressure against the width.
+
+    The oscillation is in the excess of the pressure over the bulk's; NaN through fewer than six widths.
+    """
     if len(width) < 6:
         return Estimate(math.nan, math.nan)
 

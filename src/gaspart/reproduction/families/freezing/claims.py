@@ -34,8 +34,10 @@ SPHERES_SOURCE = "[Fernandez 2012]"
 
 
 def freezing_discs(dataset: xr.Dataset) -> list[Claim]:
-    """Plateau pressure from each start and their difference; melting and freezing; both branches;
-    equilibrium."""
+    """Return the claims on plateau pressures, melting and freezing, branches, equilibrium.
+
+    The plateaus of both starts and their difference are claimed.
+    """
     starts, states = Table(dataset, "start"), Table(dataset, "packing_fraction")
     expected = theory.COEXISTENCE_PRESSURE[2]
     return [
@@ -50,7 +52,7 @@ def freezing_discs(dataset: xr.Dataset) -> list[Claim]:
 
 
 def freezing_spheres(dataset: xr.Dataset) -> list[Claim]:
-    """Where a crystal melts and where it is stable; both branches of Z; the pressure of coexisting phases."""
+    """Return the claims on melting and stability of a crystal, branches of Z, coexistence."""
     starts = {side.start: _runs(side) for side in Table(dataset, "start")}
     crystal = starts["crystal"]
     eta = crystal.packing_fraction
@@ -64,7 +66,7 @@ def freezing_spheres(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _runs(side: Row) -> Table:
-    """The packing fractions at which there is a run of this start."""
+    """Return the packing fractions at which there is a run of this start."""
     states = Table(side.dataset, "packing_fraction")
     return states[np.isfinite(states.order.value)]
 
@@ -96,7 +98,10 @@ def _same_plateau(plateau: Estimate, expected: float) -> Claim:
 
 
 def _extreme(order: Estimate, melted: bool) -> Estimate:
-    """That furthest from equilibrium: the most ordered where all is melted, else the least ordered."""
+    """Return the order furthest from equilibrium.
+
+    It is the most ordered one where all is melted, else the least ordered one.
+    """
     return order[int((np.argmax if melted else np.argmin)(order.value))]
 
 
@@ -131,13 +136,16 @@ def _lattice(crystal: Table, melted: bool) -> Claim:
 
 
 def _with_drift(measured: Estimate, drift: Estimate) -> Estimate:
-    """Half the drift between the halves of a run is in its uncertainty if significant."""
+    """Add half the drift between the halves of a run to its uncertainty, if significant."""
     significant = abs(drift.value) > EQUILIBRIUM_LIMIT * drift.error
     return Estimate(measured.value, math.hypot(measured.error, 0.5 * drift.value if significant else 0.0))
 
 
 def _liquid_of_discs(states: Table) -> list[Claim]:
-    """Pressures of as many discs as published, in the same container; the virial series is too inaccurate."""
+    """Return the claims on pressures of as many discs as published, in the same container.
+
+    The virial series is too inaccurate.
+    """
     claims = []
     published = theory.literature("pressure", 2)
     known = {row.packing_fraction: row for row in published[published.container == "29 x 30"]}
@@ -162,7 +170,10 @@ def _liquid_of_discs(states: Table) -> list[Claim]:
 
 
 def _crystal_of_discs(states: Table) -> list[Claim]:
-    """The crystal's pressure where the literature has as many discs, to the literature's uncertainty."""
+    """Return the claims on the pressure of the crystal of as many discs as in the literature.
+
+    The uncertainty of the literature is the required one.
+    """
     eta, expected, allowance = theory.CRYSTAL_OF_1024_DISCS
     same = states[(np.abs(states.packing_fraction - eta) < 1e-4) & (states.count == 1024)]
     return [
@@ -180,8 +191,11 @@ def _crystal_of_discs(states: Table) -> list[Claim]:
 
 
 def _equilibrium(states: Table) -> Claim:
-    """The chance of so many differences in equilibrium is exact: binomial. A fluid that is compressed further
-    than where the ordered phase melts freezes with defects, which do not heal in any such run."""
+    """Return the claim on the number of differences in equilibrium, exact by binomial chance.
+
+    A fluid that is compressed further than where the ordered phase melts freezes with defects, which do not
+    heal in any such run.
+    """
     melting = theory.coexistence_packing_fractions(2)[1]
     differences = states[states.packing_fraction <= melting].disagreement
     number = differences.size
@@ -201,7 +215,10 @@ def _equilibrium(states: Table) -> Claim:
 
 
 def _branch(state: Row) -> Claim:
-    """Z on the branch that a run is on; a superheated crystal may be melting, and has no verdict."""
+    """Return the claim on Z on the branch of a run.
+
+    A superheated crystal may be melting, and has no verdict.
+    """
     eta, reference, solid = state.packing_fraction, state.reference, bool(state.crystalline)
     known = not solid and math.isfinite(reference)
     allowance = float(theory.compressibility_uncertainty(eta, 3)) if known else 0.0

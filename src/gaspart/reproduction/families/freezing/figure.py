@@ -25,7 +25,7 @@ EQUILIBRATED = 3.0
 
 
 def freezing_discs(dataset: xr.Dataset) -> Figure:
-    """Pressure with the plateau, psi_6, g(r), and three snapshots with their structure factors."""
+    """Draw pressure with the plateau, psi_6, g(r), and three snapshots with structure factors."""
     shown = Table(dataset, "shown")
     figure, (loop, order, shells, below) = style.new((2.4, 1.5), (2.0,), (1.65 * len(shown),))
     starts = _starts(dataset)
@@ -46,7 +46,7 @@ def freezing_discs(dataset: xr.Dataset) -> Figure:
 
 
 def freezing_spheres(dataset: xr.Dataset) -> Figure:
-    """Pressure of both branches, its residuals, Q_6, and the profiles of coexisting crystal and fluid."""
+    """Draw pressure of both branches, its residuals, Q_6, and profiles of coexistence."""
     figure, axes = style.new((2.4, 1.2), (1.5,), (2.0,))
     upper, middle, order, slab = axes
     starts = _starts(dataset)
@@ -61,7 +61,7 @@ def freezing_spheres(dataset: xr.Dataset) -> Figure:
 
 
 def _starts(dataset: xr.Dataset) -> dict[str, Table]:
-    """The packing fractions at which there is a run of each start."""
+    """Return the packing fractions at which there is a run of each start."""
     starts = {}
     for side in Table(dataset, "start"):
         states = Table(side.dataset, "packing_fraction")
@@ -70,7 +70,7 @@ def _starts(dataset: xr.Dataset) -> dict[str, Table]:
 
 
 def _points(axis: Axes, states: Table, y: Estimate, kind: int, label: str | None = None) -> None:
-    """Filled symbols in equilibrium, hollow ones not."""
+    """Draw filled symbols in equilibrium, hollow ones not."""
     equilibrated = states.disagreement <= EQUILIBRATED
     for chosen, hollow in ((equilibrated, False), (~equilibrated, True)):
         if chosen.any():
@@ -105,7 +105,7 @@ def _loop(axis: Axes, states: Table, starts: dict[str, Table]) -> None:
 
 
 def _published(axis: Axes) -> None:
-    """The pressures of more discs, and of as many as are compared, by programs of others."""
+    """Draw the published pressures of more discs, and of as many as are compared."""
     known = theory.literature("pressure", 2)
     for count, source, container, dashes in PUBLISHED:
         same = (known.source == source) & (known.container == container) & (known["count"] == count)
@@ -122,7 +122,7 @@ def _order(axis: Axes, starts: dict[str, Table], dimension: int) -> None:
 
 
 def _snapshot(axis: Axes, picture: Row, label: str) -> None:
-    """Discs coloured by the orientation of their bonds, which has a period of 60 degrees."""
+    """Draw discs coloured by the orientation of their bonds, which has a period of 60 degrees."""
     from matplotlib.collections import EllipseCollection
 
     x, y = picture.x, picture.y
@@ -137,7 +137,7 @@ def _snapshot(axis: Axes, picture: Row, label: str) -> None:
 
 
 def _scattering(axis: Axes, picture: Row) -> None:
-    """S(k) in grey levels, black where it is large."""
+    """Draw S(k) in grey levels, black where it is large."""
     from matplotlib.colors import LogNorm
 
     waves, factor, norm = (picture.wave_x, picture.wave_y), picture.structure_factor.T, LogNorm(0.1, 100.0)
@@ -163,7 +163,7 @@ def _branches(axis: Axes, eta: np.ndarray, starts: dict[str, Table]) -> None:
 
 
 def _coexistence(axis: Axes, slab: Row) -> None:
-    """The pressure of crystal beside fluid, at the mean of their densities."""
+    """Draw the pressure of crystal coexisting with fluid, at the mean of their densities."""
     pressure = Estimate([slab.slab_pressure], [slab.slab_error])
     style.points(axis, [slab.slab_packing_fraction], pressure, kind=6, label="coexistence")
     style.labelled(axis, y="pressure $P\\sigma^3/k_\\mathrm{B}T$", legend="upper left")
@@ -179,7 +179,7 @@ def _residuals(axis: Axes, starts: dict[str, Table]) -> None:
 
 
 def _profiles(axis: Axes, halves: Table) -> None:
-    """Local order (left) and density (right) along the container, in both halves of the run."""
+    """Draw local order (left) and density (right) along the container, in both halves of the run."""
     other = axis.twinx()
     for half, line in zip(halves, (":", "-"), strict=True):
         axis.plot(half.position, half.slab_order, linestyle=line, color=style.COLOURS[1])

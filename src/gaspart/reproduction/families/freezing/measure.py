@@ -22,25 +22,25 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 
 STARTS = {"lattice": "crystal", "compressed": "fluid"}
-"""What a run starts from, by its arrangement: a perfect lattice, or a disordered fluid."""
+"""Start of a run, by its arrangement: a perfect lattice, or a disordered fluid."""
 CRYSTAL_ORDER = 0.3
 """Global Q_6 above which a run of spheres is taken for a crystal: 0.45 and more near melting, 0.03 in the
 fluid."""
 COMPARED = 870
-"""Number of discs whose pressure is published: points of so many are compared with it, and not drawn."""
+"""Number of discs whose pressure is published; such points are compared, and not drawn."""
 LOCAL_CRYSTAL = 0.32
 """Averaged local q_6 half-way between the crystal's 0.48 and the fluid's 0.16."""
 
 
 Order = Callable[[np.ndarray, Sequence[float]], float]
-"""One number of a frame, of positions and the lengths of the container."""
+"""Function that returns one number of a frame, from positions and the lengths of the container."""
 
 
 def freezing_discs(points: list[Point], settings: dict) -> xr.Dataset:
-    """P and psi_6 of discs against packing fraction from both starts; plateau pressures; structure.
+    """Measure P and psi_6 of discs against packing fraction from both starts, plateaus, structure.
 
-    settings: `shown`, packing fractions whose structure is kept; `furthest` and `bins` of g(r), in diameters;
-    `highest` wave number of S(k), times the diameter.
+    The settings are `shown`, packing fractions whose structure is kept; `furthest` and `bins` of g(r), in
+    diameters; `highest` wave number of S(k), times the diameter.
 
     Returns over `start` and `packing_fraction`: see `_states`, the order being |mean psi_6|. Over `start` and
     `compared_packing_fraction`: compared_pressure, its _error, _drift and _drift_error, of the points of
@@ -61,13 +61,13 @@ def freezing_discs(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def freezing_spheres(points: list[Point], settings: dict) -> xr.Dataset:
-    """Z and Q_6 of spheres against packing fraction from both starts, and coexisting crystal and fluid.
+    """Measure Z and Q_6 of spheres against packing fraction from both starts, and coexistence.
 
-    settings: none. Returns over `start` and `packing_fraction`: see `_states`, the order being the global
-    Q_6; crystalline, 1 if it stayed above CRYSTAL_ORDER; Z and Z_error of the infinite system (first order
-    in 1/N subtracted), finite_size, reference (of the run's branch; NaN beyond its range). Of
-    the slab: slab_pressure, slab_error, slab_drift, slab_drift_error; over `half` and `position` its
-    profiles of local order (slab_order) and number density (slab_density); over `half` crystal_fraction.
+    There are no settings. Returns over `start` and `packing_fraction`: see `_states`, the order being the
+    global Q_6; crystalline, 1 if it stayed above CRYSTAL_ORDER; Z and Z_error of the infinite system (first
+    order in 1/N subtracted), finite_size, reference (of the run's branch; NaN beyond its range). Of the slab:
+    slab_pressure, slab_error, slab_drift, slab_drift_error; over `half` and `position` its profiles of local
+    order (slab_order) and number density (slab_density); over `half` crystal_fraction.
     """
     slabs = [point for point in points if point.settings.get("arrangement") == "slab"]
     bulk = [point for point in points if point not in slabs]
@@ -77,7 +77,7 @@ def freezing_spheres(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _of_start(points: list[Point], start: str) -> dict[float, Point]:
-    """Points of one start by packing fraction, ascending."""
+    """Compute points of one start by packing fraction, ascending."""
     found = {
         round(point.scene.packing_fraction, 9): point
         for point in points
@@ -87,13 +87,15 @@ def _of_start(points: list[Point], start: str) -> dict[float, Point]:
 
 
 def _disc(point: Point) -> dict[str, Any]:
-    """The columns of a point of discs."""
+    """Return the columns of a point of discs."""
     return _state(point, lambda frame, lengths: abs(structure.hexatic(frame, lengths).mean()))
 
 
 def _sphere(point: Point) -> dict[str, Any]:
-    """The columns of a point of spheres: of the branch that it is on, Z of the infinite system, and that of
-    the reference."""
+    """Return the columns of a point of spheres.
+
+    They are Z of the infinite system on the branch of the point, and Z of the reference.
+    """
     row = _state(point, structure.global_steinhardt)
     eta, solid = row["packing_fraction"], row["order"][0] > CRYSTAL_ORDER
     z = Estimate(*row["pressure"]) / row["density"]
@@ -114,7 +116,7 @@ def _sphere(point: Point) -> dict[str, Any]:
 
 
 def _state(point: Point, order: Order) -> dict[str, Any]:
-    """Pressure and order of a point, and how far its halves differ."""
+    """Return the pressure and order of a point, and how far its halves differ."""
     scene = point.scene
     density = scene.number_density * (2.0 * scene.largest_radius) ** scene.dimension
     pressures, orders = [], []
@@ -135,7 +137,10 @@ def _state(point: Point, order: Order) -> dict[str, Any]:
 
 
 def _mean_and_drift(replicas: list[np.ndarray]) -> tuple[Estimate, Estimate]:
-    """Of series, and their second half minus the first: in equilibrium there is none."""
+    """Return the mean of series, and their second half minus the first.
+
+    In equilibrium there is no such drift.
+    """
     means = [correlated_mean(series).estimate for series in replicas]
     drifts = []
     for series, mean in zip(replicas, means, strict=True):
@@ -145,7 +150,9 @@ def _mean_and_drift(replicas: list[np.ndarray]) -> tuple[Estimate, Estimate]:
 
 
 def _states(points: list[Point], row: Callable[[Point], dict[str, Any]]) -> xr.Dataset:
-    """The columns of all starts and packing fractions (NaN where there is no run), replicas averaged.
+    """Return the columns of all starts and packing fractions, replicas averaged.
+
+    They are NaN where there is no run.
 
     Returns over `start` and `packing_fraction`: pressure (k_B T / sigma^d), order, their _error, _drift and
     _drift_error; over `packing_fraction`: count, density (1 / sigma^d) and disagreement: the largest of the
@@ -170,15 +177,18 @@ def _disagreement(dataset: xr.Dataset) -> xr.DataArray:
 
 
 def _compared(points: list[Point]) -> xr.Dataset:
-    """The pressures of points that are compared with published ones."""
+    """Return the pressures of points that are compared with published ones."""
     names = [f"pressure{name}" for name in ("", "_error", "_drift", "_drift_error")]
     new = {name: f"compared_{name}" for name in (*names, "packing_fraction")}
     return _states(points, _disc)[names].rename(new)
 
 
 def _plateau(side: Row) -> dict[str, Any]:
-    """The plateau of one start. A point's uncertainty holds half of its drift and of how `unlike` the
-    starts are: a run out of equilibrium is uncertain."""
+    """Compute the plateau of one start.
+
+    A point's uncertainty holds half of its drift and of the difference of the starts, `unlike`: a run out of
+    equilibrium is uncertain.
+    """
     states = Table(side.dataset, "packing_fraction")
     states = states[np.isfinite(states.pressure.value)]
     parts = states.pressure.error, 0.5 * states.pressure_drift.value, 0.5 * states.unlike
@@ -193,7 +203,7 @@ def _plateau(side: Row) -> dict[str, Any]:
 
 
 def _pictures(chosen: dict[float, Point], settings: dict) -> xr.Dataset:
-    """Structure at some packing fractions; lengths in diameters."""
+    """Return structure at some packing fractions; lengths in diameters."""
     shown = [x for x in chosen if any(abs(x - y) < 1e-6 for y in settings["shown"])]
     rows = [_picture(chosen[x], settings) for x in shown]
     # Wave vectors are those of each container, which shrinks with the packing fraction: kept by number.
@@ -213,7 +223,7 @@ def _pictures(chosen: dict[float, Point], settings: dict) -> xr.Dataset:
 
 
 def _picture(point: Point, settings: dict) -> dict[str, Any]:
-    """Of the first replica: its last frame, g(r) and S(k)."""
+    """Return the last frame, g(r) and S(k) of the first replica."""
     replicas = runs(point)  # the file is open while this lives
     run = next(replicas)
     diameter = 2.0 * run.scene.largest_radius
@@ -234,13 +244,13 @@ def _picture(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _middle(values: np.ndarray, *most: int) -> np.ndarray:
-    """The middle element along each axis, and as many on both sides of it."""
+    """Compute the middle element along each axis, and as many on both sides of it."""
     sizes = zip(values.shape, most, strict=True)
     return values[tuple(slice(size // 2 - n, size // 2 + n + 1) for size, n in sizes)]
 
 
 def _slab(points: list[Point]) -> xr.Dataset:
-    """Pressure and profiles of the containers with crystal and fluid side by side, replicas averaged."""
+    """Measure pressure and profiles of containers with crystal and fluid, replicas averaged."""
     (point,) = points
     scene = point.scene
     lengths, diameter = scene.container.lengths, 2.0 * scene.largest_radius
@@ -276,8 +286,10 @@ def _slab(points: list[Point]) -> xr.Dataset:
 
 
 def _profiles(run: Run, grid: Grid, axis: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of both halves of a run the local order (2, bins) and the reduced density (2, bins) along an axis, and
-    the part of the spheres that are crystalline (2,)."""
+    """Compute the local order and the reduced density (2, bins) of both halves of a run.
+
+    The profiles are along an axis; the fraction of crystalline spheres (2,) is returned too.
+    """
     scene, frames = run.scene, run.data["coordinates"].values[1:]
     local = np.array([structure.local_steinhardt(frame, scene.container.lengths) for frame in frames])
     half = np.arange(2).repeat([(len(frames) + 1) // 2, len(frames) // 2])

@@ -19,11 +19,17 @@ HUTHMANN = (
 )
 VAN_NOIJE = "[Haff 1983]; [van Noije 1998], to first order in a2"
 DIFFERENCE = 1.5
-"""The error of T_tr - T_rot over that of T_rot: 2 T_tr + T_rot is conserved, so both have one fluctuation."""
+"""Error of T_tr - T_rot divided by the error of T_rot.
+
+2 T_tr + T_rot is conserved, so both have one fluctuation.
+"""
 
 
 def equipartition(dataset: xr.Dataset) -> list[Claim]:
-    """Equal energies per degree of freedom, at the known rate; a steady ratio where contacts dissipate."""
+    """Return the claims on equal energies per degree of freedom, and on a steady ratio.
+
+    Energies become equal at the known rate; the ratio is steady where contacts dissipate.
+    """
     still = Table(dataset, "equilibrium")
     return [
         *each(
@@ -42,7 +48,7 @@ def equipartition(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _steady(gas: Row) -> Claim:
-    """The ratio of the temperatures of discs that cool."""
+    """Return the claim on the ratio of the temperatures of discs that cool."""
     q, tangential = gas.cooling_inertia, gas.tangential
     known = [line for line in theory.rough_cooling() if np.allclose(line[:3], (q, tangential, 1.0))]
     ratio, error = known[0][3:] if known else (theory.rough_ratio(q, tangential), 0.0)
@@ -61,7 +67,7 @@ def _steady(gas: Row) -> Claim:
 
 
 def _decay(gas: Row) -> list[Claim]:
-    """From spins 0: the initial rate, and the whole curve."""
+    """Return the claims on the initial rate from spins 0, and on the whole curve."""
     q = gas.inertia
     expected = 3.0 * q / (1.0 + q) ** 2
     frames = Table(gas.dataset, "frame")
@@ -95,7 +101,10 @@ def _decay(gas: Row) -> list[Claim]:
 
 
 def _at_walls(gas: Row) -> list[Claim]:
-    """Energy that is exchanged at rough walls only: the share of a hit, and equal shares in the end."""
+    """Return the claims on energy exchanged at rough walls only.
+
+    They are on the fraction of a hit, and on equal energies in the end.
+    """
     which = f"{PARTICLES[gas.wall_dimension]} between rough walls, q = {gas.wall_inertia:g}"
     return [
         Claim(
@@ -120,7 +129,7 @@ def _at_walls(gas: Row) -> list[Claim]:
 
 
 def cooling(dataset: xr.Dataset) -> list[Claim]:
-    """Haff's law, its rate and exponent; clusters that end it."""
+    """Return the claims on Haff's law, its rate and exponent; clusters that end it."""
     claims = []
     for gas in Table(dataset, "gas"):
         dimension, e = gas.dimension, gas.restitution
@@ -150,13 +159,16 @@ def cooling(dataset: xr.Dataset) -> list[Claim]:
 
 
 def elastic_variance(gases: Table) -> float:
-    """The variance of the number in a cell of the elastic gas, once it is in equilibrium."""
+    """Compute the variance of the number in a cell of the elastic gas in equilibrium."""
     elastic = gases[gases.cluster_restitution == 1.0]
     return float(np.nanmean(elastic.variance.value[:, 1:]))
 
 
 def _clusters(gases: Table) -> list[Claim]:
-    """In the end the gas is neither homogeneous nor as cold as Haff's law; the elastic one is unchanged."""
+    """Return the claims on the final gas: neither homogeneous nor as cold as Haff's law.
+
+    The elastic gas is unchanged.
+    """
     usual = elastic_variance(gases)
     claims = []
     for gas in gases[gases.cluster_restitution != 1.0]:
@@ -181,7 +193,10 @@ def _clusters(gases: Table) -> list[Claim]:
 
 
 def _grown(what: str, ratio: Estimate, least: float, **others: Any) -> Claim:
-    """A ratio is `least` or more, by its logarithm, which is 0 of an unchanged gas."""
+    """Return the claim that a ratio is `least` or more, by its logarithm.
+
+    The logarithm is 0 for an unchanged gas.
+    """
     bound = np.log(least)
     return Claim.at_least(
         claim=f"ln of {what}",

@@ -15,8 +15,10 @@ from gaspart.reproduction.table import Table
 
 
 def equipartition(dataset: xr.Dataset) -> Figure:
-    """Both temperatures against collisions, and their difference minus theory's; steady ratios; the same
-    temperatures of particles that meet rough walls only."""
+    """Draw temperatures against collisions, differences from theory, and steady ratios.
+
+    The same temperatures are drawn for particles that meet rough walls only.
+    """
     figure, (upper, middle, lower, walls) = style.new((2.3, 1.2), (2.0,), (2.0,))
     _temperatures(upper, Table(dataset, "start"))
     _differences(middle, Table(dataset, "start"))
@@ -38,7 +40,7 @@ def _temperatures(axis: Axes, gases: Table) -> None:
 
 
 def _differences(axis: Axes, gases: Table) -> None:
-    """100 (T_tr - T_rot - exp(-3 q s / (1 + q)^2)): in per cent of the initial temperature."""
+    """Draw 100 (T_tr - T_rot - exp(-3 q s / (1 + q)^2)), in per cent of the initial temperature."""
     style.level(axis, 0.0)
     for kind, gas in enumerate(gases):
         q, s = gas.inertia, gas.collisions
@@ -49,7 +51,7 @@ def _differences(axis: Axes, gases: Table) -> None:
 
 
 def _ratios(axis: Axes, cooling: Table, equilibrium: Table) -> None:
-    """T_rot / T_tr against the tangential restitution: theories, cooling discs, elastic rough discs."""
+    """Draw T_rot / T_tr against the tangential restitution: theories, cooling discs, elastic discs."""
     curve = np.linspace(-0.99, 1.0, 200)
     for kind, (q, still) in enumerate(equilibrium.by("equilibrium_inertia")):
         theoretical = [theory.rough_ratio(q, tangential) for tangential in curve]
@@ -67,7 +69,10 @@ def _ratios(axis: Axes, cooling: Table, equilibrium: Table) -> None:
 
 
 def _at_walls(axis: Axes, gases: Table) -> None:
-    """T along the walls and T_rot against time, over the former at the start, and theory's."""
+    """Draw T along the walls and T_rot against time, relative to the former at the start.
+
+    Theory's curves are drawn too.
+    """
     fine = np.linspace(0.0, np.nanmax(gases.wall_time), 200)
     for kind, gas in enumerate(gases):
         label = rf"{PARTICLES[gas.wall_dimension]}, $q={gas.wall_inertia:g}$"
@@ -82,7 +87,7 @@ def _at_walls(axis: Axes, gases: Table) -> None:
 
 
 def cooling(dataset: xr.Dataset) -> Figure:
-    """Four panels: Haff's law, its rate, how a large gas leaves it, and the final state."""
+    """Draw Haff's law, its rate, the departure of a large gas, and the final state."""
     figure, axes = style.new((2.6,), (2.4,), (2.4,), (2.8,))
     gases, clusters = Table(dataset, "gas"), Table(dataset, "clusters")
     _haff(axes[0], gases)
@@ -97,7 +102,7 @@ def cooling(dataset: xr.Dataset) -> Figure:
 
 
 def _haff(axis: Axes, gases: Table) -> None:
-    """T over Haff's T_0 / (1 + t / t_H)^2, against 1 + t / t_H."""
+    """Draw T over Haff's T_0 / (1 + t / t_H)^2, against 1 + t / t_H."""
     style.level(axis, 1.0)
     for dimension in (2, 3):
         own = gases[gases.dimension == dimension].sorted_by("restitution")[::-1]
@@ -112,7 +117,10 @@ def _haff(axis: Axes, gases: Table) -> None:
 
 
 def _rates(axis: Axes, gases: Table) -> None:
-    """-d ln T / ds over (1 - e^2)/d: 1 for Maxwell's distribution, 1 + a2/4 for that of the cooling gas."""
+    """Draw -d ln T / ds over (1 - e^2)/d.
+
+    It is 1 for Maxwell's distribution, 1 + a2/4 for the cooling gas.
+    """
     style.level(axis, 1.0)
     curve = np.linspace(0.55, 1.0, 100)
     for kind, (dimension, own) in enumerate(gases.by("dimension")):
@@ -125,7 +133,10 @@ def _rates(axis: Axes, gases: Table) -> None:
 
 
 def _leaving(axis: Axes, gases: Table) -> None:
-    """T over Haff's and the variance of the number in a cell over the elastic gas's, against (1 - e^2) s."""
+    """Draw T over Haff's, and the relative variance of the number in a cell, against (1 - e^2) s.
+
+    The variance is relative to the elastic gas.
+    """
     style.level(axis, 1.0)
     inelastic = gases[gases.cluster_restitution < 1.0].sorted_by("cluster_restitution")[::-1]
     for kind, gas in enumerate(inelastic):
@@ -142,7 +153,7 @@ def _leaving(axis: Axes, gases: Table) -> None:
 
 
 def _picture(axis: Axes, particles: Table) -> None:
-    """The discs of one run at its end, to scale."""
+    """Draw the discs of one run at its end, to scale."""
     from matplotlib.collections import EllipseCollection
 
     side, diameter = particles.side, 2.0 * particles.radius

@@ -33,11 +33,11 @@ rate that depends on the moment of inertia, and from which on the difference is 
 
 
 def equipartition(points: list[Point], settings: dict) -> xr.Dataset:
-    """How the energies of rough discs become equal, that they do, and what they do when contacts dissipate.
+    """Measure the approach of rough discs to equal energies, the equality, and its loss by dissipation.
 
-    Points whose container has walls are particles that meet only these. Of the others those whose tangential
-    restitution is below 1 are cooling, and the rest in equilibrium if they have an equilibration; without,
-    they start without spins. settings: `steady_from`, see `_cooling`.
+    Points whose container has walls are particles that meet only these. Of the others the points whose
+    tangential restitution is below 1 are cooling, and the rest in equilibrium if they have an equilibration;
+    without, they start without spins. The setting is `steady_from`, see `_cooling`.
 
     Returns, over `start` and `frame`: collisions, translation, rotation, with errors; over `start`: inertia q
     = I / (m R^2), rate and its error, of T_tr - T_rot's decay per collision of a particle at the start. Over
@@ -76,8 +76,10 @@ def _start(point: Point) -> dict[str, Any]:
 
 
 def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np.ndarray) -> float:
-    """- d ln (T_tr - T_rot) / ds at s = 0, of a parabola in s from there down to a fifth of the difference,
-    whose noise is much the same at all s."""
+    """Fit - d ln (T_tr - T_rot) / ds at s = 0 by a parabola in s.
+
+    The parabola extends down to a fifth of the difference, whose noise is much the same at all s.
+    """
     difference = translation - rotation
     used = (difference > 0.2) & (collisions > 0.0)
     logarithm = -np.log(difference[used])
@@ -85,7 +87,10 @@ def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np
 
 
 def _equilibrium(point: Point) -> dict[str, Any]:
-    """T_rot / T_tr of the mean energies, of a run of conserved energy. Blocks: frames may be correlated."""
+    """Measure T_rot / T_tr of the mean energies in a run of conserved energy.
+
+    Errors are by blocks: frames may be correlated.
+    """
     replicas = read(point)
     mean = average([correlated_mean(run.rotation).estimate for run in replicas])
     translation = float(np.mean([run.translation.mean() for run in replicas]))
@@ -99,8 +104,10 @@ def _equilibrium(point: Point) -> dict[str, Any]:
 
 
 def _cooling(point: Point, steady_from: float) -> dict[str, Any]:
-    """The ratio of the mean temperatures of all replicas, frame by frame, and its mean over the frames later
-    than `steady_from` collisions per particle."""
+    """Measure the ratio of the mean temperatures of all replicas, frame by frame, and its mean.
+
+    The mean is over the frames later than `steady_from` collisions per particle.
+    """
     replicas = read(point)
     collisions = np.mean([run.collisions for run in replicas], axis=0)
     late = collisions > steady_from
@@ -119,11 +126,11 @@ def _cooling(point: Point, steady_from: float) -> dict[str, Any]:
 
 
 def _walls(point: Point) -> dict[str, Any]:
-    """Temperatures of particles between two rough walls, over T_par at the start: T_par = m <v^2> of each
-    direction along the walls, and T_rot = I <w^2> of each spin that a hit changes, which are as many.
+    """Measure temperatures of particles between two rough walls, over T_par at the start.
 
-    `exchange`: T_rot over theory's, by least squares until MIXING; `wall_ratio`: T_rot / T_par after MIXED,
-    over theory's. wall_time: t sqrt(k_B T / m) / h.
+    T_par = m <v^2> of each direction along the walls, and T_rot = I <w^2> of each spin that a hit changes,
+    which are as many. `exchange` is T_rot over theory's, by least squares until MIXING; `wall_ratio` is T_rot
+    / T_par after MIXED, over theory's. wall_time is t sqrt(k_B T / m) / h.
     """
     scene = point.scene
     kind, along = scene.species[0], np.array(scene.container.periodic)
@@ -158,7 +165,7 @@ def _walls(point: Point) -> dict[str, Any]:
 
 
 def cooling(points: list[Point], settings: dict) -> xr.Dataset:
-    """Haff's law in dilute inelastic gases, and how a dense and large one leaves it.
+    """Return Haff's law in dilute inelastic gases, and how a dense and large one leaves it.
 
     settings: `clustering`, the experiments of the latter; `cells_per_side`, into which its container is cut.
 
@@ -166,8 +173,8 @@ def cooling(points: list[Point], settings: dict) -> xr.Dataset:
     `gas`: dimension, restitution, rate and its error (-d ln T / ds, per replica between `RELAXED` and the
     end), exponent and its error (of T against 1 + t / t_H). Over `clusters` and `step`: cluster_collisions;
     cluster_excess, T over exp(-rate s) of theory, and its error; variance, of the number of particles in a
-    cell over its mean, and its error; over `clusters`: cluster_restitution. Over `particle`: x, y, at the
-    end of one run of the least restitution; attrs side, radius.
+    cell over its mean, and its error; over `clusters`: cluster_restitution. Over `particle`: x, y, at the end
+    of one run of the least restitution; attrs side, radius.
     """
     apart = [point for point in points if point.experiment in settings["clustering"]]
     dilute = [point for point in points if point not in apart]
@@ -223,7 +230,10 @@ def _clusters(point: Point, cells: int) -> dict[str, Any]:
 
 
 def _number_variance(run: Run, cells: int) -> np.ndarray:
-    """(T,) variance of the number of particles in a cell, over its mean: 1 for independent particles."""
+    """Compute the variance (T,) of the number of particles in a cell, over its mean.
+
+    It is 1 for independent particles.
+    """
     lengths = run.scene.container.lengths
     grid = Grid((0.0,) * len(lengths), lengths, (cells,) * len(lengths))
     # Single precision may put a particle that is about to leave on the boundary itself.

@@ -24,7 +24,7 @@ class Temperatures:
 
 
 def temperatures(run: Run, first: int) -> Temperatures:
-    """Temperatures in all frames of a run of like particles from number `first` on."""
+    """Return the temperatures in all frames of a run of like particles from number `first` on."""
     count, dimension, mass = run.count, run.dimension, run.scene.species[0].mass
     translation, rotation = run.temperatures, np.zeros(len(run.time))
     if run.scene.rough:  # of smooth particles the file may lack all but one
@@ -40,18 +40,21 @@ def temperatures(run: Run, first: int) -> Temperatures:
 
 
 def read(point: Point) -> list[Temperatures]:
-    """Temperatures in all replicas of a point, without their equilibration."""
+    """Return the temperatures in all replicas of a point, without their equilibration."""
     first = point.schedule.equilibration_frames
     return [temperatures(run, first) for run in runs(point, first=0)]
 
 
 def law(point: Point) -> Restitution:
-    """That of the contacts of a point's scene."""
+    """Return the law of the contacts of a point's scene."""
     return point.scene.restitution or Restitution()
 
 
 def inertia(point: Point) -> float:
-    """q = I / (m R^2) of a point's only species; by default that of a uniform disc or sphere."""
+    """Return q = I / (m R^2) of a point's only species.
+
+    The default is that for a uniform disc or sphere.
+    """
     kind = point.scene.species[0]
     if kind.moment_of_inertia is None:
         return {2: 0.5, 3: 0.4}[point.scene.dimension]

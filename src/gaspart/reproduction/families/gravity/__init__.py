@@ -7,7 +7,7 @@ CHAPTER = "Gravity, heat and walls"
 
 
 def _columns(**meanings: str) -> dict:
-    """The setting that names the experiment of each column."""
+    """Return the setting that names the experiment of each column."""
     return record(
         {name: described(TEXT, meaning, default=None) for name, meaning in meanings.items()},
         "the experiment of each column that the figure distinguishes",

@@ -18,12 +18,18 @@ IDEAL = 0.01
 
 
 def barometric(ds: xr.Dataset) -> list[Claim]:
-    """The barometric formula, the equation of state from the weight of the column, and one temperature."""
+    """Return the claims on the barometric formula, the equation of state, and one temperature.
+
+    The equation of state follows from the weight of the column.
+    """
     return [claim for column in Table(ds, "point") for claim in _of_one_kind(column)]
 
 
 def separation(ds: xr.Dataset) -> list[Claim]:
-    """Each species has its own scale height in a dilute gas; their ratio is exponential at any density."""
+    """Return the claims on scale heights of species, and on their ratio.
+
+    Each species has its own scale height in a dilute gas; the ratio is exponential at any density.
+    """
     return [claim for column in Table(ds, "point") for claim in _of_two_kinds(column)]
 
 
@@ -73,7 +79,10 @@ def _of_two_kinds(row: Row) -> list[Claim]:
 
 
 def _source_column(row: Row) -> list[Claim]:
-    """Source C's column where it samples it: the same state, and not yet in equilibrium."""
+    """Return the claims on source C's column at its sample.
+
+    It is in the same state, and not yet in equilibrium.
+    """
     return [
         _collisions(row),
         Claim.within(
@@ -101,7 +110,10 @@ def _source_column(row: Row) -> list[Claim]:
 
 
 def _source_mixture(row: Row) -> list[Claim]:
-    """Source C's mixture at the end of its run: as far separated as the source's, and not in equilibrium."""
+    """Return the claims on source C's mixture at the end of its run.
+
+    It is as far separated as the source's, and not in equilibrium.
+    """
     reported = Estimate(row.source_shares, row.share.error)
     return [
         _collisions(row),
@@ -125,7 +137,10 @@ def _source_mixture(row: Row) -> list[Claim]:
 
 
 def _collisions(row: Row) -> Claim:
-    """Collisions of the source's own run until its end; one run, whose collisions are counted."""
+    """Return the claim on the collisions of the source's own run until its end.
+
+    There is one run, whose collisions are counted.
+    """
     reported, count = row.source_collisions, row.collisions
     return Claim.within(
         claim=f"collisions until the source's {reported:.1e}, over them",
@@ -160,7 +175,7 @@ def _at(row: Row) -> str:
 
 
 def _slope(one: Row, name: str, at: str, required: float) -> Claim:
-    """The slope of the chemical potential of one species."""
+    """Return the claim on the slope of the chemical potential of one species."""
     return Claim(
         claim=f"slope of the chemical potential of the {name} over -m g / kT, {at}",
         measured=one.slope_ratio,
@@ -172,7 +187,7 @@ def _slope(one: Row, name: str, at: str, required: float) -> Claim:
 
 
 def _mean_height(one: Row, name: str, at: str) -> Claim:
-    """The mean height of one species."""
+    """Return the claim on the mean height of one species."""
     return Claim(
         claim=f"mean height of the {name} over the ideal gas's, {at}",
         measured=one.mean_height_ratio,
@@ -212,7 +227,7 @@ def _balance(row: Row, at: str) -> Claim:
 
 
 def heat_capacity(ds: xr.Dataset) -> list[Claim]:
-    """Heat capacity from neighbouring energies and from fluctuations."""
+    """Return the claims on the heat capacity from neighbouring energies and from fluctuations."""
     return [claim for pair in Table(ds, "pair") for claim in _capacities(pair)]
 
 

@@ -19,8 +19,10 @@ KNOWN = 0.1
 
 
 def barometric(ds: xr.Dataset) -> Figure:
-    """Density and temperature against height, the equation of state from the weight, and the source's
-    column."""
+    """Draw density and temperature against height, the equation of state, and the source's column.
+
+    The equation of state follows from the weight.
+    """
     of_source = _named(ds, "later", "source")
     figure, axes = style.new((2.4, 1.1, 1.1), (1.7, 1.0), *([(1.5, 1.1)] if of_source else []))
     top, ratio, warm, state, off = axes[:5]
@@ -52,7 +54,7 @@ def barometric(ds: xr.Dataset) -> Figure:
 
 
 def _source_columns(top: Axes, bottom: Axes, columns: list[Row]) -> None:
-    """Density and temperature of the source's column, in the source's sample and later."""
+    """Draw the density and temperature of the source's column, in the source's sample and later."""
     for kind, row in enumerate(columns, start=2):
         name = {"later": "later", "source": "source's sample"}[row.column]
         _density(top, row, kind, None if kind > 2 else "hydrostatics", name)
@@ -64,7 +66,10 @@ def _source_columns(top: Axes, bottom: Axes, columns: list[Row]) -> None:
 
 
 def separation(ds: xr.Dataset) -> Figure:
-    """Heavy and light discs: densities, dilute and dense, the ratio of the two, and the source's mixture."""
+    """Draw densities of heavy and light discs, their ratio, and the source's mixture.
+
+    The densities are of a dilute and a dense gas.
+    """
     of_source = _named(ds, "source")
     figure, axes = style.new((2.2,), (2.2,), (2.0, 1.0), *[(1.6,) for _ in of_source])
     names = ("light", "heavy")
@@ -88,7 +93,7 @@ def separation(ds: xr.Dataset) -> Figure:
 
 
 def _exchange(top: Axes, bottom: Axes, columns: list[Row]) -> None:
-    """The ratio of the two densities against height, with the line of the exact slope, and the residuals."""
+    """Draw the ratio of both densities against height, with the exact slope, and the residuals."""
     style.band(bottom, -3.0, 3.0)
     style.level(bottom, 0.0)
     for kind, row in enumerate(columns, start=2):
@@ -103,7 +108,10 @@ def _exchange(top: Axes, bottom: Axes, columns: list[Row]) -> None:
 
 
 def _shares(axis: Axes, row: Row) -> None:
-    """Shares of the light discs in the source's mixture: in its run, in ours, and in equilibrium."""
+    """Draw fractions of the light discs in the source's mixture.
+
+    They are those in its run, in ours, and in equilibrium.
+    """
     reported = np.array(row.source_shares)
     edges = np.linspace(0.0, row.top, len(reported) + 1)
     axis.stairs(reported, edges, baseline=None, color=style.GREY, label="source's run")
@@ -115,13 +123,16 @@ def _shares(axis: Axes, row: Row) -> None:
 
 
 def _named(ds: xr.Dataset, *names: str) -> list[Row]:
-    """The columns of these names, in this order; those that there are."""
+    """Return the columns of these names, in this order; those that there are."""
     columns = {row.column: row for row in Table(ds, "point")}
     return [columns[name] for name in names if name in columns]
 
 
 def _density(axis: Axes, row: Row, kind: int, theory: str | None, label: str) -> None:
-    """Density over its mean against height, with theory; of species number `kind` if there are several."""
+    """Draw density over its mean against height, with theory.
+
+    If there are several species, it is that of number `kind`.
+    """
     species = kind if len(row.density) > 1 else 0
     density, mean = row.density[species], row.mean_density
     seen = _known(density)
@@ -130,18 +141,18 @@ def _density(axis: Axes, row: Row, kind: int, theory: str | None, label: str) ->
 
 
 def _known(density: Estimate) -> np.ndarray:
-    """(B,) where there are particles enough."""
+    """Return True for the bins (B,) with enough particles."""
     return np.asarray(density.error < KNOWN * density.value)
 
 
 def _temperature(axis: Axes, row: Row, kind: int) -> None:
-    """The temperature at each height over that of all, where there are particles enough."""
+    """Draw the temperature at each height relative to the whole, where particles suffice."""
     seen = _known(row.density[0])
     _percent(axis, row.height[seen], row.temperature_ratio[seen], kind)
 
 
 def heat_capacity(ds: xr.Dataset) -> Figure:
-    """Heat capacity against x, from neighbouring energies and from fluctuations, and its deviation."""
+    """Draw heat capacity against x, from energies and from fluctuations, and its deviation."""
     figure, (top, bottom) = style.new((2.6, 1.2))
     pairs, runs = Table(ds, "pair"), Table(ds.stack(each=("pair", "run")), "each")
     end = 1.15 * max(pairs.x.max(), runs.run_x.max())
@@ -166,20 +177,20 @@ def heat_capacity(ds: xr.Dataset) -> Figure:
 
 
 def _expected(row: Row, kind: int) -> np.ndarray:
-    """(B,) density: an ideal gas's where the column is dilute, hydrostatics elsewhere."""
+    """Return the expected density (B,): an ideal gas's in a dilute column, else hydrostatics."""
     dilute = row.packing_fraction.value.max() < IDEAL
     return _ideal(row, kind) if dilute else np.asarray(row.hydrostatic[kind])
 
 
 def _ideal(row: Row, kind: int) -> np.ndarray:
-    """(B,) density of an ideal gas of as many particles at the column's temperature."""
+    """Compute the density (B,) of an ideal gas of as many particles at the column's temperature."""
     weight = row.mass[kind] * row.strength / row.temperature.value
     number = row.density.value[kind].mean() * row.top
     return np.asarray(number * ideal_profile(row.height, row.top, weight))
 
 
 def _percent(axis: Axes, x: np.ndarray, ratio: Estimate, kind: int) -> None:
-    """The distance of a ratio from 1 in per cent, with its zero line."""
+    """Draw the distance of a ratio from 1 in per cent, with its zero line."""
     style.level(axis, 0.0)
     style.points(axis, x, 100.0 * (ratio - 1.0), kind=kind, hollow=True, markersize=2.5)
     axis.set_ylim(-4.5, 4.5)

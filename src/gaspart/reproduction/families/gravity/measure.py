@@ -1,7 +1,8 @@
 """Gases under gravity: profiles of one and of two kinds of discs, and the heat capacity.
 
-Every run is cut into stretches of time, `blocks` of a replica; the stretches of all replicas are taken as
-independent, and errors are the jackknife's over them. The temperature is always that of the kinetic energy.
+Every run is cut into blocks of time, `blocks` of a replica; the blocks of all replicas are taken as
+independent, and errors are the jackknife's over them. The temperature is always defined by the kinetic
+energy.
 """
 
 from __future__ import annotations
@@ -51,9 +52,10 @@ INNER = {
 
 
 def barometric(points: list[Point], settings: dict) -> xr.Dataset:
-    """Density, temperature and pressure against height of one kind of discs; see `profiles`.
+    """Measure density, temperature and pressure against height of one kind of discs.
 
-    settings: also `source_collisions` and `source_temperature`, of the source's sample.
+    See `profiles`. The settings also have `source_collisions` and `source_temperature`, of the source's
+    sample.
     """
     made = profiles(points, settings, source.ringing)
     return made.assign_attrs(
@@ -62,10 +64,10 @@ def barometric(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def separation(points: list[Point], settings: dict) -> xr.Dataset:
-    """Profiles of heavy and light discs of one size, and the slope of their ratio; see `profiles`.
+    """Measure profiles of heavy and light discs of one size, and the slope of their ratio.
 
-    settings: also `source_collisions` before the source's sample, and `source_shares` in it, of the light
-    discs in equal layers of the container.
+    See `profiles`. The settings also have `source_collisions` before the source's sample, and `source_shares`
+    in it, of the light discs in equal layers of the container.
     """
     shares = settings["source_shares"]
     made = profiles(points, settings, lambda point: source.shares(point, len(shares)))
@@ -73,18 +75,18 @@ def separation(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], dict]) -> xr.Dataset:
-    """Columns of discs of one size under gravity, point by point.
+    """Measure columns of discs of one size under gravity, point by point.
 
-    settings: `bins` of height; `blocks`, the time blocks of each replica; `clear`, the diameters next to
-    floor and ceiling that are left out of every comparison (layers there are real, and not hydrostatics);
+    The settings are `bins` of height; `blocks`, the time blocks of each replica; `clear`, the diameters next
+    to floor and ceiling that are left out of every comparison (layers there are real, and not hydrostatics);
     `ranges`, pairs of packing fractions between which the equation of state is averaged; `columns`, the
-    experiment of each column by name. of_source: further numbers of the column "source".
+    experiment of each column by name. `of_source` returns further numbers of the column "source".
 
     Dimensions point, species, bin, range, layer (of the source's shares). `pressure_ratio` is the pressure
-    that carries the weight of what is above over rho T Z(eta) of the reference; `slope_ratio` that of
-    ln eta_i + mu_excess against height over -m_i g / T; `exchange_ratio` that of ln (eta_1 / eta_0) over
-    -(m_1 - m_0) g / T, which for particles of one size is exact at any density: given their places, which of
-    them is heavy has no other energy.
+    that carries the weight above, over rho T Z(eta) of the reference; `slope_ratio` is the slope of ln eta_i
+    + mu_excess against height over -m_i g / T; `exchange_ratio` is the slope of ln (eta_1 / eta_0) over -(m_1
+    - m_0) g / T, which for particles of one size is exact at any density: given their places, which of them
+    is heavy has no other energy.
     """
     names = {experiment: name for name, experiment in settings["columns"].items()}
 
@@ -101,11 +103,15 @@ def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], d
 
 @dataclass(frozen=True)
 class Bins:
-    """The bins of height of one column, and what follows from averages in them.
+    """Bins of height of one column, and quantities that follow from averages in them.
 
-    place: the column; masses (S,) of its species; height (B,) of the middles, width of each; used (B,), which
-    are clear of floor and ceiling. Arguments of the methods are averages over time: density (S, B); energy
-    (B,), density times temperature; pressure (B,); temperature, of the entire column.
+    place : the column.
+    masses : (S,), masses of its species.
+    height, width : (B,) heights of the middles, width of each.
+    used : (B,), bins that are clear of floor and ceiling.
+
+    Arguments of the methods are averages over time: density (S, B); energy (B,), density times temperature;
+    pressure (B,); temperature, of the entire column.
     """
 
     place: Field
@@ -116,7 +122,7 @@ class Bins:
 
     @classmethod
     def of(cls, place: Field, number: int, clear: float) -> Bins:
-        """`number` bins, of which those within `clear` diameters of floor and ceiling are not used."""
+        """Return `number` bins; those within `clear` diameters of floor and ceiling are not used."""
         grid = Grid.line(0.0, place.height, number)
         height, width = grid.middles[0], grid.volume
         margin = clear * place.diameter + 0.5 * width
@@ -125,15 +131,15 @@ class Bins:
         return cls(place, np.array(masses), height, width, used)
 
     def packing_fraction(self, density: np.ndarray) -> np.ndarray:
-        """(B,) of all species."""
+        """Compute the packing fraction (B,) of all species."""
         return density.sum(axis=0) * particle_volume(2, self.place.diameter)
 
     def pressure_ratio(self, density: np.ndarray, pressure: np.ndarray, energy: np.ndarray) -> np.ndarray:
-        """(B,) pressure over that of the reference at this density and temperature."""
+        """Compute pressure (B,) over the reference at this density and temperature."""
         return pressure / (energy * compressibility_factor(self.packing_fraction(density), 2))
 
     def slope_ratio(self, density: np.ndarray, temperature: float) -> np.ndarray:
-        """(S,) slopes of ln eta_i + mu_excess(eta) over -m_i g / T."""
+        """Compute slopes of ln eta_i + mu_excess(eta) over -m_i g / T, shape (S,)."""
         volume = particle_volume(2, self.place.diameter)
         excess = excess_chemical_potential(self.packing_fraction(density), 2)
         with np.errstate(divide="ignore"):
@@ -141,28 +147,28 @@ class Bins:
         return -np.array(slopes) * temperature / (self.masses * self.place.strength)
 
     def log_ratio(self, density: np.ndarray) -> np.ndarray:
-        """(B,) ln of the last over the first species' density."""
+        """Compute ln of the last over the first species' density, shape (B,)."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.log(density[-1] / density[0])
 
     def exchange_ratio(self, density: np.ndarray, temperature: float) -> float:
-        """Slope of `log_ratio` over -(M - m) g / T; NaN for one species."""
+        """Compute the slope of `log_ratio` over -(M - m) g / T; NaN for one species."""
         if self.masses.size < 2:
             return np.nan
         slope = self._slope(self.log_ratio(density), density[0] * density[-1] / density.sum(axis=0))
         return -slope * temperature / ((self.masses[-1] - self.masses[0]) * self.place.strength)
 
     def temperature_gradient(self, energy: np.ndarray, density: np.ndarray) -> float:
-        """dT/dz over the mean weight of a particle: d ln T / dz in scale heights."""
+        """Compute dT/dz over the mean weight of a particle: d ln T / dz in scale heights."""
         total = density.sum(axis=0)
         return self._slope(energy / total, total) / (self.place.weight / len(self.place.masses))
 
     def mean_height_ratio(self, height: np.ndarray, temperature: float) -> np.ndarray:
-        """(S,) mean heights over those of ideal gases."""
+        """Compute mean heights (S,) relative to ideal gases."""
         return height / ideal_mean_height(self.place.height, self.masses * self.place.strength / temperature)
 
     def exchange_line(self, value: np.ndarray, error: np.ndarray, temperature: float) -> np.ndarray:
-        """(B,) what `log_ratio` is if its slope is exact, through its weighted mean over the used bins."""
+        """Compute `log_ratio` (B,) for the exact slope, through its weighted mean over used bins."""
         line = -(self.masses[-1] - self.masses[0]) * self.place.strength / temperature * self.height
         known = self.used & np.isfinite(error) & (error > 0.0)
         if self.masses.size < 2 or not known.any():
@@ -170,7 +176,10 @@ class Bins:
         return line + np.average((value - line)[known], weights=1.0 / error[known] ** 2)
 
     def hydrostatics(self, density: np.ndarray, temperature: float) -> np.ndarray:
-        """(S, B) hydrostatic densities with as many particles of each kind as there are in the used bins."""
+        """Compute hydrostatic densities (S, B) with the actual numbers in the used bins.
+
+        The numbers are of particles of each kind.
+        """
         first, last = np.flatnonzero(self.used)[[0, -1]]
         z = np.linspace(first, last + 1, 8 * (last - first + 1) + 1) * self.width
         numbers = density[:, self.used].sum(axis=1) * self.width
@@ -181,13 +190,16 @@ class Bins:
         return shown
 
     def _slope(self, y: np.ndarray, weight: np.ndarray) -> float:
-        """Slope of the line through the used bins where something was; variances are as 1 / weight."""
+        """Fit the slope of the line through the used bins that have particles.
+
+        Variances are proportional to 1 / weight.
+        """
         seen = self.used & (weight > 0.0)
         return float(np.polyfit(self.height[seen], y[seen], 1, w=np.sqrt(weight[seen]))[0])
 
 
 def _column(point: Point, settings: dict) -> dict[str, Any]:
-    """The numbers of one point."""
+    """Return the numbers of one point."""
     place, found = field(point), stretches(point, settings["blocks"])
     bins = Bins.of(place, settings["bins"], settings["clear"])
     parts = [profile(place, stretch, settings["bins"]) for stretch in found]
@@ -239,11 +251,13 @@ def _column(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def heat_capacity(points: list[Point], settings: dict) -> xr.Dataset:
-    """Heat capacity of a dilute gas in a box of finite height, in two ways, against x = m g H / (k_B T).
+    """Measure the heat capacity of a dilute gas in a box of finite height, in two ways.
+
+    It is against x = m g H / (k_B T).
 
     Points come in pairs of one scene at two energies. From them, C = dE/dT; and from the fluctuations of the
-    kinetic energy in each run, at constant energy, `lebowitz_percus_verlet`. What an ideal gas of as many
-    particles and the same energy gives for both is exact: `..._expected`. settings: `blocks` of each replica.
+    kinetic energy in each run, at constant energy, `lebowitz_percus_verlet`. Both are exact for an ideal gas
+    of as many particles and the same energy, `..._expected`. The setting is `blocks` of each replica.
 
     Dimensions pair, run (of a pair). Raises ValueError for points that are not such pairs.
     """
@@ -258,7 +272,7 @@ def heat_capacity(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _pair(ends: tuple[dict, dict]) -> dict[str, Any]:
-    """The variables of two runs at two energies, and C = dE/dT from both."""
+    """Return the variables of two runs at two energies, and C = dE/dT from both."""
     cold, warm = ends
     both = {
         name: np.array([end[name] for end in ends]) for name in ("energy", "temperature_expected", "run_x")
@@ -276,7 +290,7 @@ def _pair(ends: tuple[dict, dict]) -> dict[str, Any]:
 
 
 def _energies(point: Point, blocks: int) -> dict[str, Any]:
-    """Temperature and fluctuations, measured and expected, of one point of a single replica."""
+    """Measure temperature and fluctuations of one point of a single replica, and expect them."""
     place, scene = field(point), point.scene
     if point.replicas != 1 or place.across:
         raise ValueError(f"{point.path}: must be one run between walls, whose energy is known")

@@ -1,4 +1,4 @@
-"""What source C's own runs under gravity show, beside what its notebooks report.
+"""Results of source C's own runs under gravity, next to the numbers in its notebooks.
 
 The sample of such a point begins where the collisions of the source end.
 """
@@ -19,17 +19,17 @@ _FALL = 0.3
 
 
 def collisions(point: Point) -> float:
-    """Collisions and hits of walls before the sample, which the source counts alike."""
+    """Compute collisions and hits of walls before the sample, which the source counts alike."""
     with open_trajectory(point.replica_path(0)) as trajectory:
         frame = trajectory.isel(frame=point.schedule.equilibration_frames)
         return float(frame["collisions"] + frame["wall_hits"].sum())
 
 
 def ringing(point: Point) -> dict[str, Estimate]:
-    """Amplitude of the oscillation of the kinetic energy where the sample begins, over its mean.
+    """Fit the amplitude of the oscillation of the kinetic energy at the start of the sample, over its mean.
 
-    Of a fit of mean + e^{-t / decay} (a cos w t + b sin w t) to all frames after the fall, with t from where
-    the sample begins. The error is that of the fit, from the scatter of the frames.
+    The fit is mean + e^{-t / decay} (a cos w t + b sin w t) to all frames after the fall, with t from the
+    start of the sample. The error is from the scatter of the frames.
     """
     begin = point.schedule.equilibration
     with open_trajectory(point.replica_path(0)) as trajectory:
@@ -51,10 +51,10 @@ def ringing(point: Point) -> dict[str, Estimate]:
 
 
 def shares(point: Point, layers: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Share of the first species in equal layers of the container, (layers,).
+    """Compute the fraction of the first species in equal layers of the container, (layers,).
 
     Its error is the binomial one of a single frame: the frames of one sample are close to each other, and so
-    are those of the composition of a layer. The source has one frame.
+    are their compositions of a layer. The source has one frame.
     """
     place, [sample] = field(point), stretches(point, 1)
     grid = Grid.line(-0.5 * place.diameter, place.height + 0.5 * place.diameter, layers)

@@ -1,4 +1,4 @@
-"""How a gas between a hot and a cold wall comes to its steady state, from one temperature everywhere."""
+"""Approach of a gas between a hot and a cold wall to its steady state, from one temperature."""
 
 from __future__ import annotations
 
@@ -19,16 +19,18 @@ HEAT_CAPACITY = 2.5
 NO_APPROACH = dict.fromkeys(
     ("approach_time", "approach", "approach_error", "expected_approach"), np.full(FRAMES, np.nan)
 )
-"""What `approach` returns, for gases that it does not describe."""
+"""Result of `approach` for gases that it does not describe."""
 
 
 def approach(point: Point, slab: Slab) -> dict[str, np.ndarray]:
-    """The temperature of the particles nearer to the hot wall minus that of the others, in the first frames
-    of a gas of spheres of mass 1 whose steady state is `slab`.
+    """Measure the difference of temperature between the halves of a gas, in its first frames.
+
+    It is the temperature of the particles nearer to the hot wall minus the temperature of the others, in a
+    gas of spheres of mass 1 whose steady state is `slab`.
 
     Returns approach_time, approach, approach_error and expected_approach, (FRAMES,) each, with NaN beyond the
     end of a short run: the mean over replicas; its standard error for Maxwellian velocities, the squares of
-    whose components have the relative variance 2; and that of the heat equation.
+    whose components have the relative variance 2; and the value of the heat equation.
     """
     scene = point.scene
     middle = scene.smallest_radius + 0.5 * slab.position[-1]
@@ -54,8 +56,11 @@ def approach(point: Point, slab: Slab) -> dict[str, np.ndarray]:
 
 
 def expected_approach(time: np.ndarray, slab: Slab, density: float, diameter: float) -> np.ndarray:
-    """The difference of the halves' temperatures by the heat equation, with the conductivity of the mean
-    density and temperature: it ends at that of the steady `slab`; jumps at the walls lengthen the gap."""
+    """Compute the difference of the halves' temperatures by the heat equation.
+
+    The conductivity is that at the mean density and temperature. The difference ends at its value in the
+    steady `slab`; jumps at the walls lengthen the gap.
+    """
     hot = slab.position < 0.5 * slab.position[-1]
     steady = _average(slab, hot) - _average(slab, ~hot)
     eta = packing_fraction(density, 3, diameter)
@@ -66,6 +71,6 @@ def expected_approach(time: np.ndarray, slab: Slab, density: float, diameter: fl
 
 
 def _average(slab: Slab, side: np.ndarray) -> float:
-    """The mean temperature of the particles of one half."""
+    """Compute the mean temperature of the particles of one half."""
     place, number = slab.position[side], slab.density[side]
     return float(np.trapezoid(number * slab.temperature[side], place) / np.trapezoid(number, place))

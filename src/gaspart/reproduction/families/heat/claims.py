@@ -20,7 +20,7 @@ that fly from wall to wall add w/a (sqrt(1 + (L/w)^2) - L/w) = 0.008 of the flux
 
 
 def heat_conduction_gas(ds: xr.Dataset) -> list[Claim]:
-    """A steady flux, its two limits, the profile between them, and the source's rule."""
+    """Return the claims on a steady flux, its limits, the profile, and the source's rule."""
     claims = []
     for row in Table(ds, "point"):
         at = _at(row)
@@ -38,7 +38,7 @@ def _at(row: Row) -> str:
 
 
 def _steady(row: Row, at: str) -> list[Claim]:
-    """The heat from the hot wall goes into the cold one, early and late."""
+    """Return the claims that the heat from the hot wall goes into the cold one, early and late."""
     conserved = Claim.at_most(
         claim=f"|heat from the walls - energy of the particles| over the transferred heat, {at}",
         kind="identity",
@@ -126,7 +126,10 @@ def _fluid(row: Row, at: str) -> list[Claim]:
 
 
 def heat_conduction_metal(ds: xr.Dataset) -> list[Claim]:
-    """Equipartition among electrons and modes, the law of Dulong and Petit, and what a grid changes."""
+    """Return the claims on equipartition, Dulong and Petit's law, and effects of a grid.
+
+    Equipartition is among electrons and modes.
+    """
     points = Table(ds, "point")
     law = f"N_e d/2 + N_s = {points.expected[0]:g} (classical statistical mechanics, exact)"
     claims, conducting = [], {}
@@ -175,9 +178,11 @@ def _local(row: Row) -> Claim:
 
 
 def _linear(row: Row) -> list[Claim]:
-    """The bend of the temperature against position; in a gas T^(3/2) would be linear. Nothing is claimed of a
-    grid: where channels let electrons fly far, their temperature is not a local one; nor of walls and
-    gaps for which theory has not been computed."""
+    """Return the claims on the bend of the temperature against position.
+
+    In a gas T^(3/2) would be linear. There is no claim on a grid: where channels let electrons fly far, their
+    temperature is not a local one; nor on walls and gaps for which theory has not been computed.
+    """
     if row.hot != 2.0 * row.cold or abs(row.gap_over_path / METAL_GAP - 1.0) > 0.1:
         return []
     slope, level = np.polyfit(row.position[1:-1], row.electrons.value[1:-1], 1)

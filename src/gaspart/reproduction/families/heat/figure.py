@@ -21,8 +21,10 @@ NOISY = 0.03
 
 
 def heat_conduction_gas(ds: xr.Dataset) -> Figure:
-    """Flux against density, and over that of free flight; the approach to the steady state; profiles of
-    temperature and of density."""
+    """Draw flux against density and Knudsen number, the approach, and profiles.
+
+    The flux is also drawn relative to free flight; the profiles are of temperature and of density.
+    """
     figure, axes = style.new((2.5,), (2.3,), (1.8,), (2.7, 1.3, 2.6))
     flux, share, start, warm, off, dense = axes
     gases = Table(ds, "point")
@@ -44,7 +46,7 @@ def heat_conduction_gas(ds: xr.Dataset) -> Figure:
 
 
 def _fluxes(axis: Axes, gases: Table) -> None:
-    """Flux against density, with both limits."""
+    """Draw the flux against density, with both limits."""
     first, number = gases[0], np.geomspace(5e-4, 0.08, 100)
     free, fourier = number / first.number * first.full, first.fourier
     axis.plot(number, 1e3 * free, color=style.GREY, label="free flight")
@@ -67,12 +69,12 @@ def _fluxes(axis: Axes, gases: Table) -> None:
 
 @cache
 def _conducted(length: float, number: float, hot: float, cold: float) -> float:
-    """Flux of `conducting_slab`, which takes a second."""
+    """Compute the flux of `conducting_slab`, which takes a second."""
     return conducting_slab(length, number, hot, cold).flux
 
 
 def _shares(axis: Axes, gases: Table) -> None:
-    """Flux over that of free flight against the Knudsen number; the thinnest gases at infinity."""
+    """Draw flux, relative to free flight, against the Knudsen number; the thinnest gases at infinity."""
     end = 20.0
     for level in (1.0, 2.0 / 3.0, 0.5):
         style.level(axis, level)
@@ -92,7 +94,7 @@ def _shares(axis: Axes, gases: Table) -> None:
 
 
 def _approach(axis: Axes, gas: Row) -> None:
-    """The difference of temperature between the halves of one gas, from the start on."""
+    """Draw the difference of temperature between the halves of one gas, from the start on."""
     look: dict[str, Any] = {"hollow": True, "markersize": 2.5, "label": rf"$l/L = {gas.knudsen:.2g}$"}
     style.points(axis, gas.approach_time, gas.approach, **look)
     theory: dict[str, Any] = {"color": style.DATA, "zorder": 4, "label": "heat equation"}
@@ -102,7 +104,7 @@ def _approach(axis: Axes, gas: Row) -> None:
 
 
 def _profiles(warm: Axes, off: Axes, dense: Axes, gas: Row, kind: int) -> None:
-    """One gas's temperature, its deviation from theory, and its density."""
+    """Draw the temperature of one gas, its deviation from theory, and its density."""
     position = gas.position / gas.length
     small: dict[str, Any] = {"kind": kind, "hollow": True, "markersize": 2.5}
     style.points(warm, position, gas.temperature, label=rf"$l/L = {gas.knudsen:.2g}$", **small)
@@ -119,8 +121,10 @@ def _profiles(warm: Axes, off: Axes, dense: Axes, gas: Row, kind: int) -> None:
 
 
 def heat_conduction_metal(ds: xr.Dataset) -> Figure:
-    """Temperatures of electrons and modes between two walls, among scatterers at random places; energy
-    against temperature."""
+    """Draw temperatures of electrons and modes between two walls, and energy.
+
+    The electrons are among scatterers at random positions; the energy is against temperature.
+    """
     figure, (top, bottom, off) = style.new((3.0,), (2.2, 1.2))
     points = Table(ds, "point")
     for metal in points[(points.hot != points.cold) & ~points.regular.astype(bool)]:

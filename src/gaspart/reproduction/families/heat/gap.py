@@ -1,8 +1,6 @@
-"""The gap between two thermal walls: its size, and what its particles and walls do, averaged over blocks of
-time.
+"""Gap between two thermal walls: its size, and averages of its particles and walls over blocks of time.
 
-The walls are the two faces of the first axis, whose positions count from the hot one on, where centres can
-be.
+The walls are the two faces of the first axis. Positions count from the hot one on, where centres can be.
 """
 
 from __future__ import annotations
@@ -23,8 +21,13 @@ from gaspart.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Gap:
-    """Between the walls: length, where centres can be; area of a wall; temperatures of the walls, the hot one
-    is x_low; dimension."""
+    """Gap between the walls.
+
+    length : length in which centres can be.
+    area : area of a wall.
+    hot, cold : temperatures of the walls; the hot one is x_low.
+    dimension : dimension.
+    """
 
     length: float
     area: float
@@ -34,24 +37,30 @@ class Gap:
 
     @classmethod
     def of(cls, scene: Scene) -> Gap:
-        """That of a scene whose walls are thermal."""
+        """Return the gap of a scene whose walls are thermal."""
         lower, upper = scene.reach(scene.smallest_radius)
         hot, cold = (thermal_face(scene, name).temperatures[0] for name in ("x_low", "x_high"))
         area = float(np.prod(scene.container.lengths[1:]))
         return cls(upper[0] - lower[0], area, hot, cold, scene.dimension)
 
     def grid(self, bins: int) -> Grid:
-        """Equal bins across the gap."""
+        """Return equal bins across the gap."""
         return Grid.line(0.0, self.length, bins)
 
 
 @dataclass(frozen=True)
 class Averages:
-    """Averages over K time blocks: given (K,) and taken (K,), the fluxes out of the hot and into the cold
-    wall; density (K, B) of particles in bins, energy (K, B) theirs per volume, as a temperature; imbalance,
-    the largest difference between the energy given by the walls and that gained by the particles, over the
-    heat conducted. stored (R, K/R + 1, 2): the particles' energy, and its first moment about the middle, at
-    the ends of the blocks of each replica; heat: conducted in all."""
+    """Averages over K time blocks.
+
+    given, taken : (K,), fluxes out of the hot and into the cold wall.
+    density : (K, B), particles in bins, per volume.
+    energy : (K, B), their energy per volume, as a temperature.
+    imbalance : largest difference between the energy given by the walls and the energy gained by the
+        particles, over the heat conducted.
+    stored : (R, K/R + 1, 2), the particles' energy, and its first moment about the middle, at the ends of the
+        blocks of each replica.
+    heat : heat conducted in all.
+    """
 
     given: np.ndarray
     taken: np.ndarray
@@ -62,14 +71,19 @@ class Averages:
     heat: float
 
     def flux(self, blocks: slice = slice(None)) -> Estimate:
-        """The steady flux, from the mean of both walls in some of the blocks: without what changes the
-        energy of the particles or moves it, which is bounded."""
+        """Compute the steady flux, from the mean of both walls in some of the blocks.
+
+        Changes and motions of the energy of the particles, which are bounded, are removed.
+        """
         changes = np.diff(self.stored, axis=1).reshape(-1, 2)[blocks]
         return steady_mean(0.5 * (self.given + self.taken)[blocks], *changes.T)
 
     def wall_ratio(self) -> Estimate:
-        """Heat into the cold over heat out of the hot wall. They differ by the energy that the particles have
-        gained (exact), in a steady state the difference of independent energies at both ends of a replica."""
+        """Compute the heat into the cold wall over the heat out of the hot wall.
+
+        They differ by the energy that the particles have gained (exact), in a steady state the difference of
+        independent energies at both ends of a replica.
+        """
         replicas, ends, _ = self.stored.shape
         spread = self.stored[:, :, 0].std(axis=1, ddof=1)
         error = np.sqrt(2.0 * np.sum(spread**2)) / self.heat
@@ -77,7 +91,9 @@ class Averages:
 
 
 def averages(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
-    """Averages over the measured part of all replicas of particles of mass 1, each cut into `blocks`.
+    """Average over the measured part of all replicas of particles of mass 1.
+
+    Each replica is cut into `blocks`.
 
     Raises ValueError for too few frames.
     """

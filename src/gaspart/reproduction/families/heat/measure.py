@@ -1,6 +1,6 @@
-"""Heat between two walls, through gases and metals: fluxes, profiles, and what a degree of temperature costs.
+"""Heat between two walls, through gases and metals: fluxes, profiles, and specific heat.
 
-Positions are those of `gap`. Runs are cut into stretches of time, whose averages are taken as independent;
+Positions are defined by `gap`. Runs are cut into blocks of time, whose averages are taken as independent;
 errors are the jackknife's.
 """
 
@@ -34,26 +34,25 @@ INNER = dict.fromkeys(_PROFILES, ("bin",)) | {name.removesuffix("_error"): ("fra
 
 
 def heat_conduction_gas(points: list[Point], settings: dict) -> xr.Dataset:
-    """Flux through gases of one kind of particles, and their profiles.
+    """Return the heat flux through gases of one kind of particles, and their profiles.
 
     settings: `bins` across the gap; `blocks` of each replica; `clear`, the mean free paths next to the walls
     that are left out where profiles are compared with Fourier's law.
 
     Dimensions point, bin; `_error` and `_freedom`, the degrees of freedom of the error. `flux` is the steady
     flux through both walls, `wall_ratio` cold over hot, `half_ratio` the second over the first half of the
-    run; `free` and `fourier` theory's fluxes for particles that collide
-    with nothing but walls, and for a gas so dilute that only its conductivity counts. Where the Knudsen
-    number is below FLUID, three dimensions, walls of full accommodation: `slab_flux` of Fourier's law with
-    jumps, its profiles, `profile_ratio` the mean of T over it, and `jump`, the temperature jumps in units of
-    the mean free path times the slope: T^(3/2), a straight line away from the walls, continued to both of
-    them. Of these gases, over `frame`, how they come to the steady state (see `approach`): approach_time,
-    approach, and expected_approach.
+    run; `free` and `fourier` theory's fluxes for particles that collide with nothing but walls, and for a gas
+    so dilute that only its conductivity counts. Where the Knudsen number is below FLUID, three dimensions,
+    walls of full accommodation: `slab_flux` of Fourier's law with jumps, its profiles, `profile_ratio` the
+    mean of T over it, and `jump`, the temperature jumps in units of the mean free path times the slope:
+    T^(3/2), a straight line away from the walls, continued to both of them. Of these gases, over `frame`, how
+    they come to the steady state (see `approach`): approach_time, approach, and expected_approach.
     """
     return table("point", points, _gas, settings, inner=INNER)
 
 
 def _gas(point: Point, settings: dict) -> dict[str, Any]:
-    """The numbers of one point."""
+    """Return the numbers of one point."""
     scene = point.scene
     gap, diameter = Gap.of(scene), 2.0 * scene.smallest_radius
     found = averages(point, gap, settings["blocks"], settings["bins"])
@@ -94,7 +93,7 @@ def _gas(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _against(slab: Slab, gap: Gap, found: Averages, used: np.ndarray, diameter: float) -> dict[str, Any]:
-    """What is compared with Fourier's law with jumps, in the bins that are `used`."""
+    """Compare with Fourier's law with jumps, in the bins that are `used`."""
     position, freedom = gap.grid(used.size).middles[0], len(found.given) - 1
     temperature = np.interp(position, slab.position, slab.temperature)
 
@@ -114,7 +113,7 @@ def _against(slab: Slab, gap: Gap, found: Averages, used: np.ndarray, diameter: 
 
 
 def _jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarray, diameter: float) -> float:
-    """Mean over the walls of |T_gas - T_wall| / (l dT/dx), from bins (B,) away from them."""
+    """Compute the mean over the walls of |T_gas - T_wall| / (l dT/dx), from bins (B,) away from them."""
     slope, start = np.polyfit(position, (energy / density) ** 1.5, 1)
     power = start + slope * np.array([0.0, gap.length])
     gas = power ** (2.0 / 3.0)
@@ -124,22 +123,24 @@ def _jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarra
 
 
 def heat_conduction_metal(points: list[Point], settings: dict) -> xr.Dataset:
-    """Electrons, all particles that move, among fixed vibrating scatterers: profiles between walls of two
-    temperatures, and the specific heat between walls of one.
+    """Measure electrons among fixed vibrating scatterers between two walls.
 
-    settings: `bins` across the gap; `blocks` of a run. Several replicas, which differ in the places of their
-    scatterers if these are random, are one block each: their scatter is the uncertainty. `expected` is the
-    heat capacity N_e d/2 + N_s, `electrons_part` what the electrons have of it.
+    Electrons are all particles that move. Profiles are measured between walls of two temperatures, the
+    specific heat between walls of one.
+
+    The settings are `bins` across the gap; `blocks` of a run. Several replicas, which differ in the places of
+    their scatterers if these are random, are one block each: their scatter is the uncertainty. `expected` is
+    the heat capacity N_e d/2 + N_s, `electrons_part` the part of the electrons.
 
     Dimensions point, bin: electrons, the temperature of the electrons; modes, the mean energy of a mode; and
     `share`, the mean over the bins of modes over electrons; `bend`, the second-order coefficient of the
-    electrons' temperature against position; hot, cold, flux, position. Over point
-    too: energy_ratio, E / T over the expected heat capacity, log_fluctuation, the logarithm of var E / T^2
-    over it (both with T of the walls, and NaN between different ones; the variance about the known mean,
-    which has no bias where samples are correlated, and whose logarithm is closer to Gaussian),
-    mode_ratio, the mean energy of all modes over T. `slope` is dE/dT over the expected, from a line
-    through the points in equilibrium, of which there must be two. `regular` are points whose scatterers are
-    given one by one, on a grid, instead of placed at random.
+    electrons' temperature against position; hot, cold, flux, position. Over point too: energy_ratio, E / T
+    over the expected heat capacity, log_fluctuation, the logarithm of var E / T^2 over it (both with T of the
+    walls, and NaN between different ones; the variance about the known mean, which has no bias where samples
+    are correlated, and whose logarithm is closer to Gaussian), mode_ratio, the mean energy of all modes over
+    T. `slope` is dE/dT over the expected, from a line through the points in equilibrium, of which there must
+    be two. `regular` are points whose scatterers are given one by one, on a grid, instead of placed at
+    random.
     """
     ds = table("point", points, _metal, settings, inner=("bin",))
     metals = Table(ds, "point")
@@ -150,7 +151,7 @@ def heat_conduction_metal(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _metal(point: Point, settings: dict) -> dict[str, Any]:
-    """The numbers of one point."""
+    """Return the numbers of one point."""
     scene = point.scene
     gap, fixed = Gap.of(scene), per_particle(scene, "fixed").astype(bool)
     bins, blocks = settings["bins"], settings["blocks"] if point.replicas == 1 else 1
@@ -206,14 +207,20 @@ def _metal(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _path(scene: Scene, gap: Gap, fixed: np.ndarray) -> float:
-    """Mean free path of electrons among discs: pi times the free area over the discs' perimeter (exact)."""
+    """Compute the mean free path of electrons among discs.
+
+    It is pi times the free area over the discs' perimeter (exact).
+    """
     contact = per_particle(scene, "radius")[fixed] + scene.smallest_radius
     return float((gap.length * gap.area - np.pi * np.sum(contact**2)) / (2.0 * np.sum(contact)))
 
 
 def _bend(kinetic: np.ndarray, number: np.ndarray) -> float:
-    """Second-order coefficient of the temperature against position over the gap, from sums in bins, without
-    the outermost, where electrons come from a wall directly; NaN for fewer than five bins."""
+    """Fit the second-order coefficient of the temperature against position over the gap.
+
+    The sums are in bins, without the outermost, where electrons come from a wall directly; NaN for fewer than
+    five bins.
+    """
     if number.size < 5:
         return np.nan
     position = (np.arange(number.size) + 0.5) / number.size

@@ -13,7 +13,10 @@ from gaspart.theory.packing import insertion_saturation_uncertainty
 
 NO_PROGRAM = "the wall excess was fitted to insertions by a program that is not in this repository"
 SOURCE_FRACTION = 0.52
-"""What source A's program reached (section 3.2), stated to the percent: 180 spheres are 0.5226."""
+"""Packing fraction that source A's program reached (section 3.2), stated to the percent.
+
+180 spheres are 0.5226.
+"""
 SOURCE_ROUNDING = 0.01 / np.sqrt(12.0)
 NAMES = {
     "periodic": "periodic",
@@ -23,7 +26,10 @@ NAMES = {
 
 
 def fill_failures(dataset: xr.Dataset) -> list[Claim]:
-    """Saturations, source A's 52 %, the approach to saturation, and the failures at low density."""
+    """Return the claims on saturations, source A's 52 %, approach, and failures.
+
+    They are on the approach to saturation, and on failures at low density.
+    """
     return [claim for one in Table(dataset, "container") for claim in _of_container(one)]
 
 
@@ -76,7 +82,10 @@ def _approach(one: Row) -> Claim:
 
 
 def _source(one: Row) -> Claim:
-    """Source A's one fill beside many of ours: a draw from their distribution, if its attempts sufficed."""
+    """Return the claim on source A's one fill compared with many of ours.
+
+    It is a draw from their distribution, if its attempts sufficed.
+    """
     return Claim(
         claim=f"packing fraction at which insertion ends, {_particles(one)}, whole spheres counted: "
         "source A's 52 %",

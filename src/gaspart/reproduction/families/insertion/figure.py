@@ -23,7 +23,10 @@ SOURCE = 0.52
 
 
 def fill_failures(dataset: xr.Dataset) -> Figure:
-    """Failures per particle, to saturation and at low density; packing fraction against attempts^(-1/d)."""
+    """Draw failures per particle, and packing fraction against attempts^(-1/d).
+
+    Failures are drawn to saturation and at low density.
+    """
     figure, (upper, middle, lower) = style.new((3.4,), (1.6,), (2.2,))
     containers = Table(dataset, "container")
     for kind, ((dimension, rule), label) in enumerate(SERIES.items()):
@@ -52,7 +55,7 @@ def _failures(axis: Axes, one: Row, kind: int, label: str) -> None:
 
 
 def _limits(axis: Axes) -> None:
-    """Saturation in an infinite container, and source A's packing fraction."""
+    """Draw saturation in an infinite container, and source A's packing fraction."""
     marks = [
         (theory.RSA_SATURATION[3], "3D: 0.384", style.COLOURS[1], -0.006, "right"),
         (SOURCE, "source A: 52 %", style.COLOURS[0], -0.006, "right"),
@@ -67,7 +70,7 @@ def _limits(axis: Axes) -> None:
 
 
 def _low_density(axis: Axes) -> None:
-    """The first particles of a large container, and the expansion that is exact there."""
+    """Draw the first particles of a large container, and the expansion that is exact there."""
     eta = np.linspace(0.0, 0.06, 60)
     for dimension in (2, 3):
         axis.plot(eta, theory.failures_per_particle(eta, dimension), color="black", linewidth=0.8, zorder=4)
@@ -78,7 +81,7 @@ def _low_density(axis: Axes) -> None:
 
 
 def _saturation(axis: Axes, one: Row, kind: int) -> None:
-    """The growing packing fraction, its fitted line, and the predicted saturation."""
+    """Draw the growing packing fraction, its fitted line, and the predicted saturation."""
     colour, marker = style.COLOURS[kind], style.MARKERS[kind]
     x = one.time ** (-1.0 / one.dimension)
     axis.plot(x, one.filled, color=colour, linestyle="none", marker=marker, markersize=2.5, zorder=3)

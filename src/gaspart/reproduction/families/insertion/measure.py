@@ -28,8 +28,13 @@ TIMES = 60
 
 @dataclass(frozen=True)
 class Fill:
-    """All replicas of one container: `failures` (replica, particle) before each particle, -1 for one never
-    placed, and `attempts` (replica,) in all; particle: packing fraction of one particle; dimension."""
+    """All replicas of one container.
+
+    failures : (replica, particle), failures before each particle, -1 for a particle that was never placed.
+    attempts : (replica,), all attempts.
+    particle : packing fraction of one particle.
+    dimension : dimension.
+    """
 
     failures: np.ndarray
     attempts: np.ndarray
@@ -47,13 +52,13 @@ class Fill:
         return float(self.attempts.min()) * self.particle
 
     def packing_fraction(self, times: np.ndarray) -> np.ndarray:
-        """(replica, times): packing fraction at the times t."""
+        """Compute (replica, times): packing fraction at the times t."""
         attempts = times / self.particle
         placed_at = [np.cumsum(one[one >= 0] + 1) for one in self.failures]
         return self.particle * np.array([np.searchsorted(one, attempts, side="right") for one in placed_at])
 
     def trials(self) -> tuple[np.ndarray, np.ndarray]:
-        """(replica, particle) failures and successes at each number of particles; zero beyond the end."""
+        """Return failures and successes (replica, particle) at each number of particles; zero beyond."""
         successes = (self.failures >= 0).astype(int)
         failures = np.where(self.failures >= 0, self.failures, 0)
         for k, placed in enumerate(self.placed):
@@ -63,11 +68,11 @@ class Fill:
 
 
 def fill_failures(points: list[Point], settings: dict) -> xr.Dataset:
-    """Failures per particle against packing fraction, and the saturation, of every container.
+    """Measure failures per particle against packing fraction, and saturation, of every container.
 
-    settings: `bins`, number of packing-fraction bins up to the densest fill; `windows`, list of the ratios of
-    the last time to the first one of the fitted window (the first is the one claimed); `saturated`, the
-    experiments that are filled to saturation; `dilute`, the packing fraction up to which failures are
+    The settings are `bins`, number of packing-fraction bins up to the densest fill; `windows`, list of the
+    ratios of the last time to the first one of the fitted window (the first is the one claimed); `saturated`,
+    the experiments that are filled to saturation; `dilute`, the packing fraction up to which failures are
     compared with the low-density expansion.
 
     Returns over `container` (the experiment's name): dimension, side_over_diameter, rule, replicas, placed
@@ -75,9 +80,9 @@ def fill_failures(points: list[Point], settings: dict) -> xr.Dataset:
     its end; last_time, in t; failures_per_particle with its error at packing_fraction, each (container, bin),
     NaN without attempts; filled (container, sample), mean packing fraction at `time` (container, sample);
     saturation with its error (container, window) and the degrees of freedom of that (container), NaN for
-    those not in `saturated`, and slope of its line in t^(-1/d); approach and its error: exponent p of eta_s -
-    eta ~ t^-p with the literature's eta_s (saturated periodic containers only); dilute_failures with error:
-    failures over those expected at low density (periodic containers only). Attribute dilute_up_to.
+    others than `saturated` ones, and slope of its line in t^(-1/d); approach and its error: exponent p of
+    eta_s - eta ~ t^-p with the literature's eta_s (saturated periodic containers only); dilute_failures with
+    error: failures over the expected ones at low density (periodic containers only). Attribute dilute_up_to.
     """
     inner = {
         **dict.fromkeys(("packing_fraction", "failures_per_particle"), ("bin",)),
@@ -137,11 +142,11 @@ def _rule(point: Point) -> str:
 
 
 def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mean packing fraction, failures per particle placed, and its standard error: each (bins,).
+    """Compute mean packing fraction, failures per particle placed, and their error.
 
-    The bins are of equal width from 0 to the densest fill. NaN where less than half of the replicas placed a
-    particle: those that did are a biased sample. Error: jackknife over the replicas, but no less than the
-    geometric distribution's own scatter.
+    Each is (bins,). The bins are of equal width from 0 to the densest fill. NaN where less than half of the
+    replicas placed a particle: the others are a biased sample. The error is the jackknife over the replicas,
+    but no less than the geometric distribution's own scatter.
     """
     failures, successes = fill.trials()
     states = np.arange(failures.shape[1])
@@ -163,14 +168,19 @@ def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, 
 
 
 def _ratio_error(numerator: np.ndarray, denominator: np.ndarray) -> float:
-    """Standard error of sum(numerator) / sum(denominator) over replicas; 0 if undetermined."""
+    """Compute the standard error of sum(numerator) / sum(denominator) over replicas.
+
+    It is 0 if undetermined.
+    """
     if np.any(denominator == denominator.sum()):  # all successes in one replica: nothing to omit
         return 0.0
     return float(jackknife(lambda lost, won: lost / won, numerator, denominator)[1])
 
 
 def saturation(fill: Fill, window: float) -> tuple[float, float, float]:
-    """Packing fraction at t = infinity, its standard error from the replicas (at least two), and the slope.
+    """Fit the packing fraction at t = infinity, its error from the replicas, and the slope.
+
+    There are at least two replicas.
 
     A straight line of eta against t^(-1/d), by least squares to SAMPLES times equally spaced in ln t between
     last_time / window and last_time, for each replica.
@@ -183,7 +193,10 @@ def saturation(fill: Fill, window: float) -> tuple[float, float, float]:
 
 
 def approach_exponent(fill: Fill, window: float) -> tuple[float, float]:
-    """p of eta_s - eta ~ t^-p, eta_s the literature's, and its standard error (jackknife over replicas)."""
+    """Fit p of eta_s - eta ~ t^-p and its standard error (jackknife over replicas).
+
+    eta_s is the literature's.
+    """
     times = np.geomspace(fill.last_time / window, fill.last_time, SAMPLES)
     gap = theory.RSA_SATURATION[fill.dimension] - fill.packing_fraction(times)
 
@@ -197,10 +210,10 @@ def approach_exponent(fill: Fill, window: float) -> tuple[float, float]:
 
 
 def dilute_failures(fill: Fill, up_to: float) -> tuple[float, float]:
-    """Failures below the packing fraction `up_to`, over those expected, and the ratio's standard error.
+    """Compute failures below the packing fraction `up_to`, relative to the expected ones.
 
-    Expected: for each particle k the `theory.failures_per_particle` at k particles. Error: the geometric
-    distribution's, sqrt(sum of f (1 + f)) over the sum of f.
+    Expected are, for each particle k, the `theory.failures_per_particle` at k particles. The error is the
+    geometric distribution's, sqrt(sum of f (1 + f)) over the sum of f.
     """
     failures, _ = fill.trials()
     states = np.arange(failures.shape[1])

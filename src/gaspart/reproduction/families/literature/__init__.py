@@ -1,4 +1,4 @@
-"""Our values beside those of others."""
+"""Comparison of our values with values by others."""
 
 from gaspart.keys import names
 

@@ -1,4 +1,4 @@
-"""Claims about our values beside those of others."""
+"""Claims about our values compared with values by others."""
 
 from __future__ import annotations
 
@@ -18,18 +18,20 @@ NAMES = {
     "conductivity": "conductivity of",
 }
 REQUIRED = {"Z": 1e-3, "Z_crystal": 1e-3, "diffusion": 0.015, "viscosity": 0.1, "conductivity": 0.1}
-"""Relative uncertainty of ours above which a claim is inconclusive; that of theirs is up to 1e-5, 0.2 % and
-3 to 11 %."""
+"""Relative uncertainty of our values above which a claim is inconclusive.
+
+The uncertainty of the other values is up to 1e-5, 0.2 % and 3 to 11 %.
+"""
 SOURCES = {
     "Chudak": "runs by the program DynamO of an author of [Pieprzyk 2019]",
     "DynamO test": "[Bannerman 2011], expected by a test of its authors' program",
     "DynamO tutorial": "[Bannerman 2011], a run of its authors' tutorial",
 }
-"""Of those sources that are not the keys of references."""
+"""Names of sources that are not the keys of references."""
 
 
 def literature(dataset: xr.Dataset) -> list[Claim]:
-    """Each value is that of others, and all are together."""
+    """Return the claims that each value agrees with others, and all together."""
     values = Table(dataset, "value")
     named = values.assign(
         name=[NAMES[quantity] for quantity in values.quantity],
@@ -59,7 +61,7 @@ def _cited(source: str) -> str:
 
 
 def _together(values: Table, claim: str) -> list[Claim]:
-    """That deviations scatter as the uncertainties of both say."""
+    """Return the claim that deviations scatter as the uncertainties of both state."""
     if not values:
         return []
     return [

@@ -1,4 +1,4 @@
-"""Our values over those of others."""
+"""Figure of our values divided by values of others."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LABELS = {
 
 
 def literature(dataset: xr.Dataset) -> Figure:
-    """Ratios to the values of others, less 1: pressures, and transport coefficients."""
+    """Draw ratios to the values of others, less 1: pressures, and transport coefficients."""
     figure, (static, transport) = style.new((2.4,), (2.4,))
     values = Table(dataset, "value")
     for axis, wanted in ((static, True), (transport, False)):
@@ -31,7 +31,7 @@ def literature(dataset: xr.Dataset) -> Figure:
 
 
 def _ratios(axis: Axes, values: Table) -> None:
-    """Ours as points with their errors, those of others as wide pale bars about 0."""
+    """Draw our values as points with their errors, others' as wide pale bars about 0."""
     style.level(axis, 0.0)
     for kind, (name, label) in enumerate(LABELS.items()):
         part = values[values.quantity == name]

@@ -1,7 +1,7 @@
-"""Our values of spheres and discs beside those that programs of others have measured.
+"""Our values of spheres and discs, with values measured by programs of others.
 
-In units of the diameter, the mass and k_B T, and of the infinite system where the law of finite numbers is
-known to the accuracy of both, else of as many particles in the same container.
+They are in units of the diameter, the mass and k_B T, and of the infinite system where the law of finite
+numbers is known to the accuracy of both, else of as many particles in the same container.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from gaspart.scene.gas import Gas, plain_gas
 from gaspart.trajectory.reading import open_trajectory
 
 CONTAINERS = {2: "29 x 30", 3: "cube"}
-"""That of our points, as `theory.literature` names it."""
+"""Containers of our points, as `theory.literature` names them."""
 SAME = 1e-8
 """Largest difference of two packing fractions that are the same in nine digits."""
 STRETCH = 0.3, 1.0
@@ -35,13 +35,13 @@ FLUXES = {"viscosity": "shear", "conductivity": "heat"}
 
 
 def literature(points: list[Point], settings: dict) -> xr.Dataset:
-    """Each of our values that others have measured too.
+    """Measure each value that others have measured too.
 
-    settings: `judged`, experiments whose values have claims of their own; those of others are judged by
-    their figures. Over `value`: quantity (see `theory.literature`), packing_fraction, count, judged; ours and
-    theirs with their errors; source of theirs. Z of both is that of the infinite system, to first order in
-    1/N; theirs is the mean of all runs at the packing fraction, weighted by their errors. Of the other
-    quantities both are those of `count` particles; D is that of particles whose total momentum is zero, and
+    The settings are `judged`, experiments whose values have claims of their own; those of others are judged
+    by their figures. Over `value` are quantity (see `theory.literature`), packing_fraction, count, judged;
+    ours and theirs with their errors; source of theirs. Z of both holds for the infinite system, to first
+    order in 1/N; theirs is the mean of all runs at the packing fraction, weighted by their errors. Of the
+    other quantities both hold for `count` particles; D holds for particles whose total momentum is zero, and
     viscosity and conductivity are means of the integral over `STRETCH`.
     """
     found = [(point, row) for point in points for row in _values(point)]
@@ -50,7 +50,7 @@ def literature(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _values(point: Point) -> Iterator[dict[str, Any]]:
-    """The values of a point that others have measured, perhaps none."""
+    """Yield the values of a point that others have measured, if any."""
     gas = plain_gas(point.scene)
     if gas.dimension == 3 and not {"displacements", "stress"} & set(point.settings):
         yield from _of_infinite_system(point, gas)
@@ -74,16 +74,19 @@ def _row(gas: Gas, quantity: str, ours: Estimate, theirs: Estimate, source: str)
 
 
 def _known(gas: Gas, quantity: str) -> np.recarray:
-    """What others have measured at its packing fraction in such a container."""
+    """Return the values of others at this packing fraction in such a container."""
     rows = theory.literature(quantity, gas.dimension)
     same = np.abs(rows.packing_fraction - gas.packing_fraction) < SAME
     return rows[same & (rows.container == CONTAINERS[gas.dimension])]
 
 
 def _of_infinite_system(point: Point, gas: Gas) -> Iterator[dict[str, Any]]:
-    """Z of a fluid or a crystal of spheres. Ours is that of the canonical ensemble (see
-    `analysis.series.compressibility`), theirs that of a fixed energy and momentum, which a crystal shifts by
-    nothing to first order; the next order in V / V_c - 1 of ours is not known, and part of its error."""
+    """Yield Z of a fluid or a crystal of spheres.
+
+    Our Z is canonical (see `analysis.series.compressibility`), the other Z is at a fixed energy and momentum,
+    by which a crystal is not shifted to first order; the next order in V / V_c - 1 of ours is not known, and
+    part of its error.
+    """
     eta = gas.packing_fraction
     fluid = eta <= theory.HIGHEST_PACKING_FRACTION[3]
     quantity = "Z" if fluid else "Z_crystal"
@@ -103,7 +106,7 @@ def _of_infinite_system(point: Point, gas: Gas) -> Iterator[dict[str, Any]]:
 
 
 def _of_as_many(point: Point, gas: Gas) -> dict[str, Estimate]:
-    """The quantities of a point of finite numbers, by name."""
+    """Compute the quantities of a point of finite numbers, by name."""
     if gas.dimension == 2:
         return {"pressure": gas.packing_fraction * 4.0 / np.pi * pressure(point).z}
     if point.settings.get("stress"):
@@ -112,7 +115,7 @@ def _of_as_many(point: Point, gas: Gas) -> dict[str, Estimate]:
 
 
 def _coefficient(point: Point, flux: str) -> Estimate:
-    """A transport coefficient by the mean of Green and Kubo's integral until times in `STRETCH`."""
+    """Measure a transport coefficient by the mean of Green and Kubo's integral in `STRETCH`."""
     samples: list[float] = []
     for path in point.replica_paths:
         with open_trajectory(path) as trajectory:

@@ -14,16 +14,18 @@ from gaspart.reproduction.table import Row, Table, each
 REQUIRED = 1e-3
 """The largest uncertainty of Z, relative to it, at which its comparison means anything."""
 CONTACT = 5e-3
-"""The same of a contact value of one pair of species."""
+"""Required uncertainty of a contact value of one pair of species."""
 THEORIES_AGREE = 0.1
 """Packing fraction up to which the theories of mixtures hardly differ: all have the exact second virial
 coefficient."""
 NEARLY_EQUAL = {"size_ratio": 0.9, "polydispersity": 0.1}
-"""So nearly equal sizes that "santos" and "linear", which are exact for equal ones, hardly differ."""
+"""Limits of nearly equal sizes: "santos" and "linear", exact for equal ones, hardly differ."""
 BETWEEN = "distance of the interpolations of [Santos 1999] and [Santos 2002], both exact for equal sizes"
 _UNSURE = 0.5
-"""Of the correction of first order in 1/N, which is that of equal particles: its uncertainty. To first order
-in the packing fraction it is exact for any sizes."""
+"""Relative uncertainty of the correction of first order in 1/N, which holds for equal particles.
+
+To first order in the packing fraction it is exact for any sizes.
+"""
 OF_PURE = "uncertainty of the equation of equal discs, and " + BETWEEN
 REPORTED = "reported only: the literature states no uncertainty of this approximation"
 _SYH = "[Santos 2002], with the reference equation of equal particles"
@@ -35,7 +37,10 @@ _NAMES = {
 
 
 def mixture_state(dataset: xr.Dataset) -> list[Claim]:
-    """Z where theory is sharp, its deviations from approximate theories, and collisions of pairs."""
+    """Return the claims on Z, its deviations from approximate theories, and collisions of pairs.
+
+    Z is compared where theory is sharp.
+    """
     gases, claims = Table(dataset, "point"), []
     for gas in gases:
         if _sharp(gas):
@@ -51,7 +56,7 @@ def mixture_state(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _where(gas: Row) -> str:
-    """What the point is."""
+    """Describe the point."""
     if np.isfinite(gas.size_ratio):
         sizes = f"size ratio {gas.size_ratio:g}, {gas.small_fraction:.0%} small"
     else:
@@ -64,7 +69,7 @@ def _dilute(gas: Row) -> bool:
 
 
 def _sharp(gas: Row) -> bool:
-    """Whether the uncertainty of theory is small."""
+    """Return True if the uncertainty of theory is small."""
     alike = (
         gas.size_ratio >= NEARLY_EQUAL["size_ratio"] or gas.polydispersity <= NEARLY_EQUAL["polydispersity"]
     )
@@ -72,7 +77,10 @@ def _sharp(gas: Row) -> bool:
 
 
 def _compressibility(gas: Row) -> Claim:
-    """Of spheres as deviation from Boublik's equation, which must be excluded unless they are dilute."""
+    """Return the claim on Z, for spheres as deviation from Boublik's equation.
+
+    This equation must be excluded unless they are dilute.
+    """
     allowance = math.hypot(gas.reference_error, gas.santos - gas.linear, gas.correction * _UNSURE)
     over, what, required, alternative = gas.santos, "Z over that of [Santos 2002]", REQUIRED, None
     if gas.dimension == 3 and not _dilute(gas):
@@ -119,13 +127,16 @@ def _virial(gas: Row) -> Claim:
 
 
 def deviations(gases: Table, theory: str) -> Estimate:
-    """(points,) Z / Z_theory - 1."""
+    """Compute Z / Z_theory - 1, shape (points,)."""
     return gases.Z / getattr(gases, theory) - 1.0
 
 
 def _better(spheres: Table) -> Claim:
-    """The abstract of [Santos 1999]: their extension of Carnahan and Starling's equation agrees better with
-    simulations than Boublik's."""
+    """Return the claim of the abstract of [Santos 1999].
+
+    It states that their extension of Carnahan and Starling's equation agrees better with simulations than
+    Boublik's.
+    """
     mine, its = deviations(spheres, "starling"), deviations(spheres, "boublik")
     squares = [np.sum(deviation.value**2) for deviation in (mine, its)]
     ratio = np.sqrt(squares[0] / squares[1])
@@ -144,7 +155,7 @@ def _better(spheres: Table) -> Claim:
 
 
 def _reported(gases: Table) -> list[Claim]:
-    """The largest deviation of each theory."""
+    """Return the claims on the largest deviation of each theory."""
     claims = []
     for dimension, names in ((3, tuple(_NAMES)), (2, ("santos",))):
         part = gases[gases.dimension == dimension]

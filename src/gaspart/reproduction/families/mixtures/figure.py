@@ -26,7 +26,10 @@ _RATIOS = np.linspace(0.28, 1.0, 60)
 
 
 def mixture_state(dataset: xr.Dataset) -> Figure:
-    """Deviations of Z from theory by size ratio, density and polydispersity; contact values and rates."""
+    """Draw deviations of Z from theory, contact values and rates.
+
+    The deviations are against size ratio, density and polydispersity.
+    """
     figure, axes = style.new(*[(2.1,)] * 6)
     ratio, density, discs, many, contact, rate = axes
     gases = Table(dataset, "point")
@@ -44,7 +47,7 @@ def mixture_state(dataset: xr.Dataset) -> Figure:
 
 
 def _densest_grid(gases: Table, dimension: int) -> Table:
-    """The points of a dimension at the packing fraction that most of them have."""
+    """Return the points of a dimension at the packing fraction that most of them have."""
     part = gases[gases.dimension == dimension]
     if not part:
         return part
@@ -53,8 +56,10 @@ def _densest_grid(gases: Table, dimension: int) -> Table:
 
 
 def _theories(axis: Axes, x: np.ndarray, spheres: Sequence[tuple], kind: int, named: bool = True) -> None:
-    """What other theories say of gases of spheres, (packing fraction, diameters, numbers) for each x, over
-    BMCSL in per cent."""
+    """Draw other theories of gases of spheres, relative to BMCSL, in per cent.
+
+    Spheres are given by (packing fraction, diameters, numbers) for each x.
+    """
 
     def z(name: str) -> np.ndarray:
         factor = theory.mixture_compressibility_factor
@@ -71,7 +76,7 @@ def _points(axis: Axes, x: ArrayLike, gases: Table, dimension: int, kind: int, l
 
 
 def _by_ratio(axis: Axes, two: Table, dimension: int) -> None:
-    """Against the size ratio, by composition."""
+    """Draw deviations against the size ratio, by composition."""
     for kind, (small, gases) in enumerate(_densest_grid(two, dimension).by("small_fraction")):
         beside = gases.size_ratio + 0.008 * (kind - 0.5)
         _points(axis, beside, gases, dimension, kind, f"{small:.0%} small")
@@ -85,7 +90,7 @@ def _by_ratio(axis: Axes, two: Table, dimension: int) -> None:
 
 
 def _by_density(axis: Axes, two: Table) -> None:
-    """Against the packing fraction, of one size ratio and composition."""
+    """Draw deviations against the packing fraction, of one size ratio and composition."""
     chosen = two[np.isclose(two.size_ratio, 0.5) & np.isclose(two.small_fraction, 0.5)]
     for kind, dimension in enumerate((3, 2)):
         gases = chosen[chosen.dimension == dimension].sorted_by("packing_fraction")
@@ -100,7 +105,7 @@ def _by_density(axis: Axes, two: Table) -> None:
 
 
 def _by_polydispersity(axis: Axes, many: Table) -> None:
-    """Against the polydispersity: spheres and discs."""
+    """Draw deviations against the polydispersity of spheres and discs."""
     for kind, dimension in enumerate((3, 2)):
         gases = many[many.dimension == dimension]
         if not gases:
@@ -116,7 +121,10 @@ def _by_polydispersity(axis: Axes, many: Table) -> None:
 
 
 def _pairs(axis: Axes, two: Table, name: str, predicted: Callable[..., np.ndarray]) -> None:
-    """A property of each pair of species against the size ratio: spheres, half of them small."""
+    """Draw a property of each pair of species against the size ratio.
+
+    The gases are spheres, half of them small.
+    """
     gases = _densest_grid(two, 3)
     gases = gases[np.isclose(gases.small_fraction, 0.5)]
     if not gases:

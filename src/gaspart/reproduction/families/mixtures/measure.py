@@ -31,17 +31,17 @@ _PAIRS = {"large-large": (0, 0), "large-small": (0, 1), "small-small": (1, 1)}
 
 
 def mixture_state(points: list[Point], settings: dict) -> xr.Dataset:
-    """Z, contact values and collision rates, beside theories.
+    """Measure Z, contact values and collision rates, and add those by theory.
 
-    Dimension point. dimension, packing_fraction, count; size_ratio and small_fraction of two sizes,
-    polydispersity and `distribution` of many, NaN or empty otherwise. Z with `_error` and `_freedom`, that of
-    the infinite gas: the measured one without the correction of first order in 1/N, that of equal particles
-    of the same packing fraction, which is `correction`; `reference_error`, the uncertainty of the equation of
+    The dimension is point: dimension, packing_fraction, count; size_ratio and small_fraction of two sizes,
+    polydispersity and `distribution` of many, NaN or empty otherwise. Z with `_error` and `_freedom`, for the
+    infinite gas: the measured one without the correction of first order in 1/N, valid for equal particles of
+    the same packing fraction, which is `correction`; `reference_error`, the uncertainty of the equation of
     equal particles; boublik, linear and santos, Z by these theories (see `gaspart.theory.mixtures`), and
-    `starling`, by the linear one with Carnahan and Starling's equation of equal spheres; NaN where there is
-    none. Of two sizes `virial`, the sum of |dr . dp| over what the numbers of collisions of each pair predict
-    for Maxwellian velocities, minus 1, with `_error` and `_freedom`; over pair ("large-large", "large-small",
-    "small-small") contact and rate, those of collisions of a particle of the first kind with all of the
+    `starling`, by the linear one with Carnahan and Starling's equation of equal spheres; NaN without a value.
+    Of two sizes `virial`, the sum of |dr . dp| over what the numbers of collisions of each pair predict for
+    Maxwellian velocities, minus 1, with `_error` and `_freedom`; over pair ("large-large", "large-small",
+    "small-small") contact and rate, the latter for collisions of a particle of the first kind with all of the
     second, in sqrt(k_B T / m) over the larger diameter, with `_error`, and each by the theories, such as
     contact_boublik.
     """
@@ -82,7 +82,7 @@ def _of_any(run: Run) -> dict[str, Estimate]:
 
 
 def _of_two_sizes(run: Run) -> dict[str, Estimate]:
-    """Beside Z what the collisions of each pair of species give; rates per time."""
+    """Measure Z, and quantities from collisions of each pair of species; rates per time."""
     return {
         **_of_any(run),
         "virial": _virial(run),
@@ -92,7 +92,7 @@ def _of_two_sizes(run: Run) -> dict[str, Estimate]:
 
 
 def theories(gas: Mixture) -> dict[str, Any]:
-    """Z by each theory; of two sizes the contact value and the rate of each pair too."""
+    """Compute Z by each theory, for two sizes also contact value and rate of each pair."""
     found: dict[str, Any] = {}
     eta, d, diameters, _ = gas.sizes
     for name, dimensions in theory.MIXTURE_THEORIES.items():
@@ -113,12 +113,15 @@ def theories(gas: Mixture) -> dict[str, Any]:
 
 
 def _unit_of_rate(gas: Mixture) -> float:
-    """sqrt(k_B T / m) over the larger diameter."""
+    """Compute sqrt(k_B T / m) over the larger diameter."""
     return math.sqrt(gas.temperature / gas.masses[0]) / gas.diameters[0]
 
 
 def _virial(run: Run) -> Estimate:
-    """Two particles of reduced mass mu that collide have |dr . dp| = sigma sqrt(2 pi mu k_B T) on average."""
+    """Compare |dr . dp| of collisions with sigma sqrt(2 pi mu k_B T).
+
+    This is the mean of two particles of reduced mass mu that collide.
+    """
     weights = []
     for i, j in pairs_of(run.scene):
         one, other = run.scene.species[i], run.scene.species[j]

@@ -77,7 +77,7 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
 
 
 def caption(settings: Mapping[str, Any]) -> str:
-    """The caption of a figure, as the config states it, with a title if it begins with none."""
+    """Return the caption of a figure in the config, with a title if it has none."""
     text = str(settings.get("caption", "")).strip()
     if text.startswith("**"):
         return text

@@ -16,7 +16,10 @@ APPROXIMATE = "the uncertainty of this theory is not known: a tolerance would de
 
 
 def observable(dataset: xr.Dataset, stated: list[dict]) -> list[Claim]:
-    """The claims of the config, `stated`, about an observable: one for each point, or each series."""
+    """Return the claims of the config, `stated`, about an observable.
+
+    There is one for each point, or each series.
+    """
     points = Table(dataset, "point")
     return [claim for one in stated for claim in _claims(points, one)]
 
@@ -32,17 +35,17 @@ def _claims(points: Table, stated: dict) -> list[Claim]:
 
 
 def _axis(points: Table | Row) -> str:
-    """The key of the grid whose values are the column `against`."""
+    """Return the key of the grid whose values are the column `against`."""
     return str(points.dataset.attrs["against"])
 
 
 def _text(what: str, point: Row) -> str:
-    """What a claim is about: the observable, the point and its series."""
+    """Return the subject of a claim: the observable, the point and its series."""
     return f"{what} at {_axis(point)} {point.against:g}" + (f", {point.series}" if point.series else "")
 
 
 def _claim(point: Row, stated: dict) -> Claim | None:
-    """One claim about a point; None where there is no theory for it."""
+    """Return one claim about a point; None without a theory for it."""
     that = stated["that"]
     common: dict[str, Any] = {"measured": point.value, "fails_if": stated["fails_if"]}
     if stated.get("required") is not None:
@@ -58,7 +61,10 @@ def _claim(point: Row, stated: dict) -> Claim | None:
 
 
 def _theory(point: Row, stated: dict, common: dict[str, Any]) -> Claim | None:
-    """Agreement with theory; within a part of it, where its uncertainty is not known."""
+    """Return the claim of agreement with theory.
+
+    It is within a fraction of theory, where its uncertainty is not known.
+    """
     theory = point.theory
     if math.isnan(theory.value):
         return None
@@ -74,7 +80,10 @@ def _theory(point: Row, stated: dict, common: dict[str, Any]) -> Claim | None:
 
 
 def _exponent(points: Table, stated: dict) -> Claim:
-    """The exponent of a power law through the points of a series; not a number where there is no fit."""
+    """Return the claim on the exponent of a power law through the points of a series.
+
+    It is not a number without a fit.
+    """
     x, y, series = points.against, points.value, points.series[0]
     measured = Estimate(math.nan, math.nan)
     if x.size > 2 and np.all(x > 0.0) and np.all(y.value > 0.0) and np.all(y.error > 0.0):

@@ -17,11 +17,11 @@ from gaspart.reproduction.table import Table
 _THEORY: dict[str, Any] = {"marker": "_", "markersize": 12, "linestyle": ":", "linewidth": 0.8, "zorder": 2}
 """Theory is known at the points only, which thin lines connect."""
 _FEW = 3
-"""Places of a curve, below which those of theory are marked instead of connected."""
+"""Number of points of a theoretical curve below which they are marked instead of connected."""
 
 
 def observable(dataset: xr.Dataset) -> Figure:
-    """The observable of each series of points, with theory's values; one curve for each point of a curve."""
+    """Draw the observable of each series of points, with theory; for curves, a curve per point."""
     points, settings = Table(dataset, "point"), json.loads(dataset.attrs["settings"])
     theory = settings.get("theory", True) and bool(np.isfinite(points.theory.value).any())
     figure, (axis,) = style.new((2.8,))
@@ -38,7 +38,7 @@ def observable(dataset: xr.Dataset) -> Figure:
 
 
 def _numbers(axis: Axes, points: Table, theory: bool) -> None:
-    """One series of points for each text of `series`, and theory's values at their places."""
+    """Draw one series of points for each text of `series`, and theory's values at these points."""
     for kind, (series, part) in enumerate(points.by("series")):
         style.points(axis, part.against, part.value, kind=kind, label=series or "measured")
         if theory:
@@ -49,7 +49,10 @@ def _numbers(axis: Axes, points: Table, theory: bool) -> None:
 
 
 def _curves(axis: Axes, points: Table, theory: bool) -> None:
-    """One curve for each point, with a band of one standard error, and theory's in the same colour."""
+    """Draw one curve for each point, with a band of one standard error, and theory's curve.
+
+    The latter has the same colour.
+    """
     look: dict[str, Any] = {"linestyle": "--", "zorder": 4}
     if (~np.isnan(points.theory.value)).sum(axis=1).max() < _FEW:  # as at contact
         look = {"marker": "x", "linestyle": "none", "zorder": 4}

@@ -19,15 +19,15 @@ _PARTS = {"value": "", "value_error": "_error", "theory": "_theory", "theory_err
 
 
 def observable(points: list[Point], settings: dict) -> xr.Dataset:
-    """An observable of each point, the mean of its replicas.
+    """Measure an observable of each point, the mean of its replicas.
 
-    settings: `observable`; `against`, the key of the points that is the horizontal axis; `place`, of a curve
-    the place whose value is taken; see `families.own`. Dimension point, in the order of series and against:
-    `against`; `series`, what else varies, as text; value, theory (NaN where there is none), each with its
-    `_error`, in the units of the observable, and value_freedom, the degrees of freedom of the error. An
-    observable with a number for each of some names, such as faces, has a series for each. Of a curve all
-    these also have the dimension `along`, and `along_places` are its places. Raises SceneError for what can
-    not be measured.
+    The settings are `observable`; `against`, the key of the points that is the horizontal axis; `place`, of a
+    curve the place whose value is taken; see `families.own`. The dimension is point, in the order of series
+    and against. There are `against`; `series`, the other varying settings, as text; value, theory (NaN
+    without one), each with its `_error`, in the units of the observable, and value_freedom, the degrees of
+    freedom of the error. An observable with a number for each of some names, such as faces, has a series for
+    each. Of a curve all these also have the dimension `along`, and `along_places` are its places. Raises
+    SceneError for what can not be measured.
     """
     name = settings["observable"]
     rows, source = [], ""
@@ -56,7 +56,10 @@ def observable(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _by_name(replicas: list[Observable]) -> dict[str, list[Observable]]:
-    """The numbers of an observable that has one for each of some names; else the observable itself."""
+    """Split an observable with a number for each of some names into its numbers.
+
+    Another observable is returned itself.
+    """
     first = replicas[0].estimate
     if not first.dims or first[first.dims[0]].dtype.kind not in "UO":
         return {"": replicas}
@@ -65,15 +68,17 @@ def _by_name(replicas: list[Observable]) -> dict[str, list[Observable]]:
 
 
 def _other(point: Point, points: list[Point], against: str) -> str:
-    """What distinguishes a point from others at the same place: the experiment, if there are several, and the
-    other values of its grid."""
+    """Return the distinction of a point from others at the same value of `against`.
+
+    It is the experiment, if there are several, and the other values of its grid.
+    """
     several = len({one.experiment for one in points}) > 1
     varied = [part for part in point.name.split(",") if not part.startswith(f"{against}=")]
     return ", ".join([point.experiment] * several + [part for part in varied if part != "single"])
 
 
 def _numbers(replicas: list[Observable]) -> dict[str, Any]:
-    """The entries of a row for the mean of independent runs."""
+    """Return the entries of a row for the mean of independent runs."""
     row: dict[str, Any] = {}
     for name, part in _PARTS.items():
         values = mean_of(replicas, part)

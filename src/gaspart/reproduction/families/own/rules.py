@@ -1,4 +1,4 @@
-"""Rules for a figure that a config states by itself, which are checked before any job starts."""
+"""Rules for a figure that a config defines, which are checked before any job."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NEEDED = {
     "value": ("value", "tolerance", "source"),
     "exponent": ("value", "tolerance", "source"),
 }
-"""What a claim of each kind must state."""
+"""Keys that a claim of each kind must state."""
 _LEAST = 3
 """Points through which a power law is fitted."""
 _UNUSED = {
@@ -30,8 +30,11 @@ _UNUSED = {
 
 
 def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
-    """Raise SceneError for experiments without trajectories, points that have no number to be drawn against,
-    and claims whose keys do not belong together."""
+    """Raise SceneError for points or claims that do not fit a figure.
+
+    These are experiments without trajectories, points that have no number to be drawn against, and claims
+    whose keys do not belong together.
+    """
     where = f"figures.{figure}"
     against = settings["against"]
     for point in points:
@@ -60,7 +63,10 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
 
 
 def _check_between(where: str, claim: Mapping[str, Any], at: Sequence[float]) -> None:
-    """Refuse a claim about no point, and an exponent of fewer than three. at: places of the points."""
+    """Refuse a claim about no point, and an exponent of fewer than three points.
+
+    `at` are the values of the points.
+    """
     between = claim.get("between")
     low, high = (at[0], at[-1]) if between is None else between
     chosen = [one for one in at if low <= one <= high]
@@ -72,8 +78,10 @@ def _check_between(where: str, claim: Mapping[str, Any], at: Sequence[float]) ->
 
 
 def _require_measurable(where: str, name: str, point: Point) -> None:
-    """Raise SceneError for an observable that the scene of a point does not have, or that its trajectories do
-    not keep what it needs for."""
+    """Raise SceneError for an observable that cannot be measured at a point.
+
+    The scene does not have it, or the trajectories do not store what it needs.
+    """
     stated = {"pairs": "pairs", "stress": "fluxes"}
     try:
         require_defined(name, point.scene)

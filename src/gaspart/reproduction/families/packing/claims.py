@@ -10,8 +10,11 @@ from gaspart.reproduction.table import Row, Table
 
 
 def densest_fill(dataset: xr.Dataset) -> list[Claim]:
-    """Grown until they jam, spheres are denser than 0.60 and have six contacts each; inserted, they end
-    below saturation."""
+    """Return the claims on grown and inserted packings of spheres.
+
+    Grown until they jam, spheres are denser than 0.60 and have six contacts each; inserted, they end below
+    saturation.
+    """
     claims = []
     for one in Table(dataset, "packing"):
         claims += _compressed(one) if one.rule == "compressed" else [_inserted(one)]

@@ -13,7 +13,7 @@ from gaspart.reproduction.claims.table import concise
 from gaspart.reproduction.table import Table
 
 DOTS = 300
-"""Pixels per inch of the pictures, as those of a saved figure."""
+"""Pixels per inch of the pictures, equal to those in a saved figure."""
 NAMES = {
     "centres_to_walls": "inserted,\ncentres up to the walls",
     "wall": "inserted,\ncompletely inside",
@@ -23,7 +23,7 @@ NAMES = {
 
 
 def densest_fill(ds: xr.Dataset) -> Figure:
-    """The source's fill (first packing) and the compressed one (last), with their packing fractions."""
+    """Draw the source's fill (first packing) and the compressed one (last), with densities."""
     figure, axes = style.new((3.4,), (3.4,))
     packings = Table(ds, "packing")
     for letter, axis, one in zip("ab", axes, (packings[0], packings[-1]), strict=True):

@@ -19,12 +19,12 @@ BACKBONE = 4
 
 
 def densest_fill(points: list[Point], settings: dict) -> xr.Dataset:
-    """Packing fractions with standard errors over replicas, contacts per sphere where the spheres were grown,
-    and the first replica of each packing for the picture.
+    """Measure packing fractions with standard errors over replicas, and contacts.
 
-    Returns a dataset: packing_fraction, error, contacts, contacts_error (packing,), contacts of those that do
-    not rattle, NaN for insertions; rule (packing,); position (packing, particle, axis), radius (packing,),
-    length (packing, axis). freedom: that of the errors.
+    Contacts are per sphere where the spheres were grown; the first replica of each packing is returned for
+    the picture. Returns a dataset with packing_fraction, error, contacts, contacts_error (packing,), contacts
+    of spheres that do not rattle, NaN for insertions; rule (packing,); position (packing, particle, axis),
+    radius (packing,), length (packing, axis). freedom are the degrees of freedom of the errors.
     """
     inner = {"position": ("particle", "axis"), "length": ("axis",)}
     units = dict.fromkeys(("position", "radius", "length"), "length")
@@ -53,14 +53,16 @@ def _packing(point: Point) -> dict[str, Any]:
 
 
 def _mean(values: np.ndarray) -> tuple[float, float]:
-    """Mean and its standard error."""
+    """Compute the mean and its standard error."""
     error = values.std(ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.nan
     return float(values.mean()), float(error)
 
 
 def contacts(positions: np.ndarray, radius: float, lengths: np.ndarray) -> float:
-    """Contacts per sphere of a periodic packing (N, 3), of those spheres that do not rattle: each has at
-    least four contacts with others that do not. An isostatic packing has 6, less 6/N."""
+    """Count contacts per sphere of a periodic packing (N, 3), among spheres that do not rattle.
+
+    Each of these has at least four contacts with others of them. An isostatic packing has 6, less 6/N.
+    """
     tree = cKDTree(positions % lengths, boxsize=lengths)
     pairs = tree.query_pairs(2.0 * radius * (1.0 + TOUCH), output_type="ndarray")
     held = np.ones(len(positions), dtype=bool)

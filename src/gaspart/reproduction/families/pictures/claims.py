@@ -13,8 +13,10 @@ from gaspart.scene.geometry import ball_volume
 
 
 def gas_render(dataset: xr.Dataset) -> list[Claim]:
-    """All are present, as dilute as the source states, without overlaps after a step, with Maxwell's mean
-    speed."""
+    """Return the claims on the gas: number, density, overlaps, and mean speed.
+
+    All are present, as dilute as the source states, without overlaps after a step, with Maxwell's mean speed.
+    """
     spheres = Table(dataset, "particle")
     expected = 2.0 * spheres.resolved**2 / spheres.count
     scatter = math.sqrt(max(expected, 1.0))
@@ -50,7 +52,7 @@ def gas_render(dataset: xr.Dataset) -> list[Claim]:
 
 
 def brownian_render(dataset: xr.Dataset) -> list[Claim]:
-    """All are present, and none overlaps another."""
+    """Return the claims that all spheres are present, and that none overlaps another."""
     spheres = Table(dataset, "particle")
     return [
         _number(spheres),

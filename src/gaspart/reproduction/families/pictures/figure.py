@@ -13,7 +13,7 @@ from gaspart.rendering.pictures import picture
 from gaspart.reproduction.table import Table
 
 DOTS = 300
-"""Pixels per inch of the pictures, as those of a saved figure."""
+"""Pixels per inch of the pictures, equal to those in a saved figure."""
 HEIGHT = 0.75
 """Height of a picture, over its width."""
 HIGHEST = 4.2
@@ -21,7 +21,7 @@ HIGHEST = 4.2
 
 
 def gas_render(dataset: xr.Dataset) -> Figure:
-    """The gas, coloured by speed."""
+    """Draw the gas, coloured by speed."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
@@ -37,12 +37,15 @@ def gas_render(dataset: xr.Dataset) -> Figure:
 
 
 def brownian_render(dataset: xr.Dataset) -> Figure:
-    """The large sphere and its gas, coloured by species."""
+    """Draw the large sphere and its gas, coloured by species."""
     return _shown(Table(dataset, "particle"), "species")[0]
 
 
 def _shown(spheres: Table, colour: str, bar: float = 0.0) -> tuple[Figure, Axes]:
-    """A figure filled by a picture of the spheres; bar: height in inches of what is below."""
+    """Return a figure filled by a picture of the spheres.
+
+    `bar` is the height in inches of the space below.
+    """
     particles = DrawnParticles(
         positions=spheres.position,
         radii=spheres.radius,

@@ -18,17 +18,20 @@ ROUNDING = 1e-5
 
 
 def gas_render(points: list[Point], settings: dict) -> xr.Dataset:
-    """The last frame of the first replica, and what is counted in the last frames of all; see `_scene`."""
+    """Return the last frame of the first replica, and counts in the last frames of all replicas.
+
+    See `_scene`.
+    """
     return _scene(points[0])
 
 
 def brownian_render(points: list[Point], settings: dict) -> xr.Dataset:
-    """The last frame of the large sphere in its gas, and counts; see `_scene`."""
+    """Return the last frame of the large sphere in its gas, and counts; see `_scene`."""
     return _scene(points[0])
 
 
 def _scene(point: Point) -> xr.Dataset:
-    """Particles of one frame, and counts over replicas.
+    """Return the particles of one frame, and counts over replicas.
 
     `overlaps`: pairs that overlap by more than rounding. `resolved`: with the time-stepped engine, the
     collisions of the step before each frame, overlaps that it found and put right; with the other none.
@@ -63,7 +66,7 @@ def _scene(point: Point) -> xr.Dataset:
 
 
 def overlapping(places: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: Sequence[bool]) -> int:
-    """How many pairs of particles (N, d) overlap by more than rounding.
+    """Count the pairs of particles (N, d) that overlap by more than rounding.
 
     The few particles that are larger than twice the median radius are compared with all others.
     """

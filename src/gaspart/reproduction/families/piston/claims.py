@@ -15,9 +15,9 @@ ENSEMBLE = "the ensemble of constant pressure and enthalpy ([Andersen 1980])"
 
 
 def exponents(path: Row) -> np.ndarray:
-    """(path_replica, frame) 1 + 2/d times the logarithm of the temperature ratio over that of theory.
+    """Compute 1 + 2/d times the logarithm of the temperature ratio over theory's.
 
-    What viscosity heats is subtracted first.
+    The shape is (path_replica, frame). The heat of viscosity is subtracted first.
     """
     dimension, first = path.dimension, path.packing_fraction
     eta = np.minimum(first / path.volume, theory.HIGHEST_PACKING_FRACTION[dimension])
@@ -28,7 +28,7 @@ def exponents(path: Row) -> np.ndarray:
 
 
 def piston(ds: xr.Dataset) -> list[Claim]:
-    """Adiabatic exponents, states at constant pressure, and free expansions."""
+    """Return the claims on adiabatic exponents, states at constant pressure, and free expansions."""
     paths, states, gases = (Table.prefixed(ds, kind) for kind in ("path", "state", "expansion"))
     return [
         *(claim for path in paths for claim in _of_path(path)),
@@ -87,8 +87,10 @@ def _fluctuation(state: Row) -> Claim:
 
 
 def isothermal_variance(packing_fraction: float | np.ndarray, dimension: int) -> np.ndarray:
-    """N times the relative variance of the volume at constant temperature: that of the speed of sound without
-    the adiabatic term."""
+    """Compute N times the relative variance of the volume at constant temperature.
+
+    It follows from the speed of sound without the adiabatic term.
+    """
     adiabatic = theory.speed_of_sound(packing_fraction, dimension) ** 2
     heating = 2.0 / dimension * theory.compressibility_factor(packing_fraction, dimension) ** 2
     return np.asarray(1.0 / (adiabatic - heating))

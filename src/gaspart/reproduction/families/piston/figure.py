@@ -16,12 +16,12 @@ from gaspart.reproduction.families.shared.claims import PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 _DOUBLED = 2.0
-"""The volume after free expansion, over that before."""
+"""Volume after free expansion divided by the volume before."""
 _EXPONENTS = {2: "2", 3: "5/3"}
 
 
 def piston(ds: xr.Dataset) -> Figure:
-    """Three panels: temperature along adiabats, factors at constant pressure, variances of the volume."""
+    """Draw temperature along adiabats, factors at constant pressure, and variances of the volume."""
     figure, (upper, middle, lower) = style.new((2.6,), (1.9, 1.9))
     paths, states, gases = (Table.prefixed(ds, kind) for kind in ("path", "state", "expansion"))
     for path in paths:

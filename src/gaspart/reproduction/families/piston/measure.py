@@ -18,20 +18,22 @@ from gaspart.theory.speeds import mean_speed
 
 
 def piston(points: list[Point], settings: dict) -> xr.Dataset:
-    """Three kinds of points, all of particles of mass 1 in containers whose first axis has walls.
+    """Measure three kinds of points, of particles of mass 1, whose first axis has walls.
 
-    With a piston and without an equilibration, over (path, path_replica, frame): volume over that at first;
-    temperature over that at first; heating, see `_heating`; over `path` dimension and packing_fraction at
-    first.
-    With a piston and an equilibration, over (state, state_replica): density, the packing fraction in the
+    With a piston and without an equilibration, over (path, path_replica, frame) are volume and temperature
+    divided by their first values; heating, see `_heating`; over `path` dimension and the first
+    packing_fraction.
+
+    With a piston and an equilibration, over (state, state_replica) are density, the packing fraction in the
     middle half of the volume; factor, the external pressure over that density and the temperature;
-    fluctuation, the number of particles times the variance of the volume over the square of that which they
-    would have at this density; energy, twice the kinetic energy of the piston over the temperature; over
-    `state` dimension and count.
-    Without a piston, over (expansion, expansion_replica): heat, the final kinetic energy over the first;
-    speed, the final mean speed over that of equilibrium at the first temperature; share of the
-    particles in the half of the container that was empty; over `expansion` dimension.
-    Final are means over the second half of the frames.
+    fluctuation, the number of particles times the variance of the volume over the square of the volume at
+    this density; energy, twice the kinetic energy of the piston over the temperature; over `state` dimension
+    and count.
+
+    Without a piston, over (expansion, expansion_replica) are heat, the final kinetic energy over the first;
+    speed, the final mean speed over its equilibrium value at the first temperature; share, the fraction of
+    the particles in the half of the container that was empty; over `expansion` dimension. Final values are
+    means over the second half of the frames.
     """
     kinds: dict[str, tuple] = {
         "path": (_path, "packing_fraction"),
@@ -53,7 +55,7 @@ def _kind(point: Point) -> str:
 
 
 def _row(point: Point, read: Callable[[Run], dict], facts: tuple[str, ...]) -> dict:
-    """What `read` gives of each replica, and facts of the scene."""
+    """Return the results of `read` for each replica, and facts of the scene."""
     replicas = [read(run) for run in runs(point)]
     row = {name: np.stack([one[name] for one in replicas]) for name in replicas[0]}
     return row | {name: getattr(point.scene, name) for name in facts}
@@ -69,7 +71,7 @@ def _path(run: Run) -> dict[str, np.ndarray]:
 def _heating(
     scene: Scene, time: np.ndarray, length: np.ndarray, energy: np.ndarray, rate: np.ndarray
 ) -> np.ndarray:
-    """(frame,) by how much viscosity has increased the logarithm of the temperature.
+    """Compute the increase (frame,) of the logarithm of the temperature by viscosity.
 
     The gas between the wall and the piston flows with a velocity proportional to the distance from the wall;
     its longitudinal viscosity (Enskog's) times the square of the `rate` of strain is heat. An adiabat keeps
@@ -84,7 +86,7 @@ def _heating(
 
 
 def _length(run: Run) -> np.ndarray:
-    """(frame,) the distance of the piston from the wall opposite."""
+    """Compute the distance of the piston from the wall opposite, shape (frame,)."""
     ((number, _),) = run.scene.pistons
     place = run.data["piston_position"].values
     return place if number % 2 else run.scene.container.lengths[number // 2] - place

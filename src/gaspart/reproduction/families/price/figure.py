@@ -14,7 +14,10 @@ WORK = {"pair_tests": "pair tests", "crossings": "crossings"}
 
 
 def price_of_features(ds: xr.Dataset) -> Figure:
-    """Time per event over that without the feature, and the counted work per event, for each feature."""
+    """Draw relative time per event, and counted work per event, for each feature.
+
+    Times are relative to the scene without the feature.
+    """
     figure, (left, right) = style.new((2.9,), (2.9,))
     timed = Table(ds, "point")
     place = {name: -k for k, name in enumerate(dict.fromkeys(timed.feature))}

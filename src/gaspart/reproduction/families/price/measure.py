@@ -1,7 +1,8 @@
-"""The cost of each feature of a scene relative to that without it, and that of absent features.
+"""Relative cost of each feature of a scene, and of absent features.
 
-Each job times a scene and the one without in turn, A B B A, so that what disturbs the machine disturbs both.
-Several jobs of one feature differ in their equilibration: their scatter is the uncertainty.
+Each job times a scene and the scene without the feature alternately, A B B A, so that disturbances of the
+machine affect both. Several jobs of one feature differ in their equilibration: their scatter is the
+uncertainty.
 """
 
 from __future__ import annotations
@@ -21,13 +22,15 @@ WORK = ("pair_tests", "box_visits", "crossings")
 
 
 def price_of_features(points: list[Point], settings: dict) -> xr.Dataset:
-    """Costs per event (a collision or a hit at a wall), and over those of the scene without beside it.
+    """Measure costs per event (a collision or a hit at a wall), absolute and relative.
 
-    Over point (a feature with an engine): engine, feature (which the other scene lacks), seconds per event,
-    `ratio` over the other one's in the same jobs with its error, which is the jobs' scatter, and the degrees
-    of freedom of that; counted `pair_tests`, `box_visits` and `crossings` per event. The plain scene beside
-    itself has the ratio 1. Over kernel, if a point counts them: engine's name, `instructions`, and
-    `stripped`, those of a kernel whose source lacks the features.
+    They are relative to the scene without the feature, timed in the same job.
+
+    Over point (a feature with an engine) are engine, feature (which the other scene lacks), seconds per
+    event, `ratio` over the other one's in the same jobs with its error, which is the jobs' scatter, and the
+    degrees of freedom of that; counted `pair_tests`, `box_visits` and `crossings` per event. The plain scene
+    compared with itself has the ratio 1. Over kernel, if a point counts them: engine's name, `instructions`,
+    and `stripped`, the instructions of a kernel whose source lacks the features.
     """
     groups: dict[tuple, list[dict]] = {}
     for job in (_job(point) for point in points if point.job == "measure_cost"):
@@ -42,7 +45,7 @@ def price_of_features(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _row(jobs: list[dict]) -> dict:
-    """The row of several jobs of one feature; NaN errors for a single one."""
+    """Return the row of several jobs of one feature; NaN errors for a single one."""
     return {
         "engine": jobs[0]["engine"],
         "feature": jobs[0]["feature"],
@@ -52,8 +55,11 @@ def _row(jobs: list[dict]) -> dict:
 
 
 def _job(point: Point) -> dict:
-    """One job: its costs per event, and the mean over its repeats of ln of the time per event over that of
-    the scene without the feature, timed next to it."""
+    """Return the costs per event of one job, and its log ratio of times.
+
+    The ratio is the mean over its repeats of ln of the time per event relative to the scene without the
+    feature, timed next to it.
+    """
     with xr.open_dataset(point.path) as run:
         costs = per_event(run)
         engine, extras = run.attrs["engine"], run.attrs["extras"].split()
@@ -68,7 +74,7 @@ def _job(point: Point) -> dict:
 
 
 def _feature(scene: Scene, extras: list[str]) -> str:
-    """The feature of a scene that a plain periodic gas of equal spheres lacks."""
+    """Return the feature of a scene that a plain periodic gas of equal spheres lacks."""
     has = {
         "recording": "record_events" in extras,
         "stress": "stress" in extras,

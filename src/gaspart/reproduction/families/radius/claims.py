@@ -11,7 +11,7 @@ from gaspart.reproduction.table import Table
 
 
 def radius_grid(dataset: xr.Dataset) -> list[Claim]:
-    """Z depends on the packing fraction alone; the counted costs are as predicted."""
+    """Return the claims that Z depends on the packing fraction alone, and that costs are as predicted."""
     table = Table(dataset, "point")
     event, step = (table[table.engine == name] for name in ("event", "step"))
     same, other = (event[event.series == name] for name in ("packing fraction", "count"))
@@ -52,7 +52,10 @@ def radius_grid(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _same_state(same: Table) -> Claim:
-    """No theory but the 1/N correction: the values are compared with their own mean."""
+    """Return the claim that values of Z at one packing fraction agree with their own mean.
+
+    It uses no theory but the 1/N correction.
+    """
     mean, radii, counts = combine(same.Z), same.radius, same.count
     return Claim.chi_square(
         claim=f"one Z at packing fraction {same.packing_fraction[0]:.3g} for all radii, "

@@ -1,4 +1,4 @@
-"""Z and its cost at several radii: for one packing fraction, and for one number of particles."""
+"""Z and its cost at several radii, for one packing fraction and for one number of particles."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RADIUS = "radius (container: side 16)"
 
 
 def radius_grid(dataset: xr.Dataset) -> Figure:
-    """Z, its residuals, and the counted work, against the radius."""
+    """Draw Z, its residuals, and the counted work, against the radius."""
     figure, (upper, middle, lower) = style.new((2.2, 1.2), (2.8,))
     table = Table(dataset, "point").sorted_by("radius")
     event, step = (table[table.engine == name] for name in ("event", "step"))
@@ -55,7 +55,7 @@ def _state(axis: Axes, own: Table, kind: int, name: str) -> None:
 
 
 def _event_costs(axis: Axes, own: Table, kind: int) -> None:
-    """Circles or squares; crossings hollow, with the line of kinetic theory."""
+    """Draw counts as circles or squares; crossings hollow, with the line of kinetic theory."""
     style.points(axis, own.radius, own.pair_tests, kind=kind)
     style.points(axis, own.radius, own.crossings_counted, kind=kind, hollow=True)
     axis.plot(own.radius, own.crossings_expected, color=style.COLOURS[kind])
@@ -67,7 +67,7 @@ def _step_costs(axis: Axes, own: Table, kind: int) -> None:
 
 
 def _labels(axis: Axes, event: Table, step: Table) -> None:
-    """The counted quantity, above each group of points."""
+    """Write the counted quantity above each group of points."""
     highest = 1.2 * event.pair_tests.max()
     texts = {
         "event-driven: pair tests per collision": highest,

@@ -34,14 +34,14 @@ from gaspart.scene.scene import Scene
 
 
 def radius_grid(points: list[Point], settings: dict) -> xr.Dataset:
-    """Z and counted work of periodic points, of both engines.
+    """Return Z and the counted work of periodic points, of both engines.
 
     An experiment whose points have one packing fraction is the series "packing fraction", else "count".
 
     Returns over `point`: series, engine ("event" or "step"), radius, count, packing_fraction, boxes_per_side.
     Event-driven points: Z, Z_error (corrected to the infinite system), finite_size, reference and its error;
-    crossings, per particle and time over the kinetic theory's, and its error; pair_tests, box_visits
-    and crossings_counted, per collision; crossings_expected, the same from kinetic theory and Enskog's rate.
+    crossings, per particle and time over the kinetic theory's, and its error; pair_tests, box_visits and
+    crossings_counted, per collision; crossings_expected, the same from kinetic theory and Enskog's rate.
     Time-stepped points: pair_tests and box_visits per particle and step, pair_tests_expected. NaN elsewhere.
     """
     experiments = {point.experiment for point in points}
@@ -96,7 +96,7 @@ def _row(point: Point) -> dict[str, Any]:
 
 
 def _crossings(replicas: list[Series], scene: Scene, per_side: int) -> Estimate:
-    """Crossings per particle and time over the kinetic theory's."""
+    """Compute crossings per particle and time over the kinetic theory's."""
     between = scene.dimension * (per_side - 1) / scene.container.lengths[0] * math.sqrt(2.0 / math.pi)
     between *= scene.count
     ratios = [one.counters["crossings"] / (one.interval * between * one.speed) for one in replicas]
@@ -104,17 +104,20 @@ def _crossings(replicas: list[Series], scene: Scene, per_side: int) -> Estimate:
 
 
 def crossings_per_collision(packing_fraction: float, width: float, per_side: int, dimension: int) -> float:
-    """Boundaries between boxes that are crossed for each collision; width of a box in diameters.
+    """Compute the crossed boundaries between boxes for each collision.
 
-    2 d sqrt(2 / pi) (n - 1) / (n w nu), nu Enskog's rate of one particle with k_B T = m = sigma = 1.
+    The width of a box is in diameters. It is 2 d sqrt(2 / pi) (n - 1) / (n w nu), nu Enskog's rate of one
+    particle with k_B T = m = sigma = 1.
     """
     rate = float(theory.collision_rate(packing_fraction, dimension))
     return 2.0 * dimension * math.sqrt(2.0 / math.pi) * (per_side - 1) / (per_side * width * rate)
 
 
 def expected_pair_tests(count: int, per_side: int, packing_fraction: float, dimension: int) -> float:
-    """Pair tests per particle and step of the time-stepped engine in a periodic container (see the
-    module)."""
+    """Compute the pair tests per particle and step of the time-stepped engine.
+
+    The container is periodic (see the module).
+    """
     share = (3.0 / per_side) ** dimension if per_side > 3 else 1.0
     compressibility = float(theory.reduced_compressibility(packing_fraction, dimension))
     return 0.5 * (share * count + (compressibility - 1.0) - share * compressibility)

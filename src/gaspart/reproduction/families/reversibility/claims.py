@@ -15,7 +15,10 @@ ROUNDINGS = math.log(0.1 * 2.0**53)
 
 
 def reversibility(ds: xr.Dataset) -> list[Claim]:
-    """Growth against that of neighbouring runs, and how long the memory of exact runs lasts."""
+    """Return the claims on the growth of echoes, and on the memory of exact runs.
+
+    The growth is compared with the distance of neighbouring runs.
+    """
     runs = Table(ds, "row")
     exact = runs[runs.engine == "event"]  # of time steps nothing is known but what the figure shows
     return [claim for run in exact for claim in _growth(run)]

@@ -21,7 +21,7 @@ ETA = r"packing fraction $\eta$"
 
 
 def reversibility(ds: xr.Dataset) -> Figure:
-    """Echoes against collisions, their growth against density, and the memory of each engine."""
+    """Draw echoes against collisions, their growth against density, and the memory of each engine."""
     figure, axes = style.new((2.8,), (2.1,), (2.1,))
     runs = Table(ds, "row")
     _echoes(axes[0], runs)

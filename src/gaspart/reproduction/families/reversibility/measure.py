@@ -1,4 +1,4 @@
-"""How long a gas remembers its start: growth of echoes, and of the distance of neighbouring runs."""
+"""Memory of a gas: growth of echoes, and of the distance of neighbouring runs."""
 
 from __future__ import annotations
 
@@ -20,28 +20,30 @@ first deviations. These are of all particles alike, and grow faster than by the 
 have turned to the direction of fastest growth: from 1e-9, for two runs 1e-10 apart at first, by 1.13(3) of it
 in spheres of a packing fraction of 0.001, from 1e-7 by 1.03(4)."""
 APART = WINDOW["float64"]
-"""Likewise, for the distance of two runs."""
+"""Window for the distance of two runs."""
 FORGOTTEN = 0.1
-"""The memory ends where the echo is so many diameters from the start."""
+"""Distance of the echo from the start, in diameters, at which the memory ends."""
 
 
 def reversibility(points: list[Point], settings: dict) -> xr.Dataset:
-    """Growth of the echo per collision of a particle, and the collisions after which the initial state is
-    forgotten.
+    """Measure the growth of the echo per collision, and the memory in collisions.
 
-    points: `echo` jobs. Over (``row``, ``sample``): ``collisions`` (mean) and ``echo`` (median over seeds, in
-    diameters). Over ``row``: ``dimension``, ``packing_fraction``, ``count``, ``side`` (in diameters),
+    The latter are the collisions of a particle after which the initial state is forgotten.
+
+    Points are `echo` jobs. Over (``row``, ``sample``): ``collisions`` (mean) and ``echo`` (median over seeds,
+    in diameters). Over ``row``: ``dimension``, ``packing_fraction``, ``count``, ``side`` (in diameters),
     ``engine``, ``precision``; ``growth`` of the logarithm of the echo per collision of a particle,
-    ``divergence`` of two exact runs likewise, ``exponent``, of the linearised dynamics (NaN for time steps),
-    and ``memory``, in collisions per particle, until the echo is `FORGOTTEN`, each with its ``_error`` over
-    the seeds; ``jumps``, the part of the echoes that leave the window in one interval from its lower half.
+    ``divergence`` of two exact runs per collision, ``exponent``, of the linearised dynamics (NaN for time
+    steps), and ``memory``, in collisions per particle, until the echo is `FORGOTTEN`, each with its
+    ``_error`` over the seeds; ``jumps``, the part of the echoes that leave the window in one interval from
+    its lower half.
     """
     rows = table("row", points, _row, inner=("sample",))
     return rows.sortby(["dimension", "packing_fraction"])
 
 
 def _row(point: Point) -> dict:
-    """One point: all seeds together."""
+    """Return the row of one point, with all seeds together."""
     run = xr.load_dataset(point.path)
     window = WINDOW[run.attrs["precision"]]
     collisions, echoes, apart = (run[name].values for name in ("collisions", "echo", "divergence"))
@@ -59,13 +61,16 @@ def _row(point: Point) -> dict:
 
 
 def _mean(values: Iterable[float]) -> Estimate:
-    """Over the seeds of which it is known; NaN of fewer than two."""
+    """Average over the seeds with a known value; NaN for fewer than two."""
     known = [value for value in values if np.isfinite(value)]
     return mean_of(known) if len(known) > 1 else Estimate(math.nan, math.nan, math.nan)
 
 
 def _slope(window: tuple[float, float], s: np.ndarray, distance: np.ndarray) -> float:
-    """Growth of ln distance with s until it first leaves the window; NaN with fewer than three points."""
+    """Fit the growth of ln distance with s until it first leaves the window.
+
+    NaN with fewer than three points.
+    """
     low, high = window
     out = np.flatnonzero(distance >= high)
     end = out[0] if out.size else distance.size
@@ -76,7 +81,10 @@ def _slope(window: tuple[float, float], s: np.ndarray, distance: np.ndarray) -> 
 
 
 def _memory(s: np.ndarray, distance: np.ndarray) -> float:
-    """Where the distance first is `FORGOTTEN`, between samples by its logarithm; NaN if it never is."""
+    """Find the collisions at which the distance first is `FORGOTTEN`; NaN if it never is.
+
+    The logarithm is interpolated between samples.
+    """
     out = np.flatnonzero(distance >= FORGOTTEN)
     if not out.size or out[0] == 0:
         return np.nan
@@ -86,6 +94,9 @@ def _memory(s: np.ndarray, distance: np.ndarray) -> float:
 
 
 def _jumps(distance: np.ndarray, low: float, high: float) -> bool:
-    """Whether it comes from the lower half (of the logarithms) of the window to beyond it at once."""
+    """Return True if the distance jumps from the lower half of the window to beyond it.
+
+    The halves are of the logarithms.
+    """
     out = np.flatnonzero(distance >= high)
     return bool(out.size and out[0] > 0 and distance[out[0] - 1] < np.sqrt(low * high))

@@ -21,11 +21,11 @@ from gaspart.reproduction.table import Row, Table, each
 YEAR = 365.25 * 86400.0
 _OTHER_CAUSE = "something other than the pair tests takes the time"
 _LAWS = {"pairs": (2.0, "4.2: all pairs"), "direct": (1.0, "4.3: a queue"), "boxes": (0.0, "4.4: sectors")}
-"""By search the exponent of an event's cost in N, and the section of source C that states it."""
+"""Exponent of an event's cost in N, and the section of source C that states it, by search."""
 
 
 def _all_pairs(what: str, excess: float) -> Claim:
-    """Counted pair tests are N(N-1)/2."""
+    """Return the claim that counted pair tests are N(N-1)/2."""
     return Claim(
         claim=f"{what}: largest relative difference of the pair tests from N(N-1)/2",
         kind="identity",
@@ -38,7 +38,10 @@ def _all_pairs(what: str, excess: float) -> Claim:
 
 
 def naive_scaling(ds: xr.Dataset) -> list[Claim]:
-    """Quadratic: exactly in pair tests, and in time as far as the caches permit."""
+    """Return the claims on quadratic cost, exact in pair tests, approximate in time.
+
+    Caches limit the agreement of the time.
+    """
     gases = Table(ds, "count")
     return [
         _all_pairs("one box, every step", gases.tests_excess),
@@ -54,7 +57,7 @@ def naive_scaling(ds: xr.Dataset) -> list[Claim]:
 
 
 def box_count(ds: xr.Dataset) -> list[Claim]:
-    """An optimum exists, the counts are those expected, and round widths are no faster."""
+    """Return the claims that an optimum exists, counts are expected, and round widths no faster."""
     scan = Table(ds, "scan")
     least = scan.seconds[int(scan.seconds.value.argmin())]
     over = {"one box": (scan.seconds[0] / least, 10.0), "the most boxes": (scan.seconds[-1] / least, 1.5)}
@@ -110,7 +113,7 @@ def _counts(scan: Table) -> list[Claim]:
 
 
 def _round_widths(powers: Table) -> list[Claim]:
-    """The source's explanation of its plateaus, tested."""
+    """Return the claims on the source's explanation of its plateaus, tested."""
     return each(
         powers.assign(width=powers.container_side[0] / powers.round_per_side),
         "ln of time saved by boxes of width {width:g} for being a power of two",
@@ -123,7 +126,7 @@ def _round_widths(powers: Table) -> list[Claim]:
 
 
 def _sectors(searches: Estimate, exponent: Estimate) -> list[Claim]:
-    """What a sector costs the event-driven engine."""
+    """Return the claims on the costs of sectors in the event-driven engine."""
     return [
         Claim.within(
             claim="neighbourhoods searched at a crossing",
@@ -145,7 +148,10 @@ def _sectors(searches: Estimate, exponent: Estimate) -> list[Claim]:
 
 
 def linear_scaling(ds: xr.Dataset) -> list[Claim]:
-    """Linear in counted work; in time, the source's three regimes; and its years of the naive method."""
+    """Return the claims on linear counted work, regimes of time, and years of the naive method.
+
+    The source states three regimes.
+    """
     parts, share = Table(ds, "part"), Table(ds, "listed").list_share
     return [
         Claim.within(
@@ -180,15 +186,17 @@ def linear_scaling(ds: xr.Dataset) -> list[Claim]:
 
 
 def _log10(ratio: Estimate) -> Estimate:
-    """The decimal logarithm; not a number of a time that noise has made negative, as in a short run beside
-    others."""
+    """Compute the decimal logarithm; not a number for a negative time.
+
+    Noise can make a time negative in a short run at the same time as others.
+    """
     if not ratio.value > 0.0:
         return Estimate(math.nan, math.nan)
     return Estimate(math.log10(ratio.value), ratio.error / ratio.value / math.log(10.0))
 
 
 def _regime(part: Row, number: int) -> Claim:
-    """One of the source's figures 8 to 10: linear, but for the superlinear 9."""
+    """Return the claim on one of the source's figures 8 to 10: linear, but for the superlinear 9."""
     claim = f"exponent of the time per step in N, N = {part.part_low} to {part.part_high}"
     source = f"{SOURCE_A}, figure {number}"
     if number == 9:
@@ -215,7 +223,7 @@ def _regime(part: Row, number: int) -> Claim:
 
 
 def event_scaling(ds: xr.Dataset) -> list[Claim]:
-    """How the cost of an event grows with N, by each search."""
+    """Return the claims on the growth of the cost of an event with N, by each search."""
     methods = Table(ds, "method")
     claims = [_all_pairs("all pairs, every event", methods.pairs_excess)]
     for method in methods:
@@ -236,7 +244,10 @@ def event_scaling(ds: xr.Dataset) -> list[Claim]:
 
 
 def _event_time(where: str, exponent: Estimate, law: dict[str, Any]) -> Claim:
-    """Constant work may still take longer in a larger gas."""
+    """Return the claim on the exponent of the time; constant work may still take longer.
+
+    The gas may be larger.
+    """
     claim = f"exponent of the time {where}"
     if law["expected"] > 0.0:
         return Claim.within(claim=claim, measured=exponent, half_width=0.2, fails_if=_OTHER_CAUSE, **law)

@@ -121,7 +121,7 @@ def _sectors(axis: Axes, scan: Table) -> None:
 
 
 def ideal_boxes(ds: xr.Dataset) -> Figure:
-    """The ideal number of boxes against N; and the time around its minimum."""
+    """Draw the ideal number of boxes against N; and the time around its minimum."""
     figure, (top, bottom) = style.new((2.8,), (2.8,))
     gases = Table(ds, "gas")
     line = np.geomspace(0.7 * gases.count.min(), 1.5 * gases.count.max(), 50)
@@ -148,12 +148,12 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
 
 
 def _thousands(number: float) -> str:
-    """A whole number with thin spaces, for mathematical text."""
+    """Return a whole number with thin spaces, for mathematical text."""
     return f"{int(number):,}".replace(",", r"\,")
 
 
 def _ideal(axis: Axes, gases: Table, kind: int, label: str) -> None:
-    """Ideal numbers with 95 % intervals.
+    """Draw ideal numbers with 95 % intervals.
 
     Hollow: without an interval; with an arrow where the time still falls at the finest partition timed.
     """
@@ -169,7 +169,7 @@ def _ideal(axis: Axes, gases: Table, kind: int, label: str) -> None:
 
 
 def linear_scaling(ds: xr.Dataset) -> Figure:
-    """Time of a step with one box, the cheapest partition and a neighbour list; time, work per particle."""
+    """Draw time of a step with one box, the cheapest partition and a list; time, work per particle."""
     figure, (top, middle, bottom) = style.new((3.0,), (1.9, 1.7))
     gases, naive, lists = Table(ds, "gas"), Table(ds, "naive"), Table(ds, "listed")
     _extrapolated(top, naive)
@@ -201,7 +201,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
 
 
 def _extrapolated(axis: Axes, naive: Table) -> None:
-    """What one box takes with many more particles; nothing if noise makes that negative."""
+    """Draw the time of one box with many more particles; nothing if noise makes it negative."""
     far, carried = float(naive.extrapolated_count), naive.extrapolated_seconds.value
     line = np.array([naive.naive_count.min(), far])
     lines = (_SCAN, _SOURCE, "one box, 27 scans (F & M)"), (1.0, style.COLOURS[1], None)
@@ -213,7 +213,7 @@ def _extrapolated(axis: Axes, naive: Table) -> None:
 
 
 def _duration(seconds: float) -> str:
-    """A time in hours, minutes, seconds or milliseconds."""
+    """Format a time in hours, minutes, seconds or milliseconds."""
     for unit, length in (("h", 3600.0), ("min", 60.0), ("s", 1.0)):
         if seconds >= length:
             return f"{seconds / length:.2g} {unit} a step"
@@ -243,5 +243,5 @@ def event_scaling(ds: xr.Dataset) -> Figure:
 
 
 def _guide(axis: Axes, count: np.ndarray, values: np.ndarray, power: float, kind: int) -> None:
-    """The power law that the search should follow, through the last point."""
+    """Draw the power law that the search should follow, through the last point."""
     axis.plot(count, values[-1] * (count / count[-1]) ** power, color=style.COLOURS[kind], lw=0.8, zorder=1)

@@ -1,4 +1,4 @@
-"""The ideal number of boxes of many gases, beside the numbers that source A found."""
+"""Ideal number of boxes of many gases, compared with the numbers that source A found."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from gaspart.reproduction.table import Table, table
 
 
 def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
-    """The ideal number of boxes of many gases.
+    """Return the ideal number of boxes of many gases.
 
     settings: ``rule``, source A's boxes per particle; ``source_numbers``, those that it found for the largest
     gas of its figures 5, 6 and 7 (each with ``count``, ``radius``, ``boxes_per_particle``);
@@ -48,14 +48,14 @@ def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _series(radius: float, gases: Table) -> dict[str, Any]:
-    """The exponent of the ideal number of boxes of the gases of one radius that have a minimum."""
+    """Fit the exponent of the ideal number of boxes of the gases of one radius with a minimum."""
     own = gases[gases.radius == radius]
     boxes = np.where(own.ideal_interior == 1, own.ideal * own.count, np.nan)
     return {"series_radius": radius, "exponent": trend(own.count, boxes)}
 
 
 def _gas(timed: tuple[xr.Dataset, xr.Dataset], rule: float) -> dict[str, Any]:
-    """The ideal number of boxes of one gas, and what the rule's number costs, for `ideal_boxes`."""
+    """Measure the ideal number of boxes of one gas, and the cost of the rule's, for `ideal_boxes`."""
     run, costs = timed
     return {
         **ideal(costs, run.dimension),
@@ -67,7 +67,7 @@ def _gas(timed: tuple[xr.Dataset, xr.Dataset], rule: float) -> dict[str, Any]:
 
 
 def _source(given: dict, costs: list[xr.Dataset], gases: Table) -> dict[str, Any]:
-    """What was found for the gas of one of source A's numbers, for `ideal_boxes`."""
+    """Return the results for the gas of one of source A's numbers, for `ideal_boxes`."""
     same = (gases.count == given["count"]) & (gases.radius == given["radius"])
     at = int(np.flatnonzero(same)[0])
     gas = gases[at]
@@ -85,9 +85,12 @@ def _source(given: dict, costs: list[xr.Dataset], gases: Table) -> dict[str, Any
 
 
 def _plateau(given: dict, runs: list[xr.Dataset], costs: list[xr.Dataset]) -> dict[str, Any]:
-    """What one of source A's constant numbers of boxes costs, for `ideal_boxes`: ``plateau_radius``,
-    ``plateau_low`` and ``_high`` N, ``plateau_boxes``; of the gases between these the worst, its
-    ``plateau_count``, and ``plateau_penalty``, the time with so many boxes over the least, with error."""
+    """Return the cost of one of source A's constant numbers of boxes, for `ideal_boxes`.
+
+    It has ``plateau_radius``, ``plateau_low`` and ``_high`` N, ``plateau_boxes``; of the gases between these
+    the worst, its ``plateau_count``, and ``plateau_penalty``, the time with this number of boxes over the
+    least, with error.
+    """
     low, high = given["counts"]
     boxes = given["boxes_per_side"] ** 3
     within = [

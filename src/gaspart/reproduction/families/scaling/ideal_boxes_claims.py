@@ -16,7 +16,7 @@ _INTERVAL = 2.0 * 1.96  # a 95 % interval in standard errors
 
 
 def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
-    """The source's numbers of boxes per particle, and how much they matter."""
+    """Return the claims on the source's numbers of boxes per particle, and how much they matter."""
     gases, sources = Table(ds, "gas"), Table(ds, "source")
     return [
         Claim.at_most(
@@ -46,7 +46,7 @@ def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
 
 
 def _work_over_time(gases: Table) -> Estimate:
-    """Mean and scatter of ln(model / ideal) of the gases with a minimum."""
+    """Compute the mean and scatter of ln(model / ideal) of the gases with a minimum."""
     ratio = np.log(gases.model / gases.ideal)
     ratio = ratio[gases.ideal_interior.astype(bool) & np.isfinite(ratio)]
     if ratio.size < 2:
@@ -87,9 +87,10 @@ def _plateaus(plateaus: Table) -> list[Claim]:
 
 
 def _source_numbers(source: Row, origin: str) -> list[Claim]:
-    """Whether the source's number for one gas is the ideal one, and how much slower it is.
+    """Return the claims on the source's number for one gas: ideality, and slowdown.
 
-    If no minimum lies between the timed partitions, its interval is infinite and the claim inconclusive."""
+    If no minimum lies between the timed partitions, its interval is infinite and the claim inconclusive.
+    """
     number, gas = source.source_number, f"N = {source.source_count}, r = {source.source_radius:g}"
     interval = source.source_ideal_high - source.source_ideal_low
     return [

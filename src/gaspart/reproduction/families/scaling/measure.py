@@ -1,7 +1,7 @@
-"""What space partitioning gains: the cost of a step, or of an event, against the particles and the boxes.
+"""Gain of space partitioning: the cost of a step, or of an event, against particles and boxes.
 
-Every point is a `measure_cost` job: one gas, timed with one or several partitions. What is meant by work,
-time and ideal numbers, and where their errors come from, stands in `families.shared.timings`.
+Every point is a `measure_cost` job: one gas, timed with one or several partitions. Work, time and ideal
+numbers, and the origin of their errors, are defined in `families.shared.timings`.
 """
 
 import math
@@ -31,12 +31,12 @@ from gaspart.theory import dsmc as theory
 
 
 def naive_scaling(points: list[Point], settings: dict) -> xr.Dataset:
-    """One box: the cost of a step against the number of particles N.
+    """Measure the cost of a step with one box against the number of particles N.
 
     Over ``count``: ``pair_tests`` per step, ``seconds`` per step with ``seconds_error``. Scalars:
     ``exponent`` of the time in N with ``exponent_error`` from the scatter; ``tests_excess``, the largest
-    relative difference of the pair tests from N(N-1)/2; ``test_seconds``, the cost of a pair test, from
-    time = a N + b tests.
+    relative difference of the pair tests from N(N-1)/2; ``test_seconds``, the cost of a pair test, from time
+    = a N + b tests.
     """
     made = one_box([xr.load_dataset(point.path) for point in points])
     gases = Table(made, "count")
@@ -52,23 +52,22 @@ def naive_scaling(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def box_count(points: list[Point], settings: dict) -> xr.Dataset:
-    """One gas: cost against the number of boxes, time-stepped and event-driven.
+    """Measure cost against the number of boxes of one gas, time-stepped and event-driven.
 
-    settings: ``round_per_side``, the boxes per side that source A found quicker for their round width;
+    The settings are ``round_per_side``, the boxes per side that source A found quicker for their round width;
     ``source_boxes_per_particle``, the ideal number in its figure 6.
 
     Over ``scan`` (the scan that has one box): costs as in `per_particle`; ``expected_tests`` with
-    ``tests_spread`` and ``expected_visits``; the boxes that a particle would search, with each
-    pair tested once, if it left out those that it does not touch (``touched``: within a radius) or those
-    that can hold no partner (``in_reach``: within a diameter).
-    Over (``container``, ``fine``): ``fine_seconds`` ... of the two other scans, in containers whose sides
-    (``container_side``) do and do not give round widths. Over ``power``: ``advantage``, see `_advantages`.
-    Over ``sector``: ``sector_seconds`` ... as in `per_event`. Scalars: as in `ideal`; ``source_penalty``, the
-    time at the source's number over the least, with error; of the sectors, how
-    many neighbourhoods are searched at an event (``event_searches``) and at a crossing
+    ``tests_spread`` and ``expected_visits``; the boxes that a particle would search, with each pair tested
+    once, if it left out those that it does not touch (``touched``: within a radius) or those that can hold no
+    partner (``in_reach``: within a diameter). Over (``container``, ``fine``): ``fine_seconds`` ... of the two
+    other scans, in containers whose sides (``container_side``) do and do not give round widths. Over
+    ``power``: ``advantage``, see `_advantages`. Over ``sector``: ``sector_seconds`` ... as in `per_event`.
+    Scalars: as in `ideal`; ``source_penalty``, the time at the source's number over the least, with error; of
+    the sectors, how many neighbourhoods are searched at an event (``event_searches``) and at a crossing
     (``crossing_searches``), from pair tests = discs in a neighbourhood x (a + b crossings), and
     ``crossing_exponent``, of the crossings per event in the number of planes between sectors; with errors.
-    Points that are timed in turn `without` something: see `remarks`.
+    Points that are timed alternately `without` something are in `remarks`.
     """
     near = [xr.load_dataset(point.path) for point in points if point.settings.get("near_boxes")]
     huge = [xr.load_dataset(point.path) for point in points if "scene" in point.settings]
@@ -108,7 +107,7 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _crossings(events: xr.Dataset, run: xr.Dataset) -> dict[str, Any]:
-    """What crossings between sectors cost, for `box_count`."""
+    """Fit the costs of crossings between sectors, for `box_count`."""
     scan = Table(events, "partition")
     gas = run.dimension, run.side, run.radius
     others = (run.attrs["count"] - 1.0) * theory.neighbour_share(scan.boxes_per_side, *gas)
@@ -122,18 +121,17 @@ def _crossings(events: xr.Dataset, run: xr.Dataset) -> dict[str, Any]:
 
 
 def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
-    """The cost of a step with the cheapest partition of each gas, against the number of particles N.
+    """Measure the cost of a step with the cheapest partition of each gas, against N.
 
-    settings: ``source_figures``, radius and range of counts of source A's figures 8, 9 and 10;
-    ``naive_count``, to which the naive method is extrapolated; ``source_years``, A's estimate for it.
-    Over ``gas`` (points with several partitions): ``count``, ``radius``, costs of the cheapest partition as
-    in `per_particle`, and ``work``, pair tests and box visits together. Over ``naive`` (points with one box):
+    The settings are ``source_figures``, radius and range of counts of source A's figures 8, 9 and 10;
+    ``naive_count``, to which the naive method is extrapolated; ``source_years``, A's estimate for it. Over
+    ``gas`` (points with several partitions): ``count``, ``radius``, costs of the cheapest partition as in
+    `per_particle`, and ``work``, pair tests and box visits together. Over ``naive`` (points with one box):
     ``naive_count``, ``naive_seconds`` per step, with error. Over ``part`` (A's figures): ``part_low``,
     ``part_high``, ``part_radius``, and ``exponent`` of the time per step in N, with error. Over ``listed``
-    (points without partition): see `listed`.
-    Scalars: ``work_exponent`` of the work per step over all gases, with error; ``extrapolated_count``,
-    ``extrapolated_seconds`` of one naive step there (with error), ``extrapolated_ratio``, its time over the
-    partitioned step's (with error); ``source_years``.
+    (points without partition): see `listed`. Scalars: ``work_exponent`` of the work per step over all gases,
+    with error; ``extrapolated_count``, ``extrapolated_seconds`` of one naive step there (with error),
+    ``extrapolated_ratio``, its time over the partitioned step's (with error); ``source_years``.
     """
     runs = sorted(
         (xr.load_dataset(point.path) for point in points), key=lambda run: (run.attrs["count"], run.radius)
@@ -170,7 +168,7 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _regime(part: dict, gases: Table) -> dict[str, Any]:
-    """The exponent of the time per step in one of source A's figures, for `linear_scaling`."""
+    """Return the exponent of the time per step in one of source A's figures, for `linear_scaling`."""
     low, high = part["counts"]
     own = gases[(gases.radius == part["radius"]) & (low <= gases.count) & (gases.count <= high)]
     exponent = trend(own.count, own.count * own.seconds.value)
@@ -178,13 +176,13 @@ def _regime(part: dict, gases: Table) -> dict[str, Any]:
 
 
 def event_scaling(points: list[Point], settings: dict) -> xr.Dataset:
-    """The cost of an event, by each method of searching for the next one, against the number of particles N.
+    """Measure the cost of an event, by each method of searching, against N.
 
-    settings: ``fit_from``, for each search the least N in the fits. Over ``run``: ``search``, ``dimension``,
-    ``count``, and costs as in `per_event`. Over ``method`` (a ``method_search`` in a ``method_dimension``):
-    the exponents of time (``exponent``) and of pair tests (``work_exponent``) per event in N, with errors
-    from the scatter. Scalar ``pairs_excess``: the largest relative difference of the pair tests of search
-    "pairs" from N(N-1)/2 for every event and one for the look that finds none left.
+    The setting is ``fit_from``, for each search the least N in the fits. Over ``run``: ``search``,
+    ``dimension``, ``count``, and costs as in `per_event`. Over ``method`` (a ``method_search`` in a
+    ``method_dimension``): the exponents of time (``exponent``) and of pair tests (``work_exponent``) per
+    event in N, with errors from the scatter. Scalar ``pairs_excess``: the largest relative difference of the
+    pair tests of search "pairs" from N(N-1)/2 for every event and one for the look that finds none left.
     """
     runs = sorted(
         (xr.load_dataset(point.path) for point in points),
@@ -210,7 +208,7 @@ def event_scaling(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _exponents(method: tuple[str, int], gases: Table, fit_from: dict[str, int]) -> dict[str, Any]:
-    """Those of one search in one dimension, for `event_scaling`."""
+    """Fit the exponents of one search in one dimension, for `event_scaling`."""
     search, dimension = method
     same = (gases.search == search) & (gases.dimension == dimension)
     own = gases[same & (gases.count >= fit_from[search])]
@@ -227,7 +225,7 @@ def _names(prefix: str, costs: xr.Dataset) -> dict[str, Any]:
 
 
 def _expected(run: xr.Dataset) -> dict:
-    """Expected counts per particle of a scan, for `box_count`."""
+    """Return the expected counts per particle of a scan, for `box_count`."""
     gas = {"dimension": run.dimension, "side": run.side, "radius": run.radius}
     count, sides = run.attrs["count"], run.boxes_per_side.values
     tests = np.array([theory.expected_pair_tests(count, int(n), **gas) for n in sides]) / count
@@ -242,12 +240,13 @@ def _expected(run: xr.Dataset) -> dict:
 
 
 def _advantages(fine: xr.Dataset, round_per_side: list[int]) -> list[Estimate]:
-    """By how much (ln of time) each of these partitions is quicker than those within an eighth of it, in the
-    container of the lower side (round widths), less the same in the other.
+    """Compute the advantage (ln of time) of partitions over those within an eighth of them.
+
+    It is in the container of the lower side (round widths), less the same in the other container.
 
     Both scans have the same work, so what does not depend on round numbers cancels. The uncertainty is the
-    scatter of those other partitions: their times differ by up to one per cent from process to process,
-    which repeats in one process do not show.
+    scatter of those other partitions: their times differ by up to one per cent from process to process, which
+    repeats in one process do not show.
     """
     n = fine.fine_boxes_per_side.values[0]
     difference = np.log(fine.fine_seconds.values[1]) - np.log(fine.fine_seconds.values[0])

@@ -1,4 +1,4 @@
-"""Source A's remarks on the cost of a step: jobs that time a gas with something and without it, in turn."""
+"""Source A's remarks on the cost of a step: jobs that time a gas with and without something, alternately."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from gaspart.theory.dsmc import boxes_in_reach, share_of_contacts_in_a_box
 
 
 def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
-    """The search of only the boxes within reach of a contact, beside that of all neighbouring boxes.
+    """Compare the search of boxes within reach of a contact with that of all neighbouring boxes.
 
-    runs: jobs of one gas, each with the same partitions. Over ``near`` (the partitions):
+    `runs` are jobs of one gas, each with the same partitions. Over ``near`` (the partitions):
     ``near_boxes_per_side``; with only the boxes within reach the ``near_seconds`` per particle and step, with
-    the error from the scatter of the jobs, and ``near_box_visits``; ``near_expected_visits``, those of a
+    the error from the scatter of the jobs, and ``near_box_visits``; ``near_expected_visits``, the visits in a
     uniform gas far from walls. Scalars: ``near_least``, the least time of all partitions over the least with
     all neighbouring boxes, with error and ``_freedom``; ``near_missed``, the largest difference of the
     contacts found; ``own_first``, the share of searches that could end in the own box if that is searched
@@ -50,10 +50,11 @@ def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
 
 
 def huge_sphere(runs: list[xr.Dataset]) -> dict[str, Any]:
-    """What one sphere that is too large for the boxes costs the others, from jobs without and with it.
+    """Compute the cost of a sphere that is too large for the boxes, from jobs without and with it.
 
-    ``huge_ratio``, the time of a step with it over that without, with error and ``_freedom`` from the scatter
-    of the jobs; ``huge_tests``, how many more pairs are tested per particle and step, with error.
+    ``huge_ratio`` is the time of a step with it over the time without, with error and ``_freedom`` from the
+    scatter of the jobs; ``huge_tests`` is the number of further pairs tested per particle and step, with
+    error.
     """
     ratio = ratio_of_jobs([-log_ratios(run, run.steps.values)[0] for run in runs])
     tests = [np.diff(run.pair_tests.values / run.steps.values)[0] / run.attrs["count"] for run in runs]

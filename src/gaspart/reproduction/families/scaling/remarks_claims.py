@@ -11,7 +11,7 @@ from gaspart.reproduction.table import Table
 
 
 def remarks(ds: xr.Dataset) -> list[Claim]:
-    """The source's remarks on what makes a step cheaper or more expensive, by counted work and by time."""
+    """Return the claims on the source's remarks on the cost of a step, by work and by time."""
     near = Table(ds, "near")
     visits = near.near_box_visits / near.near_expected_visits
     return [

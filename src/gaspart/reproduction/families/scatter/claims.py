@@ -17,7 +17,10 @@ it, which adds 9 % to the mean square."""
 
 
 def claims_scatter(ds: xr.Dataset) -> list[Claim]:
-    """The deviations of all values without an allowance are standard Gaussian numbers, of either sign."""
+    """Return the claims that all scattered deviations are standard Gaussian numbers.
+
+    They are deviations of values without an allowance, of either sign.
+    """
     claims, classes = Table(ds, "claim"), Table(ds, "class")
     deviations = claims.deviation[claims.scattered]
     if not deviations.size:
@@ -50,11 +53,11 @@ def claims_scatter(ds: xr.Dataset) -> list[Claim]:
 
 
 def mean_deviation(figures: Table) -> Estimate:
-    """The mean of all scattered deviations, each of the same weight.
+    """Compute the mean of all scattered deviations, each of the same weight.
 
-    Values of one figure come from the same runs, and may deviate together; those of different figures do
-    not. So the error is that of the jackknife over figures, each left out in turn, which allows for any
-    correlations within them. NaN of fewer than two figures.
+    Values of one figure come from the same runs, and may deviate together; values of different figures do
+    not. So the error is the jackknife's over figures, each left out once, which allows for any correlations
+    within them. NaN for fewer than two figures.
     """
     stating = figures[figures.number > 0]
     if len(stating) < 2:

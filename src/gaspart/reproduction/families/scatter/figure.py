@@ -18,7 +18,7 @@ FURTHEST = 5.0
 
 
 def claims_scatter(ds: xr.Dataset) -> Figure:
-    """Two panels: the distribution of the deviations, with the Gaussian; and those of each figure."""
+    """Draw the distribution of the deviations, with the Gaussian, and deviations by figure."""
     claims, names = Table(ds, "claim"), Table(ds, "name")
     shown = np.unique(claims.figure)
     figure, (upper, lower) = style.new((2.2,), (0.5 + 0.155 * max(1, shown.size),))
@@ -29,7 +29,7 @@ def claims_scatter(ds: xr.Dataset) -> Figure:
 
 
 def _distribution(axis: Axes, alone: np.ndarray, mean: Estimate) -> None:
-    """Density of the deviations without an allowance, and the standard Gaussian."""
+    """Draw the density of the deviations without an allowance, and the standard Gaussian."""
     z = np.linspace(-FURTHEST, FURTHEST, 400)
     axis.plot(z, stats.norm.pdf(z), color=style.REFERENCE, label="Gaussian")
     if alone.size:
@@ -47,8 +47,10 @@ def _distribution(axis: Axes, alone: np.ndarray, mean: Estimate) -> None:
 
 
 def _figures(axis: Axes, claims: Table, figures: Table) -> None:
-    """A row for each figure: its deviations (hollow: with an allowance), and the probability of a smaller
-    chi-square."""
+    """Draw a row for each figure: its deviations, and the probability of a smaller chi-square.
+
+    Deviations with an allowance are hollow.
+    """
     axis.axvspan(-3.0, 3.0, color=style.GREY, alpha=0.18, linewidth=0, zorder=0)
     for place, figure in enumerate(figures):
         own = claims[claims.figure == figure.figure]

@@ -1,4 +1,4 @@
-"""How the deviations of all claims scatter: from the other figures' tables, instead of simulations."""
+"""Scatter of the deviations of all claims, from the other figures' tables instead of simulations."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ BINS = 10
 
 
 def claims_scatter(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
-    """Deviations of the values that figures claim, and whether they are distributed as their errors state.
+    """Collect the deviations of claimed values, and compare them with their errors.
 
-    tables: paths of claims tables, one for each figure. settings: none.
+    `tables` are paths of claims tables, one for each figure. There are no settings.
 
-    Over `claim`: deviation in standard deviations; figure, the number of its figure; scattered, whether the
+    Over `claim`: deviation in standard deviations; figure, the number of its figure; scattered, True if the
     deviation is a standard Gaussian number if the claim is true: without an allowance for the uncertainty of
     the theory, which makes deviations smaller. Over `name`, the figures: number of scattered claims, their
     chi_square, and the signed total of their deviations. Over `class`: counts of the scattered claims in
@@ -56,6 +56,6 @@ def claims_scatter(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
 
 
 def _is_deviation(row: dict) -> bool:
-    """Whether a row states a value, and deviates from it by a finite number."""
+    """Return True if a row states a value, and deviates from it by a finite number."""
     is_value = row["form"] == "value" and row["kind"] == "test" and row["verdict"] != "no verdict"
     return bool(is_value and np.isfinite(row["deviation_sigma"]) and row["uncertainty"] > 0.0)

@@ -14,7 +14,10 @@ BEVERLOO = "[Beverloo 1961], in two dimensions: free fall from an arch as wide a
 
 
 def settling(dataset: xr.Dataset) -> list[Claim]:
-    """Rest is rest, and a pile has as many contacts as its equilibrium needs; the law of discharge."""
+    """Return the claims on rest, contacts of a pile, and the law of discharge.
+
+    Rest is rest, and a pile has as many contacts as its equilibrium needs.
+    """
     return [*_piles(Table(dataset, "pile")), *_flows(Table(dataset, "orifice"))]
 
 
@@ -97,7 +100,10 @@ def _flows(flows: Table) -> list[Claim]:
 
 
 def _log_head_ratio(flows: Table) -> Estimate:
-    """Mean over all orifices, whose errors have one scatter, and so its degrees of freedom, in common."""
+    """Average over all orifices, whose errors have one scatter in common.
+
+    So they have its degrees of freedom in common.
+    """
     ratio = flows.head_ratio
     mean = combine(np.log(ratio.value), ratio.error / ratio.value)
     return Estimate(mean.value, mean.error, ratio.freedom[0])

@@ -15,8 +15,7 @@ TIME = r"$t\,\sqrt{g/d}$"
 
 
 def settling(dataset: xr.Dataset) -> Figure:
-    """Four panels: energy and contacts of piles against time, the discs left in the hopper, the rate of
-    flow."""
+    """Draw energy and contacts of piles, discs left in the hopper, and the rate of flow."""
     figure, axes = style.new((2.4,), (2.4,), (2.4,), (2.4,))
     piles, flows = Table(dataset, "pile"), Table(dataset, "orifice")
     _piles(axes[0], axes[1], piles)
@@ -27,7 +26,7 @@ def settling(dataset: xr.Dataset) -> Figure:
 
 
 def _piles(energies: Axes, contacts: Axes, piles: Table) -> None:
-    """The first pile of each duration of contacts; a cross where all comes to rest."""
+    """Draw the first pile of each duration of contacts; a cross where all comes to rest."""
     style.level(contacts, 2.0)
     for kind, (duration, alike) in enumerate(piles.by("duration")):
         pile, colour = alike[0], style.COLOURS[kind]
@@ -54,7 +53,10 @@ def _discs_left(axis: Axes, flows: Table) -> None:
 
 
 def _rates(axis: Axes, flows: Table) -> None:
-    """The rate against the width less the fitted offset; Beverloo's law is a straight line."""
+    """Draw the rate against the width less the fitted offset.
+
+    Beverloo's law is a straight line.
+    """
     offset = flows.beverloo_offset
     apart = flows.width - offset
     line = np.array([0.85 * apart.min(), 1.15 * apart.max()])

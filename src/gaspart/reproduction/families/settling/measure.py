@@ -24,17 +24,18 @@ _FILLED = 0.84  # packing fraction of a filling of discs of two sizes (random cl
 
 
 def settling(points: list[Point], settings: dict) -> xr.Dataset:
-    """Piles (points without interior walls) and flows through the orifice between two walls (the others).
+    """Measure piles and flows through the orifice between two walls.
 
-    settings: `gap`, `start`, `head` (see FIGURES).
-    Returns over `pile` and `frame` time, kinetic (energy of a disc) and contacts (per disc, with walls); over
-    `pile` duration (of contacts), rest (the time from which on nothing moves, NaN if there is none),
-    contacts at the end (final_contacts), the kinetic energy at the end over that of `_lasting` (residual),
-    the largest displacement after rest (0 without), and the largest rise of the energy from frame to frame
-    over its initial value; over `orifice` its width, the rate of flow with its
-    error, the ratio of the rates in the first and the second half of it (head_ratio), and that of a liquid
-    (liquid_ratio); over `orifice` and `flow_frame` the discs `left` at `flow_time`; and the parameters of
-    `_fit`.
+    Piles are points without interior walls, flows the others.
+
+    The settings are `gap`, `start`, `head` (see FIGURES). Returns over `pile` and `frame` time, kinetic
+    (energy of a disc) and contacts (per disc, with walls); over `pile` duration (of contacts), rest (the time
+    from which on nothing moves, NaN without rest), contacts at the end (final_contacts), the kinetic energy
+    at the end divided by `_lasting` (residual), the largest displacement after rest (0 without), and the
+    largest rise of the energy from frame to frame over its initial value; over `orifice` its width, the rate
+    of flow with its error, the ratio of the rates in the first and the second half of it (head_ratio), and
+    the ratio of a liquid (liquid_ratio); over `orifice` and `flow_frame` the discs `left` at `flow_time`; and
+    the parameters of `_fit`.
     """
     hoppers = [point for point in points if point.scene.walls]
     floors = [point for point in points if not point.scene.walls]
@@ -48,7 +49,7 @@ def _diameter(radii: np.ndarray) -> float:
 
 
 def _pile(run: Run, gap: float) -> dict:
-    """One pile, gravity along -y: see `settling`."""
+    """Measure one pile, gravity along -y; see `settling`."""
     scene, time, positions = run.scene, run.time, run.positions
     radii = run.data["radius"].values.astype(float)  # in single precision, as the positions
     diameter, strength = _diameter(radii), math.hypot(*(scene.gravity or ()))
@@ -73,11 +74,11 @@ def _pile(run: Run, gap: float) -> dict:
 
 
 def _lasting(scene: Scene, positions: np.ndarray) -> float:
-    """Mean kinetic energy of discs of a speed g h t_c, at depths h below the surface of a pile: slower discs
-    meet their neighbours within t_c, and lose no energy.
+    """Compute the mean kinetic energy of discs of a speed g h t_c, at depths h below the surface of a pile.
 
-    A disc at this depth carries a weight of h discs. Neighbours with a gap s that move with v give it the
-    force m v^2 / s, and meet after s / v = v / (g h).
+    Slower discs meet their neighbours within t_c, and lose no energy. A disc at this depth carries a weight
+    of h discs. Neighbours with a gap s that move with v give it the force m v^2 / s, and meet after s / v = v
+    / (g h).
     """
     height = 2.0 * positions[:, 1].mean()
     speed = math.hypot(*(scene.gravity or ())) * height * scene.contact_duration
@@ -85,9 +86,9 @@ def _lasting(scene: Scene, positions: np.ndarray) -> float:
 
 
 def count_contacts(scene: Scene, positions: np.ndarray, radii: np.ndarray, gap: float) -> int:
-    """Pairs of discs, and discs and faces of the container, that are less than `gap` apart.
+    """Count pairs of discs, and discs and faces, that are less than `gap` apart.
 
-    positions (N, 2), radii (N,), gap: in the scene's units.
+    Positions (N, 2), radii (N,) and gap are in the scene's units.
     """
     apart = np.hypot(*(positions[:, None] - positions).transpose(2, 0, 1)) - radii[:, None] - radii
     low, high = positions - radii[:, None], positions + radii[:, None] - np.array(scene.container.lengths)
@@ -96,9 +97,15 @@ def count_contacts(scene: Scene, positions: np.ndarray, radii: np.ndarray, gap: 
 
 @dataclass(frozen=True)
 class Flow:
-    """The flow through one orifice, R replicas. width: of the orifice; count: discs whose passage is timed;
-    rates (R,); ratios (R,): rate in the first half of the discs over that in the second; liquid: the same of
-    a liquid, sqrt of the head; time, left (frames,): of the first replica, discs above the orifice."""
+    """Flow through one orifice, R replicas.
+
+    width : width of the orifice.
+    count : number of discs whose passage is timed.
+    rates : (R,), rates of flow.
+    ratios : (R,), rate in the first half of the discs divided by the rate in the second half.
+    liquid : this ratio for a liquid, sqrt of the head.
+    time, left : (frames,), of the first replica, discs above the orifice.
+    """
 
     width: float
     count: float
@@ -110,7 +117,10 @@ class Flow:
 
 
 def _flow(point: Point, settings: dict) -> Flow:
-    """The flow of a point. Raises ValueError if fewer discs leave the hopper than are to be timed."""
+    """Measure the flow of a point.
+
+    Raises ValueError if fewer discs leave the hopper than are to be timed.
+    """
     scene = point.scene
     _, left_end, right_end, _ = sorted(end for wall in scene.walls for end in wall.corners.values())
     height, width = left_end[1], right_end[0] - left_end[0]
@@ -145,7 +155,7 @@ def _flow(point: Point, settings: dict) -> Flow:
 
 
 def _flows(flows: list[Flow]) -> xr.Dataset:
-    """The variables over `orifice`, the narrowest first, and those of the fits."""
+    """Return the variables over `orifice`, the narrowest first, and the results of the fits."""
     flows = sorted(flows, key=lambda flow: flow.width)
     rates = _mean_logarithms(flows, [flow.rates for flow in flows])
     ratios = _mean_logarithms(flows, [flow.ratios for flow in flows])
@@ -166,7 +176,7 @@ def _flows(flows: list[Flow]) -> xr.Dataset:
 
 
 def _mean_logarithms(flows: list[Flow], replicas: list[np.ndarray]) -> Estimate:
-    """(orifices,) means of the logarithms of what each replica gives, (R,) for each flow.
+    """Average the logarithms of the values (R,) of each flow, (orifices,).
 
     Their variance is taken to be inversely proportional to the number of discs, by one factor for all
     orifices, which is measured by all replicas.
@@ -188,10 +198,11 @@ def _exponential(logarithm: Estimate) -> Estimate:
 
 
 def _fit(width: np.ndarray, rate: Estimate) -> dict[str, tuple]:
-    """The variables of fits of rate = amplitude (width - offset)^exponent: with the exponent as a parameter,
-    and with that of Beverloo's law (beverloo_amplitude, beverloo_offset and the chi_square of this fit).
+    """Fit rate = amplitude (width - offset)^exponent, and return the variables.
 
-    width (orifices,); rate (orifices,): logarithms. The offset is not negative.
+    The exponent is a parameter, or that in Beverloo's law (beverloo_amplitude, beverloo_offset and the
+    chi_square of this fit). `width` has the shape (orifices,), `rate` (orifices,) are logarithms. The offset
+    is not negative.
     """
 
     def law(

@@ -11,13 +11,13 @@ from gaspart.reproduction.points.point import Point
 
 
 def setting_name(rewind: bool, passes: int, precision: str) -> str:
-    """The name of a setting in figures and claims, that of the time-stepped engine."""
+    """Return the name of a setting of the time-stepped engine in figures and claims."""
     name = f"{passes} passes" if passes > 1 else "1 pass"
     return name + ("" if rewind else ", no rewinding") + (", float32" if precision == "float32" else "")
 
 
 def errors(point: Point) -> dict:
-    """Errors over the accepted time steps of a `compare` point, the longest first."""
+    """Return the errors over the accepted time steps of a `compare` point, the longest first."""
     run = xr.load_dataset(point.path)
     run = run.isel(setting=np.flatnonzero(run.refused == 0)).sortby("time_step", ascending=False)
     contacts = run.exact_collisions.sum("snapshot").values
@@ -54,7 +54,10 @@ def errors(point: Point) -> dict:
 
 
 def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
-    """(2, setting) relative difference from the exact runs' sum, and its error from the snapshots."""
+    """Compute the relative difference from the exact runs' sum, and its error.
+
+    The shape is (2, setting); the error is from the snapshots.
+    """
     exact = run[f"exact_{name}"].values
     apart = run[name].values - exact
     error = apart.std(axis=1, ddof=1) * np.sqrt(apart.shape[1]) / exact.sum(axis=1)
@@ -62,8 +65,11 @@ def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
 
 
 def costs(point: Point) -> dict:
-    """The costs of a `measure_cost` point, per time simulated. setting: "event", that of the time-stepped
-    engine, or the model of the DSMC engine; step_parts: steps of this, in its own."""
+    """Return the costs of a `measure_cost` point, per time simulated.
+
+    setting : "event", the name of the time-stepped engine's, or the model of the DSMC engine.
+    step_parts : steps of the latter, in its own.
+    """
     run = xr.load_dataset(point.path)
     seconds, error = median(run.seconds.values)
     own = point.settings
@@ -85,8 +91,10 @@ def costs(point: Point) -> dict:
 
 
 def add_costs(row: dict, timed: list[dict]) -> None:
-    """Add the costs of a row's steps, where they were timed, and of the event-driven engine in the same
-    gas."""
+    """Add the costs of a row's steps, where they were timed, and of the event-driven engine.
+
+    The latter are in the same gas.
+    """
     same = [one for one in timed if one["gas"] == (row["dimension"], row["packing_fraction"])]
     event = next(one for one in same if one["setting"] == "event")
     rate = float(event["collisions"][0])

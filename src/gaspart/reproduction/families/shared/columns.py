@@ -1,7 +1,7 @@
-"""A column of gas under gravity: heights, energies and forces of runs, averaged over blocks of time.
+"""Column of gas under gravity: heights, energies and forces of runs, averaged over blocks of time.
 
 Gravity points down the last axis of a container of two dimensions. Heights are those of particles' centres
-above the lowest place that the centre of the smallest particle can reach.
+above the lowest position that the centre of the smallest particle can reach.
 """
 
 from __future__ import annotations
@@ -19,12 +19,15 @@ from gaspart.scene.species import Particle, Species
 
 @dataclass(frozen=True)
 class Field:
-    """The gravity, container and particles of a point's scene, in its units.
+    """Gravity, container and particles of a point's scene, in its units.
 
-    strength: of gravity, positive downwards; width and height: of the place where the centres of the smallest
-    particles can be (the width of a periodic axis is its length); diameter: of the smallest particles; masses
-    (N,), infinite for fixed particles; species (N,), numbered as in the scene, single particles after them;
-    across: whether the other axis is periodic, so that momentum along it is conserved.
+    strength : gravity, positive downwards.
+    width, height : of the region that the centres of the smallest particles can reach (the width of a
+        periodic axis is its length).
+    diameter : diameter of the smallest particles.
+    masses : (N,), infinite for fixed particles.
+    species : (N,), numbered as in the scene, single particles after them.
+    across : True if the other axis is periodic, so that momentum along it is conserved.
     """
 
     strength: float
@@ -42,7 +45,7 @@ class Field:
 
 
 def field(point: Point) -> Field:
-    """The field and the container of a point."""
+    """Return the field and the container of a point."""
     scene = point.scene
     radius = scene.smallest_radius
     lower, upper = scene.reach(radius)
@@ -65,10 +68,11 @@ def field(point: Point) -> Field:
 class Stretch:
     """Consecutive frames of one run; T frames, N particles.
 
-    positions (T, N, 2), the second one the height; energies (T, N), kinetic ones, without the centre of
-    mass's motion along a periodic axis; floor, ceiling: mean forces on them; gain: mean rate at which the
-    particles' upward momentum grew; temperature: twice the mean kinetic energy per degree of freedom (one is
-    lost with a conserved momentum).
+    positions : (T, N, 2), the second one is the height.
+    energies : (T, N), kinetic ones, without the centre of mass's motion along a periodic axis.
+    floor, ceiling : mean forces on them.
+    gain : mean rate at which the particles' upward momentum grew.
+    temperature : twice the mean kinetic energy per degree of freedom (one is lost with a conserved momentum).
     """
 
     positions: np.ndarray
@@ -85,10 +89,10 @@ class Stretch:
 
 
 def stretches(point: Point, number: int) -> list[Stretch]:
-    """The measured part of every replica, cut into `number` stretches of equal length (a remainder is
-    omitted).
+    """Cut the measured part of every replica into `number` blocks of equal length.
 
-    Neighbours share a frame at which momenta are read, and no other. Raises ValueError for too few frames.
+    A remainder is omitted. Neighbours share a frame at which momenta are read, and no other. Raises
+    ValueError for too few frames.
     """
     place, found = field(point), []
     for run in runs(point):
@@ -111,8 +115,13 @@ def stretches(point: Point, number: int) -> list[Stretch]:
 
 @dataclass(frozen=True)
 class Profile:
-    """Averages in B bins of height: density (S, B) of each species; temperature (B,), NaN in empty bins;
-    pressure (B,), the force per length that carries the gas above: that of the ceiling and the weight."""
+    """Averages in B bins of height.
+
+    density : (S, B), of each species.
+    temperature : (B,), NaN in empty bins.
+    pressure : (B,), force per length that carries the gas above, the sum of the force on the ceiling and the
+        weight.
+    """
 
     density: np.ndarray
     temperature: np.ndarray
@@ -120,10 +129,10 @@ class Profile:
 
 
 def profile(place: Field, stretch: Stretch, bins: int) -> Profile:
-    """Profiles of a stretch without fixed particles, averaged over each of `bins` equal bins of height.
+    """Average a block without fixed particles over each of `bins` equal bins of height.
 
-    In a steady state the momentum below any height is constant, so the pressure at z is (F_ceiling +
-    sum of m g over particles above z) / width (exact; no equation of state is used).
+    In a steady state the momentum below any height is constant, so the pressure at z is (F_ceiling + sum of m
+    g over particles above z) / width (exact; no equation of state is used).
     """
     frames, count = stretch.heights.shape
     grid = Grid.line(0.0, place.height, bins)

@@ -14,7 +14,7 @@ from gaspart.trajectory.reading import open_trajectory
 
 
 def reduced_curves(point: Point, path: str, longest: float) -> Curves:
-    """The curves of one replica, to the lag `longest` (reduced time) or to the last one that it has.
+    """Return the curves of one replica, to the lag `longest` (reduced time) or to its last one.
 
     The particles' diameter, mass and temperature are 1: the temperature 2 E' / (d (N - 1)) is the replica's
     own, E' the energy about the centre of mass. One species. Raises SceneError for a point without `lags`.

@@ -18,12 +18,14 @@ from gaspart.scene.gas import plain_gas
 
 @dataclass(frozen=True)
 class Series:
-    """What the measured part of a run gives in each interval between its frames.
+    """Values of the measured part of a run in each interval between its frames.
 
-    z: (samples,) compressibility factor of each interval between frames; rate: (samples,) collisions of one
-    particle per time, times sigma sqrt(m / kT) (dimensionless), with kT = 2 E_cm / (d N); interval: time
-    between frames; counters: (samples,) each, the counts of every interval, by name; speed: sqrt(<v^2> / d)
-    in the container's frame.
+    z : (samples,), compressibility factor of each interval.
+    rate : (samples,), collisions of one particle per time, times sigma sqrt(m / kT) (dimensionless), with kT
+        = 2 E_cm / (d N).
+    interval : time between frames.
+    counters : (samples,) each, the counts of every interval, by name.
+    speed : sqrt(<v^2> / d) in the container's frame.
     """
 
     z: np.ndarray
@@ -35,11 +37,13 @@ class Series:
 
 @dataclass(frozen=True)
 class Pressure:
-    """Z of all replicas of a point, and whether blocks and replicas agree about it.
+    """Z of all replicas of a point, with tests of blocks and replicas.
 
-    chi_square: of the replicas about their mean, by their own errors, with replicas - 1 degrees of freedom;
-    flat: all block errors had reached a plateau; correlation: longest integrated autocorrelation time, in
-    intervals (1/2: independent). collision_rate: see `Series.rate`. counters: sums over the replicas.
+    chi_square : of the replicas about their mean, by their own errors, with replicas - 1 degrees of freedom.
+    flat : True if all block errors had reached a plateau.
+    correlation : longest integrated autocorrelation time, in intervals (1/2: independent).
+    collision_rate : see `Series.rate`.
+    counters : sums over the replicas.
     """
 
     z: Estimate
@@ -55,7 +59,10 @@ COUNTED = ("collisions", "pair_tests", "box_visits", "crossings", "steps")
 
 
 def series_of(run: Run) -> Series:
-    """That of a run of a plain gas in a periodic container. Raises SceneError for any other scene."""
+    """Return the series of a run of a plain gas in a periodic container.
+
+    Raises SceneError for any other scene.
+    """
     gas = plain_gas(run.scene)
     thermal = math.sqrt(run.temperature * run.freedom / (gas.dimension * gas.count * gas.mass))
     energy = float(run.data["kinetic_energy"].mean())
@@ -69,12 +76,12 @@ def series_of(run: Run) -> Series:
 
 
 def pressure(point: Point) -> Pressure:
-    """Z and the collision rate of a periodic point, from all its replicas."""
+    """Return Z and the collision rate of a periodic point, from all its replicas."""
     return combine([series_of(run) for run in runs(point)])
 
 
 def combine(replicas: list[Series]) -> Pressure:
-    """Mean over replicas of equal length; the errors are those of correlated series, in quadrature."""
+    """Average over replicas of equal length; errors of correlated series add in quadrature."""
     means = [correlated_mean(one.z) for one in replicas]
     z = average([mean.estimate for mean in means])
     deviations = [(mean.estimate - z.value).deviation for mean in means]
@@ -90,5 +97,5 @@ def combine(replicas: list[Series]) -> Pressure:
 
 
 def totals(replicas: list[Series]) -> dict[str, float]:
-    """Sums of the counters over all replicas, by name."""
+    """Compute the sums of the counters over all replicas, by name."""
     return {name: float(sum(one.counters[name].sum() for one in replicas)) for name in replicas[0].counters}

@@ -10,10 +10,10 @@ from gaspart.trajectory.reading import open_trajectory
 
 
 def runs(point: Point, first: int | None = None) -> Iterator[Run]:
-    """The frames of each replica, from the end of its equilibration or from frame `first` on; each run is
-    open until the next one is asked for.
+    """Yield the frames of each replica, from the end of its equilibration or from frame `first` on.
 
-    Raises OSError for a file that cannot be read and ValueError for one of another point.
+    Each run is open until the next one is requested. Raises OSError for a file that cannot be read and
+    ValueError for one of another point.
     """
     scene, schedule = point.scene, point.schedule
     before = schedule.equilibration_frames

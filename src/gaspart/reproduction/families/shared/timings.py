@@ -1,8 +1,8 @@
-"""From the job `measure_cost`, repeated timings, to costs per particle and per event, and to their minimum.
+"""Costs per particle and per event, and their minimum, from repeated timings of `measure_cost`.
 
 *Work* is counted, the same on every machine: pairs tested, boxes searched, and boxes emptied (the
 time-stepped engine sorts all particles anew in every step, so all its boxes are emptied once a step). *Time*
-is processor time: the median of the repeats, with that median's standard error.
+is CPU time: the median of the repeats, with that median's standard error.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from gaspart.theory.dsmc import ideal_boxes_per_particle
 NEAR = 3.0
 """A minimum is fitted to the partitions that cost at most this many times the cheapest."""
 SYSTEMATIC = 0.02
-"""Relative error that is added to that of a time in a fit: caches and clocks disturb entire runs."""
+"""Relative error that is added to the error of a time in a fit: caches and clocks disturb entire runs."""
 
 
 def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Median over the last axis, and its standard error.
+    """Compute the median over the last axis, and its standard error.
 
     The error of a median is sqrt(pi/2) standard errors of the mean; the spread is 1.4826 times the median
     deviation, so that one disturbed repeat in five changes neither.
@@ -37,7 +37,7 @@ def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def per_particle(run: xr.Dataset) -> xr.Dataset:
-    """Costs per particle and step, over the partitions of one time-stepped gas.
+    """Return the costs per particle and step, over the partitions of one time-stepped gas.
 
     ``boxes_per_side``, ``boxes_per_particle``; ``seconds`` with ``seconds_error``; ``pair_tests``,
     ``box_visits`` and ``boxes_emptied``.
@@ -58,7 +58,9 @@ def per_particle(run: xr.Dataset) -> xr.Dataset:
 
 
 def per_event(run: xr.Dataset) -> xr.Dataset:
-    """Costs per event (a collision, or a hit at a wall), over the partitions of one event-driven gas.
+    """Compute costs per event (a collision, or a hit at a wall) over partitions.
+
+    The gas is event-driven.
 
     ``boxes_per_side``, ``boxes_per_particle``, ``events``; ``seconds`` with ``seconds_error``;
     ``pair_tests``, ``box_visits``, ``crossings`` of box boundaries.
@@ -85,10 +87,10 @@ def _dataset(columns: dict, **units: str) -> xr.Dataset:
 
 
 def weights(seconds: Estimate, *work: float | np.ndarray) -> statistics.Fit:
-    """The cost of each kind of work: seconds = sum of weight x work, by relative least squares.
+    """Fit the cost of each kind of work: seconds = sum of weight x work.
 
-    seconds and every work: (points,). The covariance is scaled up by the scatter if that is larger than the
-    errors (and `SYSTEMATIC`) explain.
+    The fit is by relative least squares; seconds and every work are (points,). The covariance is scaled up by
+    the scatter if that is larger than the errors (and `SYSTEMATIC`) explain.
     """
     times, errors = seconds.value, _spread(seconds)
     fit = statistics.fit_linear(np.stack(np.broadcast_arrays(*work), axis=1), times, errors)
@@ -98,20 +100,21 @@ def weights(seconds: Estimate, *work: float | np.ndarray) -> statistics.Fit:
 
 
 def _spread(seconds: Estimate) -> np.ndarray:
-    """The errors of times in a fit."""
+    """Compute the errors of times in a fit."""
     return np.asarray(np.hypot(seconds.error, SYSTEMATIC * seconds.value))
 
 
 def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
-    """The ideal number of boxes per particle of one gas, from its `per_particle` costs; each with its 95 %
-    interval.
+    """Compute the ideal number of boxes per particle of one gas, from its `per_particle` costs.
+
+    Each number has its 95 % interval.
 
     By time: the minimum of a + b / boxes + c boxes (``ideal``, ``ideal_low``, ``ideal_high``,
-    ``ideal_interior``), and the boxes from ``flat_low`` to ``flat_high`` that cost at most 5 % more. By
-    work: with seconds = a + b tests + c boxes, all per particle, fitted to the same partitions, the
-    minimum is at sqrt(3^d b / 2 c) (``model``, ``model_low``, ``model_high``; NaN if a weight is not
-    positive), with ``particle_seconds`` a (moving, sorting, and looking into boxes, whose number hardly
-    changes), ``test_seconds`` b, ``box_seconds`` c, and their ``_error``.
+    ``ideal_interior``), and the boxes from ``flat_low`` to ``flat_high`` that cost at most 5 % more. By work:
+    with seconds = a + b tests + c boxes, all per particle, fitted to the same partitions, the minimum is at
+    sqrt(3^d b / 2 c) (``model``, ``model_low``, ``model_high``; NaN if a weight is not positive), with
+    ``particle_seconds`` a (moving, sorting, and looking into boxes, whose number hardly changes),
+    ``test_seconds`` b, ``box_seconds`` c, and their ``_error``.
     """
     scan = Table(costs, "partition")
     best = statistics.optimum(scan.boxes_per_particle, scan.seconds.value, within=NEAR)
@@ -143,8 +146,9 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
 
 
 def penalty(costs: xr.Dataset, boxes_per_particle: float) -> tuple[float, float]:
-    """Time at a given number of boxes per particle over the least time of the scan, and its standard error;
-    NaN beyond the partitions timed.
+    """Compute the time at a number of boxes per particle over the least time of the scan.
+
+    The standard error is returned too; NaN beyond the partitions timed.
 
     Both by a + b / boxes + c boxes, fitted to the times near the least one, so that no single disturbed
     timing decides; none of the three is negative, as no work costs less than nothing.
@@ -168,26 +172,35 @@ def penalty(costs: xr.Dataset, boxes_per_particle: float) -> tuple[float, float]
 
 
 def _near(seconds: np.ndarray) -> np.ndarray:
-    """Which partitions are fitted: those within `NEAR` times the least time, or the four cheapest."""
+    """Select the partitions to fit: within `NEAR` times the least time, or the four cheapest."""
     return seconds <= max(NEAR * seconds.min(), np.sort(seconds)[min(3, len(seconds) - 1)])
 
 
 def log_ratios(run: xr.Dataset, work: np.ndarray) -> np.ndarray:
-    """ln of the time per unit of work (partitions,) of a job's own partitions over those that are timed in
-    turn with them and lack its keys `without` (the second half): the median over repeats."""
+    """Compute ln of the time per unit of work (partitions,) relative to its rival.
+
+    The rivals are timed alternately and lack the keys `without` (the second half); the median is over
+    repeats.
+    """
     own, beside = np.split(np.log(run.seconds.values / work[:, None]), 2)
     return np.median(own - beside, axis=1)
 
 
 def ratio_of_jobs(logs: Sequence[float] | np.ndarray) -> Estimate:
-    """A ratio from its logarithms in several jobs, with their scatter as the uncertainty; NaN for one job."""
+    """Compute a ratio from its logarithms in several jobs, with their scatter as the uncertainty.
+
+    NaN for one job.
+    """
     mean = statistics.mean_of(logs) if len(logs) > 1 else Estimate(float(logs[0]), math.nan, math.nan)
     ratio = math.exp(mean.value)
     return Estimate(ratio, ratio * mean.error, mean.freedom)
 
 
 def trend(count: np.ndarray, values: np.ndarray) -> tuple[float, float]:
-    """Exponent of a power law and its error from the scatter; NaN if fewer than three points can be used."""
+    """Fit the exponent of a power law, and its error from the scatter.
+
+    NaN if fewer than three points can be used.
+    """
     usable = np.isfinite(values)
     if usable.sum() < 3:
         return math.nan, math.nan
@@ -196,7 +209,7 @@ def trend(count: np.ndarray, values: np.ndarray) -> tuple[float, float]:
 
 
 def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
-    """Over ``count``: pair tests and time of one step with one box."""
+    """Return the pair tests and the time of one step with one box, over ``count``."""
     runs = sorted(runs, key=lambda run: run.attrs["count"])
     steps = np.array([int(run.steps[0]) for run in runs])
     times = np.array([median(run.seconds.values[0]) for run in runs]).reshape(-1, 2) / steps[:, None]
@@ -212,9 +225,12 @@ def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
 
 
 def listed(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
-    """Over ``listed``: costs per particle of neighbour lists, ``list_seconds`` ... as in `per_particle`;
-    ``list_count``, ``list_radius``; and ``list_share``, the time over that of the gas of the same count and
-    radius among `gases` (NaN if there is none), with error."""
+    """Return the costs per particle of neighbour lists, over ``listed``.
+
+    They are ``list_seconds`` ... as in `per_particle`; ``list_count``, ``list_radius``; and ``list_share``,
+    the time divided by the time of the gas of the same count and radius among `gases` (NaN without such a
+    gas), with error.
+    """
     costs = xr.concat(
         [per_particle(run).isel(partition=0) for run in runs], "listed", join="outer", compat="equals"
     )

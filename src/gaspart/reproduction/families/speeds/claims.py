@@ -18,7 +18,10 @@ KOLMOGOROV_LIMIT, KOLMOGOROV_SCATTER = 1.818, 0.26
 
 
 def speed_relaxation(dataset: xr.Dataset) -> list[Claim]:
-    """Kurtosis, never-hit fraction and collisions at each time of source A's figure 11, for each engine."""
+    """Return the claims on kurtosis, never-hit fraction and collisions, for each engine.
+
+    They are at each time of source A's figure 11.
+    """
     claims = []
     for gas in Table(dataset, "engine"):
         by, relaxation = f"{ENGINE_TITLES[gas.engine]} engine", theory.relaxation(gas.dimension)
@@ -48,7 +51,7 @@ def speed_relaxation(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _at_time(frame: Row, by: str, relaxation: Relaxation) -> list[Claim]:
-    """The scatter of the runs includes that of the collisions."""
+    """Return the claims at a time; the scatter of the runs includes the collisions'."""
     collisions = frame.collisions.value
     when = f"at t = {frame.time:g} ({by})"
     return [
@@ -88,17 +91,17 @@ def _collisions(last: Row, by: str, relaxation: Relaxation) -> Claim:
 
 
 def speed_distribution_spheres(dataset: xr.Dataset) -> list[Claim]:
-    """Maxwell's distribution at each packing fraction, in 3D."""
+    """Return the claims on Maxwell's distribution at each packing fraction, in 3D."""
     return distribution(dataset)
 
 
 def speed_distribution_discs(dataset: xr.Dataset) -> list[Claim]:
-    """Maxwell's distribution in 2D."""
+    """Return the claims on Maxwell's distribution in 2D."""
     return distribution(dataset)
 
 
 def distribution(dataset: xr.Dataset) -> list[Claim]:
-    """Chi-square, Kolmogorov's distance, kurtosis and temperature of every point."""
+    """Return the claims on chi-square, Kolmogorov's distance, kurtosis and temperature of every point."""
     return [claim for gas in Table(dataset, "point") for claim in _equilibrium(gas)]
 
 

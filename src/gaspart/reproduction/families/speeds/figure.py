@@ -21,7 +21,7 @@ SPEED, SIGMA = r"speed $v/\sqrt{\langle v^2\rangle}$", r"residual ($\sigma$)"
 
 
 def speed_relaxation(dataset: xr.Dataset) -> Figure:
-    """Histograms at the source's three times; kurtosis and fraction never hit against collisions."""
+    """Draw histograms at the source's three times; kurtosis and fraction never hit against collisions."""
     figure, axes = style.new((2.8,), (1.9, 1.0), (1.9, 1.0))
     histograms, kurtosis, kurtosis_residual, unhit, unhit_residual = axes
     engines = Table(dataset, "engine")
@@ -47,7 +47,7 @@ def speed_relaxation(dataset: xr.Dataset) -> Figure:
 
 
 def _histograms(axis: Axes, engines: Table) -> None:
-    """Densities at the three times: outlines of the time-stepped engine, points of the event-driven."""
+    """Draw densities at the three times: outlines of the time-stepped engine, points of events."""
     edges = np.append(engines.lower, engines.upper[-1])
     middle = 0.5 * (edges[1:] + edges[:-1])
     for kind, frame in enumerate(engines.shown):
@@ -72,7 +72,7 @@ def _histograms(axis: Axes, engines: Table) -> None:
 def _compare(
     top: Axes, bottom: Axes, engines: Table, name: str, curve: Callable[[np.ndarray], ArrayLike]
 ) -> None:
-    """Both engines' points on the curve, and their residuals in standard errors of each."""
+    """Draw both engines' points on the curve, and their residuals in standard errors of each."""
     style.band(bottom, -3.0, 3.0)
     style.level(bottom, 0.0)
     for kind, gas in enumerate(engines):
@@ -85,12 +85,12 @@ def _compare(
 
 
 def speed_distribution_spheres(dataset: xr.Dataset) -> Figure:
-    """Density, residual, tails and the difference of the cumulative distribution in 3D."""
+    """Draw the density, residual, tails and the difference of the cumulative distribution in 3D."""
     return _distribution(Table(dataset, "point"))
 
 
 def speed_distribution_discs(dataset: xr.Dataset) -> Figure:
-    """Density, residual, tails and the difference of the cumulative distribution in 2D."""
+    """Draw the density, residual, tails and the difference of the cumulative distribution in 2D."""
     return _distribution(Table(dataset, "point"))
 
 

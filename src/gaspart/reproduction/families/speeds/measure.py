@@ -44,7 +44,7 @@ class Velocities:
 
 
 def read(point: Point, first: int | None = None) -> list[Velocities]:
-    """Velocities in all replicas of a point, without their equilibration or from frame `first` on."""
+    """Return the velocities in all replicas of a point, after equilibration or from frame `first` on."""
     return [
         Velocities(
             time=run.time,
@@ -57,13 +57,13 @@ def read(point: Point, first: int | None = None) -> list[Velocities]:
 
 
 def kurtosis(speeds: np.ndarray) -> np.ndarray:
-    """<u^4> / <u^2>^2 over the last axis (exact definition); 1 for equal speeds."""
+    """Compute <u^4> / <u^2>^2 over the last axis (exact definition); 1 for equal speeds."""
     square = speeds**2
     return (square**2).mean(axis=-1) / square.mean(axis=-1) ** 2
 
 
 def never_hit(velocities: np.ndarray) -> np.ndarray:
-    """(T,) fraction of particles that no other particle has hit since the first frame.
+    """Compute the fraction (T,) of particles that no particle has hit since the first frame.
 
     A wall only reverses the sign of a component, so |v_k| of such a particle keeps its bits in every
     component; a collision changes them all (but for exceptions of probability 0).
@@ -72,7 +72,9 @@ def never_hit(velocities: np.ndarray) -> np.ndarray:
 
 
 def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
-    """Standard errors of the means over axis 0 of groups of runs of the same physics, (R_g, ...) each.
+    """Compute standard errors of the means over axis 0 of groups of runs, (R_g, ...) each.
+
+    All runs have the same physics.
 
     The groups are assumed to have the same scatter, which is estimated from all of them about their own
     means: a group of few runs has no good estimate of its own. Needs more runs than groups.
@@ -85,19 +87,20 @@ def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def shared_means(samples: list[np.ndarray]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """The mean over axis 0 of each group of runs, and its error; see `shared_error`."""
+    """Compute the mean over axis 0 of each group of runs, and its error; see `shared_error`."""
     return [(group.mean(axis=0), error) for group, error in zip(samples, shared_error(samples), strict=True)]
 
 
 def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
-    """Kurtosis, fraction never hit and histogram during relaxation from equal speeds to Maxwell's
-    distribution.
+    """Measure kurtosis, fraction never hit and histogram during relaxation from equal speeds.
 
-    One point for each engine, of the same scene and sampling. settings: `times`, those of the histograms
+    The final distribution is Maxwell's.
+
+    One point for each engine, of the same scene and sampling. The settings are `times`, of the histograms
     (each must be a sampled one), `bins` of the histograms up to speed `highest` (over root-mean-square).
 
-    Dimensions engine, frame, snapshot, bin. Errors are those of the mean over replicas, from the scatter of
-    all runs, with their degrees of freedom. Raises SceneError if the points differ or a time is not sampled.
+    Dimensions engine, frame, snapshot, bin. Errors are of the mean over replicas, from the scatter of all
+    runs, with their degrees of freedom. Raises SceneError if the points differ or a time is not sampled.
     """
     groups = [read(point, first=0) for point in points]
     scene, time = points[0].scene, groups[0][0].time
@@ -135,7 +138,7 @@ def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _relaxing(run: Velocities, grid: Grid, shown: np.ndarray) -> dict[str, Any]:
-    """What a run gives, by the names of `speed_relaxation`."""
+    """Return the numbers of a run, by the names of `speed_relaxation`."""
     speeds = run.speeds
     fourth = kurtosis(speeds)
     return {
@@ -149,13 +152,16 @@ def _relaxing(run: Velocities, grid: Grid, shown: np.ndarray) -> dict[str, Any]:
 
 
 def _bins(grid: Grid) -> dict[str, Any]:
-    """The coordinates of a histogram."""
+    """Return the coordinates of a histogram."""
     edges, units = grid.edges[0], {"units": "root-mean-square speed"}
     return {"lower": ("bin", edges[:-1], units), "upper": ("bin", edges[1:], units)}
 
 
 def _require_alike(points: list[Point], groups: list[list]) -> None:
-    """Raise SceneError unless all points, with a group of runs each, have the first's scene and times."""
+    """Raise SceneError unless all points have the first one's scene and times.
+
+    Each point has a group of runs.
+    """
     scene, time = points[0].scene, groups[0][0].time
     for point, group in zip(points, groups, strict=True):
         if point.scene != scene or any(
@@ -167,7 +173,9 @@ def _require_alike(points: list[Point], groups: list[list]) -> None:
 
 
 def _rate_between_walls(scene: Scene, temperature: float) -> float:
-    """Collisions per particle and time of a dilute gas whose centres are confined to the container.
+    """Compute collisions per particle and time of a dilute gas within a container.
+
+    The centres are confined to the container.
 
     Enskog's rate times (N - 1) / N, as a particle has N - 1 partners, and times the chance that the other
     particle of a contact, at distance sigma in the direction n, lies within the walls too: the mean over n of
@@ -195,38 +203,46 @@ def _frame_at(time: np.ndarray, chosen: float) -> int:
 
 
 def _density(speeds: np.ndarray, grid: Grid) -> np.ndarray:
-    """Fraction of the speeds per bin and width; those beyond the last edge count in the norm."""
+    """Compute the fraction of the speeds per bin and width.
+
+    Speeds beyond the last edge count in the norm.
+    """
     return grid.sums(grid.cells(speeds[..., None])) / speeds.size / grid.volume
 
 
 def _initial_slope(s: np.ndarray, values: np.ndarray) -> float:
-    """dK/ds at s = 0 of the cubic through K(0) = 1 and, by least squares, the frames up to s = 1.5."""
+    """Fit dK/ds at s = 0 by a cubic through K(0) = 1 and the frames up to s = 1.5.
+
+    The fit is by least squares.
+    """
     early = (s > 0.0) & (s <= 1.5)
     design = s[early, None] ** np.arange(1, 4)
     return float(np.linalg.lstsq(design, values[early] - 1.0, rcond=None)[0][0])
 
 
 def speed_distribution_spheres(points: list[Point], settings: dict) -> xr.Dataset:
-    """Maxwell's distribution in 3D; see `distribution`."""
+    """Return Maxwell's distribution in 3D; see `distribution`."""
     return distribution(points, settings)
 
 
 def speed_distribution_discs(points: list[Point], settings: dict) -> xr.Dataset:
-    """Maxwell's distribution in 2D; see `distribution`."""
+    """Return Maxwell's distribution in 2D; see `distribution`."""
     return distribution(points, settings)
 
 
 def distribution(points: list[Point], settings: dict) -> xr.Dataset:
-    """Speeds in equilibrium, of all snapshots and replicas, against Maxwell's distribution without a fit.
+    """Measure speeds in equilibrium against Maxwell's distribution without a fit.
+
+    All snapshots and replicas count.
 
     Snapshots are the frames after equilibration; how many collisions per particle lie between them is in
-    `collisions_between` (they are independent samples from about 3 on). settings: `bins` of the histogram
-    up to speed `highest` (over root-mean-square), `classes` of equal probability for chi-square.
+    `collisions_between` (they are independent samples from about 3 on). The settings are `bins` of the
+    histogram up to speed `highest` (over root-mean-square), `classes` of equal probability for chi-square.
 
-    Fluctuations of the kurtosis decay like its mean, exp(-rate s): what successive snapshots still share at
+    Fluctuations of the kurtosis decay like its mean, exp(-rate s): the correlation of successive snapshots at
     that spacing is in the kurtosis' error.
 
-    Dimensions point, bin, step (of the cumulative distribution). The temperature is that of the conserved
+    Dimensions point, bin, step (of the cumulative distribution). The temperature follows from the conserved
     energy, so <u^2> = 1 exactly in every snapshot, which takes one degree of freedom from chi-square.
     """
     dimension = points[0].settings["dimension"]
@@ -243,7 +259,10 @@ def distribution(points: list[Point], settings: dict) -> xr.Dataset:
 def _distribution(
     point: Point, dimension: int, grid: Grid, steps: np.ndarray, classes: int
 ) -> dict[str, Any]:
-    """The numbers of one point. Speeds are over the root-mean-square speed: Maxwell's temperature is 1/d."""
+    """Return the numbers of one point.
+
+    Speeds are over the root-mean-square speed: Maxwell's temperature is 1/d.
+    """
     temperature = 1.0 / dimension
     found = read(point)
     speeds = np.concatenate([run.speeds.ravel() for run in found])
@@ -284,7 +303,7 @@ def _distribution(
 
 
 def _given_temperature(point: Point) -> float:
-    """That of the speed that all particles were given, which no draw makes uncertain."""
+    """Return the temperature of the speed given to all particles, which no draw makes uncertain."""
     if "speed" not in point.settings:
         rule = "is required: all particles start with it"
         raise SceneError(f"experiments.{point.experiment}.speed", None, rule)
@@ -292,7 +311,10 @@ def _given_temperature(point: Point) -> float:
 
 
 def _kolmogorov_distance(cumulative: np.ndarray) -> float:
-    """Largest |empirical - theoretical| cumulative probability; `cumulative`: the latter at the samples."""
+    """Compute the largest |empirical - theoretical| cumulative probability.
+
+    `cumulative` is the latter at the samples.
+    """
     count = len(cumulative)
     above = np.arange(1, count + 1) / count - cumulative
     below = cumulative - np.arange(count) / count

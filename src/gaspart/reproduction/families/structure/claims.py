@@ -12,14 +12,20 @@ from gaspart.reproduction.table import Row, Table
 AGREE = 0.005
 """The largest standard error at which an agreement to 1 % means anything."""
 DENSE = 0.25
-"""Packing fraction from which on Percus and Yevick's numbers of spheres differ from the true ones by more
-than the measurement's errors: its compressibility by 4 % and more, its contact value likewise."""
+"""Packing fraction above which Percus and Yevick's numbers of spheres differ from the true ones.
+
+The difference is more than the measurement's errors: 4 % and more of the compressibility, and of the contact
+value.
+"""
 DENSEST = 0.4
-"""From which on so do its curves throughout, beside their noise."""
+"""Packing fraction above which its curves also differ throughout, relative to their noise."""
 
 
 def structure(ds: xr.Dataset) -> list[Claim]:
-    """Compressibility and contact value by independent routes; Verlet and Weis's curves."""
+    """Return the claims on compressibility and contact value, and on Verlet and Weis's curves.
+
+    Both numbers are measured by independent routes.
+    """
     claims = []
     for fluid in Table(ds, "point"):
         claims += [_compressibility(fluid), *_contact(fluid)]
@@ -33,7 +39,7 @@ def _where(fluid: Row) -> str:
 
 
 def _spheres_from(packing_fraction: float, fluid: Row) -> bool:
-    """Whether a fluid is one of spheres, and at least so dense."""
+    """Return True if a fluid is one of spheres, with at least this packing fraction."""
     return bool(fluid.dimension == 3 and fluid.packing_fraction >= packing_fraction)
 
 
@@ -96,7 +102,7 @@ def _curves(fluid: Row) -> list[Claim]:
 
 
 def chemical_potential(ds: xr.Dataset) -> list[Claim]:
-    """Insertion against Gibbs and Duhem where it works, what happens where it does not, and Q."""
+    """Return the claims on insertion against Gibbs and Duhem, its failures, and Q."""
     fluids = Table(ds, "point")
     claims = [_works(fluid) if fluid.works else _fails(fluid, fluids.enough) for fluid in fluids]
     for dimension in (3, 2):

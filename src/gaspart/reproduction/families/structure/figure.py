@@ -16,11 +16,14 @@ from gaspart.reproduction.families.shared.claims import PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 SHIFT = 0.006
-"""Of packing fractions, so that the points of several routes lie beside each other."""
+"""Shift of packing fractions, so that the points of several routes lie next to each other."""
 
 
 def structure(ds: xr.Dataset) -> Figure:
-    """g(r) and S(k) of the densest of each, against theory; the routes to one number over each other."""
+    """Draw g(r) and S(k) of the densest fluids, against theory, and ratios of the routes.
+
+    The routes lead to one number.
+    """
     figure, axes = style.new((2.3,), (2.3,), (2.3,), (2.3,))
     g, s, zero, contact = axes
     for kind, fluids in enumerate(_spheres_and_discs(ds)):
@@ -41,13 +44,13 @@ def structure(ds: xr.Dataset) -> Figure:
 
 
 def _spheres_and_discs(ds: xr.Dataset) -> list[Table]:
-    """Each by ascending packing fraction."""
+    """Return the spheres and the discs, each by ascending packing fraction."""
     fluids = Table(ds, "point")
     return [fluids[fluids.dimension == dimension].sorted_by("packing_fraction") for dimension in (3, 2)]
 
 
 def _curves(g: Axes, s: Axes, fluid: Row, kind: int) -> None:
-    """The measured curves of one fluid, of spheres with those of theory."""
+    """Draw the measured curves of one fluid, for spheres with theory's."""
     eta, distance, wave_number = fluid.packing_fraction, fluid.distance, fluid.wave_number
     beyond, known = distance >= 1.0, np.isfinite(fluid.s.value)
     small: dict[str, Any] = {"kind": kind, "hollow": True, "markersize": 2.0}
@@ -68,7 +71,7 @@ def _curves(g: Axes, s: Axes, fluid: Row, kind: int) -> None:
 
 
 def _ratios(axis: Axes, fluids: Table, kind: int, ratios: dict[str, Estimate]) -> None:
-    """Ratios that are 1."""
+    """Draw ratios that theory predicts to be 1."""
     for n, (name, ratio) in enumerate(ratios.items()):
         eta = fluids.packing_fraction + SHIFT * (kind - 0.5 + 0.4 * n)
         look: dict[str, Any] = {"hollow": n == 1, "color": style.COLOURS[kind]}
@@ -76,7 +79,10 @@ def _ratios(axis: Axes, fluids: Table, kind: int, ratios: dict[str, Estimate]) -
 
 
 def chemical_potential(ds: xr.Dataset) -> Figure:
-    """The chemical potential, its ratio of both routes, the chance of an insertion, and ln Q / N."""
+    """Draw the chemical potential, its ratio, the insertion probability, and ln Q / N.
+
+    The ratio is of both routes.
+    """
     figure, axes = style.new((2.3, 1.6), (2.3,), (2.3,))
     upper, ratio, chance, partition = axes
     style.band(ratio, 0.99, 1.01)
@@ -112,7 +118,7 @@ def _potential(upper: Axes, ratio: Axes, fluids: Table, kind: int) -> None:
 
 
 def _chance(axis: Axes, fluids: Table, kind: int) -> None:
-    """The chance, its theory, and the smallest that could be measured."""
+    """Draw the chance, its theory, and the smallest that could be measured."""
     dimension, colour = fluids.dimension[0], style.COLOURS[kind]
     eta = np.linspace(0.0, fluids.packing_fraction.max(), 200)
     axis.plot(eta, np.exp(-theory.excess_chemical_potential(eta, dimension)), color=colour)

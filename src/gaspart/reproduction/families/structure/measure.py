@@ -1,11 +1,12 @@
-r"""Structure of spheres and discs: g(r), S(k), and three numbers that each have two or three routes.
+r"""Structure of spheres and discs: g(r), S(k), and three numbers by two or three routes each.
 
 - The compressibility: S(k) extrapolated to k = 0, and :math:`1 / (d(\eta Z)/d\eta)` of the measured
   equation of state. 1 / S(k) = 1 - rho c(k), c the direct correlation function: it hardly reaches beyond a
   diameter, so that c(k) is an even power series which converges fast for k of a few inverse diameters. 1 / S
   is fitted by a polynomial in :math:`k^2` of order three, at every wave vector that the container admits.
 - The contact value of the N particles: g(r) extrapolated to the diameter, the collisional virial,
-  :math:`(Z_N - 1) / (2^{d-1} \eta)`, and the rate of collisions over that of independent particles.
+  :math:`(Z_N - 1) / (2^{d-1} \eta)`, and the rate of collisions over the rate of independent particles.
+
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ BLOCKS = 10
 ORDERS = (0, 2, 4, 6)
 """Powers of k of 1 / S(k)."""
 WIDTH = 0.005
-"""Of the bins of g(r) at contact, in diameters."""
+"""Width of the bins of g(r) at contact, in diameters."""
 WINDOW = 0.45
 """Range of the fit of g(r) at contact times the contact value: g falls over it by about the same part."""
 BINS, SHELLS, WAVES = 160, 80, 24
@@ -50,8 +51,13 @@ BINS, SHELLS, WAVES = 160, 80, 24
 
 @dataclass(frozen=True)
 class Averages:
-    """Means over blocks of frames, of all runs of a point: low (B, M), S at the longest waves; near (B, n),
-    g at contact; g (B, BINS) and s (B, shells), the curves; z, rate (B,)."""
+    """Means over blocks of frames, of all runs of a point.
+
+    low : (B, M), S at the longest waves.
+    near : (B, n), g at contact.
+    g, s : (B, BINS) and (B, shells), the curves.
+    z, rate : (B,).
+    """
 
     low: np.ndarray
     near: np.ndarray
@@ -62,15 +68,15 @@ class Averages:
 
 
 def structure(points: list[Point], settings: dict) -> xr.Dataset:
-    """g(r) and S(k) at each point of the experiments `measured`, and the numbers that they agree on.
+    """Measure g(r), S(k) and derived numbers at each point of the experiments `measured`.
 
-    settings: see `FIGURES`. Returns over `point`: dimension, packing_fraction, count; s0, S(0) extrapolated,
-    and state_s0, that of the measured equation of state, `s0_ratio` of the two; contact_g, contact_z and
-    contact_rate, the contact value times (N - 1) / N of N particles, `g_ratio` and `rate_ratio`, the first
-    and the last over contact_z; of spheres `g_gain` and `s_gain`, the root mean square distance of the
-    measured curve from Verlet and Weis's over that from Percus and Yevick's; each with _error and _freedom.
-    g over `bin` at `distance`, in diameters, s over `shell` at `wave_number` times the diameter, each with
-    _error.
+    The settings are in `FIGURES`. Returns over `point`: dimension, packing_fraction, count; s0, S(0)
+    extrapolated, and state_s0, by the measured equation of state, `s0_ratio` of the two; contact_g, contact_z
+    and contact_rate, the contact value times (N - 1) / N of N particles, `g_ratio` and `rate_ratio`, the
+    first and the last over contact_z; of spheres `g_gain` and `s_gain`, the root mean square distance of the
+    measured curve from Verlet and Weis's over the distance from Percus and Yevick's; each with _error and
+    _freedom. g over `bin` at `distance`, in diameters, s over `shell` at `wave_number` times the diameter,
+    each with _error.
     """
     measured = [point for point in points if point.experiment in settings["measured"]]
     inner = {"g": ("bin",), "distance": ("bin",), "s": ("shell",), "wave_number": ("shell",)}
@@ -108,8 +114,11 @@ def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict
 
 
 def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Averages:
-    """Those of one run. Lengths are divided by the diameter; curves: wave vectors, their shells, and the
-    furthest distance, of those that are made of about `most` frames."""
+    """Compute the averages of one run, with lengths divided by the diameter.
+
+    `curves` has wave vectors, their shells, and the furthest distance; the curves are made of about `most`
+    frames.
+    """
     parts, series = Blocks(run, BLOCKS), series_of(run)
     sides = np.array(run.scene.container.lengths) / gas.diameter
     blocks = np.split(run.positions[parts.frames] / gas.diameter, BLOCKS)
@@ -137,7 +146,10 @@ def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Av
 
 
 def _numbers(one: Averages, gas: Gas, size: np.ndarray) -> dict[str, Estimate]:
-    """The compressibility, from S at the wave numbers size (M,), and the contact values."""
+    """Compute the compressibility, from S at wave numbers (M,), and the contact values.
+
+    The wave numbers are `size`.
+    """
     unit = 1.0 / (2.0 ** (gas.dimension - 1) * gas.packing_fraction)
     per_rate = _contact_per_rate(gas)
     contact = (one.z.mean() - 1.0) * unit
@@ -167,8 +179,10 @@ def _numbers(one: Averages, gas: Gas, size: np.ndarray) -> dict[str, Estimate]:
 
 
 def _contact_per_rate(gas: Gas) -> float:
-    """Contact value times (N - 1) / N of N particles over their reduced rate of collisions (exact; the
-    reference equation of state cancels)."""
+    """Compute the contact value times (N - 1) / N over the reduced rate of collisions.
+
+    The ratio of N particles is exact; the reference equation of state cancels.
+    """
     eta, dimension, count = gas.packing_fraction, gas.dimension, gas.count
     excess = theory.compressibility_factor(eta, dimension) - 1.0
     excess += theory.finite_size_correction(eta, dimension, count, "canonical")
@@ -178,7 +192,10 @@ def _contact_per_rate(gas: Gas) -> float:
 
 
 def _gain(samples: np.ndarray, better: Law, worse: Law, place: np.ndarray, eta: float) -> Estimate:
-    """The distance of the mean of samples (B, n) from one law over that from another, root mean square."""
+    """Compute the distance of the mean of samples (B, n) from one law, relative to another.
+
+    Distances are root mean squares.
+    """
     laws = [law(place, eta) for law in (better, worse)]
 
     def gain(mean: np.ndarray) -> float:

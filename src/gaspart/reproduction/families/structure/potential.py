@@ -1,4 +1,4 @@
-r"""Chemical potential by insertion, against that of the measured equation of state; the partition function.
+r"""Chemical potential by insertion and by the measured equation of state; the partition function.
 
 Source C writes the partition function as :math:`V^N Q / (h^{dN} N!)\,(2\pi m k_B T)^{dN/2}` (Eqs. 41 to 46).
 All but the configuration integral Q is known. With N particles in place, a further one at a random place
@@ -30,14 +30,16 @@ _POWERS = (0, 1, 2)  # of eta, by which the measured chemical potential differs 
 
 
 def chemical_potential(points: list[Point], settings: dict) -> xr.Dataset:
-    """mu_excess / (k_B T) at each point of the experiments `measured`, by insertion and by Gibbs and Duhem.
+    """Measure mu_excess / (k_B T) at each point of `measured` by two methods.
 
-    settings: see `FIGURES`. Returns over `point`, by ascending packing fraction in each dimension: dimension,
-    packing_fraction, count; probability, that a random place is free, and expected, that of the measured
-    equation of state, for this number; inserted, the chemical potential of the infinite fluid (the finite
-    size subtracted), integrated, that of the measured equation of state, `ratio` of the two; each with _error
-    and _freedom; reference and its _error, of the reference equation of state; successes, the free places;
-    hit_frames, frames that have any; frames; places, how many random places those tried stand for;
+    They are insertion and Gibbs and Duhem; `measured` are experiments.
+
+    The settings are in `FIGURES`. Returns over `point`, by ascending packing fraction in each dimension:
+    dimension, packing_fraction, count; probability, that a random place is free, and expected, by the
+    measured equation of state, for this number; inserted, the chemical potential of the infinite fluid (the
+    finite size subtracted), integrated, by the measured equation of state, `ratio` of the two; each with
+    _error and _freedom; reference and its _error, of the reference equation of state; successes, the free
+    places; hit_frames, frames that have any; frames; places, how many random places those tried stand for;
     resolution, the probability that one success would have been; works, 1 with `enough` hit frames. Over
     `point` too: ln_q, minus ln Q / N by insertion up to this packing fraction, ln_q_integrated, by the
     equation of state, `ln_q_ratio` of the two (NaN where insertion does not work).
@@ -88,14 +90,14 @@ def _row(point: Point, state: MeasuredState, settings: dict) -> dict[str, Any]:
 
 
 def _minus_log(chance: Estimate) -> Estimate:
-    """NaN of 0."""
+    """Compute minus the logarithm; NaN for 0."""
     if chance.value == 0.0:
         return Estimate(math.nan, math.nan)
     return Estimate(-math.log(chance.value), chance.error / chance.value, chance.freedom)
 
 
 def _insertions(run: Run, diameter: float, settings: dict, seed: tuple[int, ...]) -> Insertions:
-    """Those in evenly spaced frames of a run."""
+    """Return insertions in evenly spaced frames of a run."""
     positions = run.positions[1:]
     stride = -(-len(positions) // settings["frames"])
     lengths = run.scene.container.lengths
@@ -103,14 +105,17 @@ def _insertions(run: Run, diameter: float, settings: dict, seed: tuple[int, ...]
 
 
 def _chance(found: Insertions) -> Estimate:
-    """The mean over frames; without a success the error is that of one."""
+    """Average over frames; without a success the error is the resolution."""
     if not found.successes.any():
         return Estimate(0.0, found.resolution)
     return correlated_mean(found.probability).estimate
 
 
 def _add_partition(rows: list[dict[str, Any]], state: MeasuredState) -> None:
-    """Add minus ln Q / N, by insertion and by the equation of state, to the rows of one dimension."""
+    """Add minus ln Q / N, by insertion and by the equation of state, to the rows.
+
+    The rows are of one dimension.
+    """
     eta = np.array([row["packing_fraction"] for row in rows])
     found = ln_q(eta, Estimate.stack([row["inserted"] for row in rows]), state.dimension)
     for row, inserted in zip(rows, found, strict=True):
@@ -119,7 +124,7 @@ def _add_partition(rows: list[dict[str, Any]], state: MeasuredState) -> None:
 
 
 def ln_q(eta: np.ndarray, potential: Estimate, dimension: int) -> Estimate:
-    """(n,) minus ln Q / N at packing fractions eta (n,), from the excess chemical potentials there.
+    """Compute minus ln Q / N at packing fractions eta (n,) from excess chemical potentials.
 
     They are joined to a curve, the reference times a polynomial in eta, whose integral over eta is divided by
     eta. The degrees of freedom of the errors are the fewest of the coefficients'.

@@ -26,45 +26,50 @@ _NODES = 40  # of integrals, whose integrands are polynomials but for the refere
 
 @dataclass(frozen=True)
 class MeasuredState:
-    """The equation of state of one dimension, by a fit to measured Z / Z_ref - 1."""
+    """Equation of state of one dimension, by a fit to measured Z / Z_ref - 1."""
 
     dimension: int
     fit: Fit
 
     def _estimate(self, reference: float, factors: list[float]) -> Estimate:
-        """A quantity of the reference and what each coefficient adds to it; the degrees of freedom of the
-        error are the fewest of the coefficients'."""
+        """Return a quantity of the reference with the additions of each coefficient.
+
+        The degrees of freedom of the error are the fewest of the coefficients'.
+        """
         parts = np.array(factors)
         error = np.sqrt(parts @ self.fit.covariance @ parts)
         return Estimate(reference + parts @ self.fit.values, error, self.fit.freedoms.min())
 
     def inverse_compressibility(self, eta: float) -> Estimate:
-        """d(eta Z) / d eta."""
+        """Compute d(eta Z) / d eta."""
         z = float(theory.compressibility_factor(eta, self.dimension))
         slope = 1.0 / float(theory.reduced_compressibility(eta, self.dimension))
         return self._estimate(slope, [eta**n * (slope + n * z) for n in POWERS])
 
     def _integral(self, eta: float, power: int) -> float:
-        """That of Z_ref eta'^(power - 1) from 0 to eta."""
+        """Integrate Z_ref eta'^(power - 1) from 0 to eta."""
         nodes, weights = np.polynomial.legendre.leggauss(_NODES)
         inner = 0.5 * eta * (nodes + 1.0)
         z = theory.compressibility_factor(inner, self.dimension)
         return float(0.5 * eta * weights @ (z * inner ** (power - 1)))
 
     def free_energy(self, eta: float) -> Estimate:
-        """F_excess / (N k_B T), the integral of (Z - 1) / eta."""
+        """Compute f_excess / (N k_B T), the integral of (Z - 1) / eta."""
         reference = float(theory.excess_free_energy(eta, self.dimension))
         return self._estimate(reference, [self._integral(eta, n) for n in POWERS])
 
     def chemical_potential(self, eta: float) -> Estimate:
-        """mu_excess / (k_B T) by Gibbs and Duhem, Z - 1 and the integral of (Z - 1) / eta."""
+        """Compute mu_excess / (k_B T) by Gibbs and Duhem.
+
+        It is Z - 1 plus the integral of (Z - 1) / eta.
+        """
         z = float(theory.compressibility_factor(eta, self.dimension))
         reference = float(theory.excess_chemical_potential(eta, self.dimension))
         return self._estimate(reference, [z * eta**n + self._integral(eta, n) for n in POWERS])
 
 
 def measured_states(points: list[Point]) -> dict[int, MeasuredState]:
-    """The equation of state of each dimension, of all its points in the range of the fluid's reference."""
+    """Return the equation of state of each dimension, from all its points in the fluid's range."""
     highest = theory.HIGHEST_PACKING_FRACTION
     known = [point for point in points if point.scene.packing_fraction <= highest[point.scene.dimension]]
     gases = Table(table("point", known, _excess), "point")
@@ -75,7 +80,7 @@ def measured_states(points: list[Point]) -> dict[int, MeasuredState]:
 
 
 def _excess(point: Point) -> dict[str, Any]:
-    """Z / Z_ref - 1 of a point, as of the infinite system."""
+    """Compute Z / Z_ref - 1 of a point, for the infinite system."""
     gas = plain_gas(point.scene)
     state = gas.packing_fraction, gas.dimension
     shift = float(theory.finite_size_correction(*state, gas.count, ensemble="canonical"))

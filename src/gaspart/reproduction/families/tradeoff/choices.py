@@ -1,4 +1,4 @@
-"""A choice of engine and settings: what makes its error, and what a required accuracy costs with it."""
+"""Choice of engine and settings: the parts of its error, and its cost for a required accuracy."""
 
 from __future__ import annotations
 
@@ -16,15 +16,19 @@ PARTS = ("model", "discretisation", "noise", "equilibration", "finite_size")
 
 @dataclass(frozen=True)
 class Choice:
-    """One engine with its settings, for one observable of one gas.
+    """Engine with its settings, for one observable of one gas.
 
-    model: relative error of the equation that it solves; discretisation: that of time steps and cells, both
-    bounds without sign; finite_size: what theory's correction for the number of particles leaves, which every
-    engine has in common and no cost removes. Of processor time, in s: unit, for a relative variance of 1, in
-    proportion to its inverse; least, of the shortest run that averages over time;
-    equilibration, before anything is measured; decay, in which the slowest trace of the initial state falls
-    to 1/e (0: it is itself what is measured). trace: how much that trace changes the
-    observable at first, relatively, at most. uncertainty: relative, of all these times, from the timings.
+    model : relative error of the equation that it solves.
+    discretisation : relative error of time steps and cells; both are bounds without sign.
+    finite_size : error left by theory's correction for the number of particles, which every engine has in
+        common and no cost removes.
+    unit : CPU time in s for a relative variance of 1, in proportion to its inverse.
+    least : CPU time of the shortest run that averages over time.
+    equilibration : CPU time before anything is measured.
+    decay : CPU time in which the slowest trace of the initial state falls to 1/e (0: it is itself what is
+        measured).
+    trace : maximum relative change of the observable by that trace at first.
+    uncertainty : relative uncertainty of all these times, from the timings.
     """
 
     engine: str
@@ -44,19 +48,23 @@ class Choice:
         return self.model + self.discretisation
 
     def measured(self, accuracy: float) -> float:
-        """Processor time in s of the measurement alone, for an accuracy that 95 % of all runs have; infinite
-        if the systematic error leaves no room for noise."""
+        """Compute the CPU time in s of the measurement alone, for an accuracy that 95 % of all runs have.
+
+        It is infinite if the systematic error leaves nothing for noise.
+        """
         return required(self.unit, accuracy, self.bias, self.least)
 
     def cost(self, accuracy: float) -> float:
-        """Processor time in s, with the equilibration."""
+        """Compute the CPU time in s, with the equilibration."""
         return self.measured(accuracy) + self.equilibration
 
     def parts(self, accuracy: float) -> dict[str, float]:
-        """The relative error by `PARTS` of a run for an accuracy, of an endless run if it is out of reach.
+        """Compute the relative error by `PARTS` of a run for an accuracy.
 
-        The mean of the initial state's trace over the measurement is the part of the decay in that, times
-        what the equilibration has left of it.
+        The run is endless if the accuracy is out of reach.
+
+        The mean of the initial state's trace over the measurement is the part of the decay in that, times the
+        remainder after equilibration.
         """
         length = self.measured(accuracy)
         left = 0.0
@@ -67,14 +75,15 @@ class Choice:
 
 
 def required(variance: float, accuracy: float, bias: float, least: float = 0.0) -> float:
-    """Return how much is measured for an accuracy that 95 % of all runs have, `least` at least.
+    """Return the length of the measurement for an accuracy that 95 % of all runs have.
 
-    The unit is that in which a measurement has this relative variance; inf if the bias leaves no room.
+    It is at least `least`. The unit is that in which a measurement has this relative variance; inf if the
+    bias leaves no noise.
     """
     left = (accuracy - bias) / QUANTILE
     return max(variance / left**2, least) if left > 0.0 else math.inf
 
 
 def cheapest(choices: Sequence[Choice], accuracy: float) -> Choice:
-    """The choice that costs least, or the least biased one where none reaches the accuracy."""
+    """Return the choice that costs least, or the least biased one where none reaches the accuracy."""
     return min(choices, key=lambda one: (one.cost(accuracy), one.bias))

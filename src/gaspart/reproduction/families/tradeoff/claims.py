@@ -22,14 +22,17 @@ FLUX = "flux of pairs through chords crossed within a step (docs/time-stepped.md
 
 
 def speed_accuracy(ds: xr.Dataset) -> list[Claim]:
-    """Orders of the errors, the contacts missed in a dilute gas, the frontier, and the steady state."""
+    """Return the claims on orders of errors, missed contacts, the frontier, the steady state.
+
+    The contacts are missed in a dilute gas.
+    """
     errors = Table(ds, "row")
     frontier = [claim for gas in Table(ds, "gas") for claim in _frontier(_of(gas, "Z"))]
     return [*_orders(errors), *_missed(errors), *frontier, *map(_steady, Table(ds, "steady"))]
 
 
 def _of(row: Row, observable: str) -> Row:
-    """What a row has of one observable."""
+    """Return a row restricted to one observable."""
     return Row(row.dataset.sel(observable=observable))
 
 
@@ -69,7 +72,7 @@ def _orders(errors: Table) -> list[Claim]:
 
 
 def _missed(errors: Table) -> list[Claim]:
-    """The rate of a dilute gas, at the longest step that loses 2 % at most."""
+    """Return the claims on the rate of a dilute gas, at the longest step that loses at most 2 %."""
     claims = []
     for row in errors[errors.packing_fraction <= 0.01]:
         setting = row.setting
@@ -93,9 +96,10 @@ def _missed(errors: Table) -> list[Claim]:
 
 
 def _frontier(z: Row) -> list[Claim]:
-    """In a dense gas, accuracy requires more steps, so that events are cheaper where 0.1 % is wanted.
+    """Return the claims that events are cheaper in a dense gas where 0.1 % is required.
 
-    Elsewhere the cheaper engine depends on the machine: see `gaspart advise`. z: one gas, its Z.
+    Accuracy then requires more steps. Elsewhere the cheaper engine depends on the machine: see `gaspart
+    advise`. `z` is Z of one gas.
     """
     if z.gas_packing_fraction < 0.3 or z.gas_dimension == 2:
         return []
@@ -134,8 +138,10 @@ def _frontier(z: Row) -> list[Claim]:
 
 
 def _steady(at: Row) -> Claim:
-    """Long runs have the errors that the short, paired ones measure. One pass leaves pairs that overlap, and
-    there are more of them in the steady state."""
+    """Return the claim that long runs have the errors that the short, paired ones measure.
+
+    One pass leaves pairs that overlap, and there are more of them in the steady state.
+    """
     setting = at.steady_setting
     known = setting.startswith("4 passes")
     return Claim(
@@ -151,8 +157,11 @@ def _steady(at: Row) -> Claim:
 
 
 def time_to_accuracy(ds: xr.Dataset) -> list[Claim]:
-    """The model predicts the cost of two engines, and chooses the setting measured to be the best; and what
-    makes the map of the cheapest engine."""
+    """Return the claims on predicted costs, chosen settings, and the map.
+
+    The model predicts the cost of two engines, and chooses the setting measured to be the best; the map is of
+    the cheapest engine.
+    """
     claims = of_map(ds)
     for engine in Table(ds, "engine"):
         ratio = np.log(engine.model / engine.measured)  # gas, observable, count, accuracy

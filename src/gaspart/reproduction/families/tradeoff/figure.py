@@ -14,11 +14,14 @@ from gaspart.reproduction.table import Row, Table
 SHOWN = {"4 passes": "-", "1 pass, no rewinding": "--"}
 """Line of each setting that is drawn: the default one, and the source's. The claims have the others."""
 MARKERS = {"boltzmann": "s", "enskog": "D"}
-"""Of the models of the DSMC engine."""
+"""Markers of the models of the DSMC engine."""
 
 
 def speed_accuracy(ds: xr.Dataset) -> Figure:
-    """Errors of the collision rate, Z and D of spheres against the time step; time against the error of Z."""
+    """Draw errors of spheres against the time step, and time against the error of Z.
+
+    The errors are of the collision rate, Z and D.
+    """
     figure, axes = style.new((2.3,), (2.3,), (2.3,), (2.3,))
     errors, models = Table(ds, "row"), Table(ds, "dsmc")
     models = models[models.dsmc_dimension == 3]
@@ -55,13 +58,15 @@ def speed_accuracy(ds: xr.Dataset) -> Figure:
 
 
 def _of(row: Row, observable: str) -> Row:
-    """What a row has of one observable."""
+    """Return a row restricted to one observable."""
     return Row(row.dataset.sel(observable=observable))
 
 
 def _errors(axis: Axes, at: Row, kind: int, line: str) -> None:
-    """Sizes of errors of one observable, filled if more than two standard errors, else hollow at that bound;
-    and the fitted order."""
+    """Draw sizes of errors of one observable, and the fitted order.
+
+    They are filled if more than two standard errors, else hollow at that bound.
+    """
     size, error, step = 100.0 * np.abs(at.bias.value), 100.0 * at.bias.error, at.time_step
     seen = size > 2.0 * error
     style.points(axis, step[seen], size[seen], error[seen], kind=kind, marker="o")
@@ -74,8 +79,10 @@ def _errors(axis: Axes, at: Row, kind: int, line: str) -> None:
 
 
 def _costs(axis: Axes, z: Row, kind: int) -> None:
-    """Time per collision against the size of the error of Z, or its bound; the event-driven engine as a
-    line."""
+    """Draw time per collision against the size of the error of Z, or its bound.
+
+    The event-driven engine is a line.
+    """
     error = 100.0 * np.maximum(np.abs(z.bias.value), 2.0 * z.bias.error)
     timed = np.isfinite(z.seconds.value) & np.isfinite(error)
     look: dict = {"kind": kind, "marker": "o", "linestyle": "-", "linewidth": 0.5}
@@ -92,8 +99,10 @@ def _models(axis: Axes, models: Table, kind: int) -> None:
 
 
 def time_to_accuracy(ds: xr.Dataset) -> Figure:
-    """The cheapest engine and its cost against density and accuracy, for each observable; and what makes the
-    errors of each engine."""
+    """Draw the cheapest engine and its cost, and the parts of the errors of each engine.
+
+    The cost is against density and accuracy, for each observable.
+    """
     figure, axes = style.new(*((2.0,),) * len(panels.TITLES), (2.4,))
     for axis, letter, (quantity, title) in zip(axes, "abcde", panels.TITLES.items(), strict=False):
         panels.map_of(axis, ds.sel(quantity=quantity))

@@ -1,4 +1,4 @@
-"""Choices for two gases out of equilibrium: the heat flux between plates and the relaxation of speeds.
+"""Choices for two gases out of equilibrium: heat flux between plates, relaxation of speeds.
 
 Neither has a theory that is exact in a dense gas, so that each engine is run, and its difference from the
 event-driven one, with two standard errors, bounds its error; theory's own bound is taken where it is lower,
@@ -36,13 +36,17 @@ SETTLED = 5.0
 
 @dataclass(frozen=True)
 class Flow:
-    """What one engine has measured.
+    """Measurement by one engine.
 
-    engine: as in `choices.ENGINES`; time_step: 0 without; count: of particles; value: of the flux, or the
-    relaxation time over the mean free time; variance: relative, times the time of simulation; contacts: per
-    time; decay: time in which the slowest trace of the initial state falls to 1/e, 0 if that is what is
-    measured; shortest: time that is simulated at least; bounds: theory's, on the errors of model and
-    discretisation.
+    engine : one of `choices.ENGINES`.
+    time_step : time step, 0 without.
+    count : number of particles.
+    value : value of the flux, or the relaxation time over the mean free time.
+    variance : relative variance, times the time of simulation.
+    contacts : contacts per time.
+    decay : time in which the slowest trace of the initial state falls to 1/e, 0 if that is what is measured.
+    shortest : minimum time that is simulated.
+    bounds : theory's, on the errors of model and discretisation.
     """
 
     observable: str
@@ -59,10 +63,10 @@ class Flow:
 
 
 def flux_of(point: Point, blocks: int) -> Flow:
-    """The heat flux between plates, averaged over both and over `blocks` stretches of the run.
+    """Measure the heat flux between plates, averaged over both and over `blocks` blocks of the run.
 
-    The slowest wave between them is that of the temperature, whose decay time is (gap / pi)^2 n c_p / kappa,
-    c_p = 5/2 k_B, kappa Enskog's at the mean temperature.
+    The slowest wave between them is the wave of the temperature, whose decay time is (gap / pi)^2 n c_p /
+    kappa, c_p = 5/2 k_B, kappa Enskog's at the mean temperature.
     """
     scene, gap = point.scene, Gap.of(point.scene)
     flux = averages(point, gap, blocks, 1).flux()
@@ -88,7 +92,7 @@ def flux_of(point: Point, blocks: int) -> Flow:
 
 
 def relaxation_of(point: Point) -> Flow:
-    """The time in which speeds, equal at first, become Maxwell's, over the mean free time.
+    """Return the time in which speeds, equal at first, become Maxwell's, over the mean free time.
 
     It is the integral of the kurtosis' part that is still to come, (K_end - K) / (K_end - 1), up to
     `FREE_TIMES`, of the mean over replicas. In a uniform gas steps and cells of the DSMC engine change
@@ -122,22 +126,22 @@ def relaxation_of(point: Point) -> Flow:
 
 
 def fraction_of(point: Point) -> float:
-    """The packing fraction, to two digits."""
+    """Compute the packing fraction, to two digits."""
     return float(f"{point.scene.packing_fraction:.2g}")
 
 
 def engine_of(point: Point) -> str:
-    """The engine of a point, as in `choices.ENGINES`."""
+    """Return the engine of a point, one of `choices.ENGINES`."""
     return point.engine.name if point.engine.equation == "exact" else point.engine.equation
 
 
 def _step(point: Point) -> float:
-    """The length of a step, 0 of the event-driven engine."""
+    """Compute the length of a step, 0 of the event-driven engine."""
     return point.engine.resolved(point.scene, point.schedule.sample_interval).quantum or 0.0
 
 
 def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
-    """Theory's bounds on the errors of model and discretisation; infinite where there is none.
+    """Return theory's bounds on the errors of model and discretisation; infinite without one.
 
     Time steps lose 2/3 (v_th dt / sigma)^2 of the contacts of a dilute gas, and no more of what these pass
     on; of a dense gas no theory states their error. Cells and steps of the DSMC engine change a transport
@@ -159,13 +163,17 @@ def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
     step = _step(point) * found.speed / math.sqrt(8.0 / math.pi) * math.sqrt(2.0)
     grown = cell_factor(coefficient, width / found.path) * step_factor(coefficient, step / found.path)
     bound = boltzmann_error if name == "boltzmann" else enskog_error
-    model = bound(Asked("D", 1.0, even_conditions(scene, 1.0), transported=True))
+    even = even_conditions(scene, 1.0)
+    model = bound(Asked("D", 1.0, even, transported=True, memory=even.memory))
     return model, float(grown) - 1.0
 
 
 def choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimate]) -> Iterator[Choice]:
-    """Those of the engines that have measured one observable of one gas. count: of particles that costs are
-    for; speeds: processor time per time of simulation by engine, of the runs' particles."""
+    """Yield the choices for the engines that have measured one observable of one gas.
+
+    count : number of particles that costs are for.
+    speeds : CPU time per time of simulation by engine, of the runs' particles.
+    """
     event = next(one for one in flows if one.engine == "event")
     # One equation governs what fluctuates, so that all runs together tell its variance.
     pooled = float(np.mean([one.variance for one in flows]))
@@ -190,7 +198,10 @@ def choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimate]) -
 
 
 def errors_of(one: Flow, event: Flow) -> tuple[float, float]:
-    """Of model and discretisation, bounds: theory's bounds, or less if the runs differ by less in all."""
+    """Return bounds on the errors of model and discretisation.
+
+    They are theory's bounds, or less if the runs differ by less in all.
+    """
     if one.engine == "event":
         return 0.0, 0.0
     ratio = one.value / event.value

@@ -1,4 +1,4 @@
-"""The cheapest time-stepped setting for each accuracy of a collision, beside the event-driven engine."""
+"""Cheapest time-stepped setting for each accuracy of a collision, and the event-driven engine."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ from gaspart.reproduction.families.tradeoff.uniform import OBSERVABLES
 from gaspart.reproduction.table import Row, Table
 
 SEEN = 3.5
-"""An error counts as seen if it is so many standard errors from 0."""
+"""Number of standard errors from 0 above which an error counts as seen."""
 
 
 def frontier(dataset: xr.Dataset) -> xr.Dataset:
-    """The cheapest time-stepped setting whose error, with two standard errors of it, is within each accuracy;
-    and with what is known to build up over many steps.
+    """Find the cheapest time-stepped setting whose error is within each accuracy.
+
+    Two standard errors, and the error that is known to build up over many steps, are added.
 
     Over ``gas``: ``gas_dimension``, ``gas_packing_fraction``. Over (``gas``, ``observable``, ``accuracy``):
     ``best_seconds`` per exact collision (NaN if none is known to reach it), ``best_ratio`` of it to the
@@ -54,7 +55,10 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _built_up(steady: Table, row: Row) -> float:
-    """The largest error of Z of a gas and setting that builds up over many steps, 0 if none is seen."""
+    """Return the largest error of Z that builds up over many steps, 0 if no such error is seen.
+
+    It is of a gas and a setting.
+    """
     if not steady:
         return 0.0
     own = steady[

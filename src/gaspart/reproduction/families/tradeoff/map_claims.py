@@ -1,4 +1,4 @@
-"""Claims about what makes the map of the cheapest engine: what collisions cost, and what engines err by."""
+"""Claims about the map of the cheapest engine: costs of collisions, and errors of engines."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ SOLVERS = {"step": "time steps", "boltzmann": "the Boltzmann model", "enskog": "
 
 
 def of_map(ds: xr.Dataset) -> list[Claim]:
-    """Of dilute and dense gases, of both flows, and of the cells of the Enskog model."""
+    """Return the claims on dilute and dense gases, both flows, and cells of the Enskog model."""
     return [*_dilute(ds), *_dense(ds), *_flows(ds), *_relaxation(ds), *_cells(ds)]
 
 
 def _by_engine(at: Row, name: str) -> dict[str, Estimate]:
-    """A column over the engines."""
+    """Compute a column over the engines."""
     return dict(zip(at.solver.tolist(), at[name], strict=True))
 
 
 def _dilute(ds: xr.Dataset) -> list[Claim]:
-    """In a dilute gas DSMC is much cheaper, the more so the more dilute."""
+    """Return the claims that DSMC is much cheaper in a dilute gas, the more so the more dilute."""
     claims = []
     gases = Table(ds.sel(quantity="collision_rate"), "fraction")
     for at in gases[gases.fraction <= THIN]:
@@ -70,7 +70,10 @@ def _dilute(ds: xr.Dataset) -> list[Claim]:
 
 
 def _dense(ds: xr.Dataset) -> list[Claim]:
-    """In a dense gas the Enskog model costs more than events, and has another D."""
+    """Return the claims that the Enskog model costs more than events in a dense gas.
+
+    It has another D.
+    """
     claims, gases = [], Table(ds, "fraction")
     for at in gases[gases.fraction >= THICK]:
         where, seconds = f"packing fraction {at.fraction:g}", _by_engine(at, "each")
@@ -102,7 +105,7 @@ def _dense(ds: xr.Dataset) -> list[Claim]:
 
 
 def _flows(ds: xr.Dataset) -> list[Claim]:
-    """Fluxes and relaxation are within the bounds by which `gaspart advise` chooses."""
+    """Return the claims that fluxes and relaxation are within the bounds of `gaspart advise`."""
     claims = []
     for quantity in ds.flow_quantity.values:
         for at in Table(ds.sel(flow_quantity=quantity), "fraction"):
@@ -124,7 +127,10 @@ def _flows(ds: xr.Dataset) -> list[Claim]:
 
 
 def _relaxation(ds: xr.Dataset) -> list[Claim]:
-    """Speeds relax by both models as by one, on clocks that differ by the contact value."""
+    """Return the claims that speeds relax equally in both models, by clocks.
+
+    The clocks differ by the contact value.
+    """
     claims = []
     for at in Table(ds.sel(flow_quantity="relaxation"), "fraction"):
         flow, eta = _by_engine(at, "flow"), at.fraction
@@ -148,7 +154,10 @@ def _relaxation(ds: xr.Dataset) -> list[Claim]:
 
 
 def _cells(ds: xr.Dataset) -> list[Claim]:
-    """The Enskog model loses no more collisions to its cells than `gaspart advise` allows for."""
+    """Return the claims on collisions that the Enskog model loses to its cells.
+
+    It loses no more than `gaspart advise` allows for.
+    """
     gases = Table(ds, "fraction")
     measured = np.isfinite(gases.cells.value) & (gases.cells_bound > 0.0)  # a single cell loses nothing
     known = gases[measured & (gases.fraction <= KNOWN)]

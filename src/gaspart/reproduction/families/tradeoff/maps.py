@@ -1,4 +1,4 @@
-"""The cheapest engine for each observable, density and accuracy, with what makes the error of every one."""
+"""Cheapest engine for each observable, density and accuracy, with the parts of every error."""
 
 from __future__ import annotations
 
@@ -19,24 +19,23 @@ QUANTITIES = (*uniform.OBSERVABLES, *flows.FLOWS)
 
 
 def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: list[dict]) -> xr.Dataset:
-    """Costs of all engines in spheres of every density that they were timed at.
+    """Compute the costs of all engines in spheres of every timed density.
 
-    points: of the experiments `cells`, `plates`, `plates_cost` and `relaxation` in settings, beside others;
-    timed, compared: see `uniform`. settings also: ``counts`` of particles, of which the first is the map's,
-    ``accuracies``, ``blocks`` of each run between plates.
+    The points are of the experiments `cells`, `plates`, `plates_cost` and `relaxation` in settings, and
+    others; `timed` and `compared` are explained in `uniform`. The settings are also ``counts`` of particles,
+    of which the first is the map's, ``accuracies``, ``blocks`` of each run between plates.
 
     Over (``quantity``, ``fraction``, ``accuracy``, ``solver``): ``cost`` in s of the cheapest setting, with
     its uncertainty from the timings, infinite if none is known to be as accurate and NaN where the engine was
     not run. Over these and ``part``: ``error``, relative, of `PARTS`: ``model`` and ``discretisation`` bounds
-    from theory, or from runs where theory has none, ``finite_size`` what theory's correction leaves,
+    from theory, or from runs where theory has none, ``finite_size`` the remainder after theory's correction,
     ``equilibration`` a bound on the trace of the initial state, ``noise`` 1.96 standard errors.
 
     Over (``flow_quantity``, ``fraction``, ``solver``): ``flow``, the heat flux, or the relaxation time over
-    the mean free time, with its error, and ``flow_bound`` of theory on its relative difference from that of
-    hard spheres. Over (``fraction``, ``solver``): ``each``, processor time in s per contact of the exact gas,
-    with the cheapest step, and its error. Over ``fraction``: ``cells``, the collision rate of the Enskog
-    model in its default cells over that of its equation, with its error and ``cells_bound`` on the
-    difference.
+    the mean free time, with its error, and ``flow_bound`` of theory on its relative difference from hard
+    spheres. Over (``fraction``, ``solver``): ``each``, CPU time in s per contact of the exact gas, with the
+    cheapest step, and its error. Over ``fraction``: ``cells``, the collision rate of the Enskog model in its
+    default cells over the rate of its equation, with its error and ``cells_bound`` on the difference.
     """
     fractions = sorted({one["gas"][1] for one in timed if one["gas"][0] == 3})
     cells = uniform.cells_by_fraction(points, settings["cells"])
@@ -74,8 +73,10 @@ def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: l
 
 
 def _enter(costs: np.ndarray, parts: np.ndarray, made: list[Choice], accuracies: Sequence[float]) -> None:
-    """Put the cheapest choice of each engine into the arrays of one quantity and density: costs (A, E, 2)
-    with errors, parts (A, E, `PARTS`)."""
+    """Enter the cheapest choice of each engine into the arrays of one quantity and density.
+
+    The arrays are costs (A, E, 2) with errors, and parts (A, E, `PARTS`).
+    """
     for e, engine in enumerate(ENGINES):
         of = [one for one in made if one.engine == engine]
         for a, accuracy in enumerate(accuracies if of else ()):
@@ -85,7 +86,7 @@ def _enter(costs: np.ndarray, parts: np.ndarray, made: list[Choice], accuracies:
 
 
 def _flows(points: Sequence[Point], settings: dict) -> list[flows.Flow]:
-    """All flows that were measured."""
+    """Return all flows that were measured."""
     plates = [point for point in points if point.experiment in settings["plates"]]
     relaxing = [point for point in points if point.experiment in settings["relaxation"]]
     return [
@@ -95,7 +96,7 @@ def _flows(points: Sequence[Point], settings: dict) -> list[flows.Flow]:
 
 
 def _speeds_between(points: Sequence[Point], experiments: Sequence[str]) -> dict[float, dict[str, Estimate]]:
-    """Processor time per time of simulation between plates, by packing fraction and engine."""
+    """Compute the CPU time per time of simulation between plates, by packing fraction and engine."""
     found: dict[float, dict[str, Estimate]] = {}
     for point in points:
         if point.experiment in experiments:
@@ -105,8 +106,10 @@ def _speeds_between(points: Sequence[Point], experiments: Sequence[str]) -> dict
 
 
 def _speeds_of(timed: list[dict], of: list[flows.Flow]) -> dict[str, Estimate]:
-    """The same of some flows in a uniform gas, as if their particles were those of the timings, with the step
-    nearest to theirs."""
+    """Return the speeds of flows in a uniform gas, from the timings of other particles.
+
+    The step is the one nearest to theirs.
+    """
     if not of:
         return {}
     same = {_solver(one["setting"]): one for one in timed if one["gas"] == (3, of[0].packing_fraction)}
@@ -122,13 +125,15 @@ def _speeds_of(timed: list[dict], of: list[flows.Flow]) -> dict[str, Estimate]:
 
 
 def _solver(setting: str) -> str:
-    """The engine of a timed setting; other settings of the time-stepped engine than the default keep their
-    names."""
+    """Return the engine of a timed setting.
+
+    Other settings of the time-stepped engine than the default keep their names.
+    """
     return "step" if PRECISIONS.get(setting) == "float64" else setting
 
 
 def _compared(measured: list[flows.Flow], fractions: list[float]) -> xr.Dataset:
-    """What each engine has measured, and theory's bounds on its error."""
+    """Return the measurements of each engine, and theory's bounds on its error."""
     names = ("flow", "flow_error", "flow_freedom", "flow_bound")
     found = np.full((len(names), len(flows.FLOWS), len(fractions), len(ENGINES)), np.nan)
     for one in measured:
@@ -141,7 +146,7 @@ def _compared(measured: list[flows.Flow], fractions: list[float]) -> xr.Dataset:
 
 
 def _speeds(timed: list[dict], cells: dict[float, uniform.Cells], fractions: list[float]) -> xr.Dataset:
-    """Processor time per contact, and the collision rate in cells."""
+    """Return the CPU time per contact, and the collision rate in cells."""
     each = np.full((2, len(fractions), len(ENGINES)), np.nan)
     found = [cells.get(eta) for eta in fractions]
     rates = [one.rate if one else Estimate(np.nan, np.nan, np.nan) for one in found]

@@ -1,8 +1,8 @@
-"""The cost of accuracy: errors and costs of the time-stepped engine relative to the event-driven one.
+"""Cost of accuracy: errors and costs of the time-stepped engine relative to the event-driven one.
 
-Errors are those of the job `compare` and costs those of the job `measure_cost`, of the same gases and
-settings. The diffusion coefficient is that of Enskog's theory, kT / m over the rate at which a particle
-forgets its velocity, taken from the memory after about one collision per particle.
+Errors are from the job `compare` and costs from the job `measure_cost`, of the same gases and settings. The
+diffusion coefficient follows Enskog's theory, kT / m over the rate at which a particle forgets its velocity,
+taken from the memory after about one collision per particle.
 """
 
 from __future__ import annotations
@@ -39,21 +39,21 @@ changes its sign."""
 
 
 def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
-    """Errors and costs over the time steps of each gas and setting.
+    """Measure errors and costs over the time steps of each gas and setting.
 
-    points: `compare` jobs; `measure_cost` jobs of both engines; and runs of the time-stepped engine long
-    enough to see its errors in its steady state. settings: ``order_up_to``, the largest error that the fits
-    of the order take; ``accuracies`` of the frontier.
+    The points are `compare` jobs; `measure_cost` jobs of both engines; and runs of the time-stepped engine
+    long enough to see its errors in its steady state. The settings are ``order_up_to``, the largest error
+    that the fits of the order take; ``accuracies`` of the frontier.
 
     Over (``row``, ``step``), NaN beyond a row's own: ``time_step``; ``bias`` and ``bias_error`` (also over
-    ``observable``), relative to the exact run, an error being that of the snapshots and at least that of one
-    contact; ``missed``, ``made_up`` as parts of all contacts; ``energy_drift``, ``deepest_overlap`` (worst);
-    ``seconds`` (processor time per exact collision, with ``seconds_error``) and ``pair_tests`` (per exact
+    ``observable``), relative to the exact run, an error being the snapshots' and at least one contact's;
+    ``missed``, ``made_up`` as parts of all contacts; ``energy_drift``, ``deepest_overlap`` (worst);
+    ``seconds`` (CPU time per exact collision, with ``seconds_error``) and ``pair_tests`` (per exact
     collision), NaN where not timed. Over ``row``: ``dimension``, ``packing_fraction``, ``setting``,
     ``contacts`` (of the exact runs), ``event_seconds`` with its error. Over (``row``, ``observable``):
     ``order`` of the error in the time step, with ``order_error`` (NaN without `FITTED` errors of one sign).
     Over (``gas``, ``observable``, ``accuracy``): see `frontier`. Over ``steady``: gas and setting of long
-    runs, and ``build_up`` with error, the relative error of their Z minus that of the paired runs. Over
+    runs, and ``build_up`` with error, the relative error of their Z minus the error of the paired runs. Over
     ``timed``, all gases in which the event-driven engine was timed: ``timed_dimension``,
     ``timed_packing_fraction``, ``timed_seconds`` (per collision) with its error. Over ``dsmc``, the models of
     the DSMC engine: ``dsmc_model``, ``dsmc_dimension``, ``dsmc_packing_fraction``, ``dsmc_seconds`` per exact
@@ -85,16 +85,18 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
-    """The cost of a required accuracy: by engine in all gases, see `maps`; and in gases that the model was
-    not fitted to, measured and by the model.
+    """Measure the cost of a required accuracy, by engine.
 
-    points: as for `speed_accuracy`, those of gases that are not in the model's table being the experiments
-    ``elsewhere`` in settings; timings of its reference gas, which scale the table's times to this machine.
-    settings: ``counts`` of particles, ``accuracies``, and those of `maps`.
+    It is given in all gases, see `maps`; and in gases that the model was not fitted to, measured and by the
+    model.
 
-    Over (``gas``, ``observable``, ``count``, ``accuracy``, ``engine``): ``measured`` and ``model``, processor
-    time in s of the cheapest setting (see `gaspart.accuracy.plan`), NaN where there is none. Without
-    ``engine``: ``regret``, measured cost of the setting that the model picks over that of the measured best,
+    The points are as for `speed_accuracy`, the points of gases that are not in the model's table being the
+    experiments ``elsewhere`` in settings; timings of its reference gas, which scale the table's times to this
+    machine. The settings are ``counts`` of particles, ``accuracies``, and the settings of `maps`.
+
+    Over (``gas``, ``observable``, ``count``, ``accuracy``, ``engine``): ``measured`` and ``model``, CPU time
+    in s of the cheapest setting (see `gaspart.accuracy.plan`), NaN without one. Without ``engine``:
+    ``regret``, measured cost of the setting that the model picks divided by the cost of the measured best,
     with ``regret_error`` from the timings.
     """
     uniform = (point for point in points if point.experiment not in settings["plates_cost"])
@@ -160,8 +162,11 @@ def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
 
 
 def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float, speeds: dict) -> np.ndarray:
-    """(settings, 4): 0 for the event-driven engine or 1, measured cost, the model's, relative error of the
-    first; inf for a setting that does not reach the accuracy."""
+    """Compute the costs of settings, (settings, 4).
+
+    The columns are 0 for the event-driven engine or 1, measured cost, the model's, relative error of the
+    first; inf for a setting that does not reach the accuracy.
+    """
     dimension, fraction = rows[0]["dimension"], rows[0]["packing_fraction"]
     name = OBSERVABLES[observable]
     noise = table.noise(dimension, fraction, name)
@@ -185,7 +190,10 @@ def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float,
 
 
 def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
-    """The order of each observable's error in the time step, with its error, scaled by the scatter."""
+    """Fit the order of each observable's error in the time step, with its error.
+
+    The error is scaled by the scatter.
+    """
     found = []
     for bias, error in zip(row["bias"], row["bias_error"], strict=True):
         size = np.abs(bias)
@@ -200,8 +208,10 @@ def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
 
 
 def _models(events: list[dict], timed: list[dict], cells: dict[float, Cells]) -> list[tuple[dict, dict]]:
-    """(timing of the event-driven engine, of a model of the DSMC engine) in one gas; of the Enskog model
-    those whose error by cells was measured, of spheres."""
+    """Pair the timings of the event-driven engine and of a model of the DSMC engine in one gas.
+
+    For the Enskog model the error by cells must have been measured, in spheres.
+    """
     return [
         (event, one)
         for event in events
@@ -212,14 +222,16 @@ def _models(events: list[dict], timed: list[dict], cells: dict[float, Cells]) ->
 
 
 def _cells(timed: dict, cells: dict[float, Cells]) -> Cells | None:
-    """What is known of the cells of the Enskog model in the gas of a timing."""
+    """Return the measured cells of the Enskog model in the gas of a timing, or None."""
     dimension, fraction = timed["gas"]
     return cells.get(fraction) if dimension == 3 else None
 
 
 def _model(timings: tuple[dict, dict], cells: dict[float, Cells]) -> dict[str, Any]:
-    """The cost and the error of Z of a model of the DSMC engine, with the cheapest step, on which Z does not
-    depend."""
+    """Return the cost and the error of Z of a model of the DSMC engine.
+
+    The step is the cheapest one, on which Z does not depend.
+    """
     event, one = timings
     (dimension, fraction), model, known = one["gas"], one["setting"], _cells(one, cells)
     seconds = each_of(one, float(event["collisions"][0]))
@@ -237,7 +249,7 @@ def _model(timings: tuple[dict, dict], cells: dict[float, Cells]) -> dict[str, A
 
 
 def _timed(run: dict) -> dict[str, Any]:
-    """The time of a collision of the event-driven engine, in the gas of a timing."""
+    """Return the time of a collision of the event-driven engine, in the gas of a timing."""
     dimension, fraction = run["gas"]
     return {
         "timed_dimension": dimension,
@@ -248,7 +260,10 @@ def _timed(run: dict) -> dict[str, Any]:
 
 
 def _steady(point: Point, rows: list[dict]) -> dict[str, Any]:
-    """The error of Z in a long run of the time-stepped engine, minus that of the paired runs of its gas."""
+    """Return the error of Z in a long run of the time-stepped engine, minus the paired runs' error.
+
+    The runs are of the same gas.
+    """
     own = point.settings
     long, fraction, dimension = pressure(point).z, own["packing_fraction"], own["dimension"]
     name = setting_name(own.get("rewind", True), own.get("passes", 4), own.get("precision", "float64"))

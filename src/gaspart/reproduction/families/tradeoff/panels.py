@@ -1,4 +1,4 @@
-"""Panels of the map of the cheapest engine: one for each observable, and what makes errors at two places."""
+"""Panels of the map of the cheapest engine, for each observable, and of errors at two points."""
 
 from __future__ import annotations
 
@@ -30,24 +30,24 @@ PLACES = (("D", 0.01, 0.01), ("D", 0.3, 0.01))
 """Observable, packing fraction and accuracy of the errors that are shown; where they were not measured the
 nearest ones that were."""
 HIGHEST = 1.6
-"""Of the accuracy: up to which errors are drawn."""
+"""Largest drawn error, relative to the accuracy."""
 _SMALL = 5.6
 
 
 def tint(engine: str) -> tuple[float, float, float]:
-    """The colour of an engine."""
+    """Return the colour of an engine."""
     kind, white = TINTS[engine]
     red, green, blue = (white + (1.0 - white) * part for part in to_rgb(style.COLOURS[kind]))
     return red, green, blue
 
 
 def keys() -> list[Patch]:
-    """What a legend shows of the colours."""
+    """Return the entries of a legend of the colours."""
     return [Patch(facecolor=tint(engine), label=name) for engine, name in NAMES.items()]
 
 
 def duration(seconds: float) -> str:
-    """A time to one or two digits, in a unit that makes its number short."""
+    """Format a time with one or two digits, in a unit that makes its number short."""
     steps = (("ms", 1.0), ("s", 1e3), ("min", 6e4), ("h", 3.6e6), ("d", 8.64e7), ("y", 3.156e10))
     milliseconds = 1e3 * seconds
     unit, size = max(
@@ -58,8 +58,10 @@ def duration(seconds: float) -> str:
 
 
 def cheapest_engine(ds: xr.Dataset) -> Iterator[tuple[int, int, str, float]]:
-    """(fraction, accuracy, engine, cost), the first two by position, of one quantity where any engine was
-    measured; engine "" and cost infinite where none reaches the accuracy."""
+    """Yield (fraction, accuracy, engine, cost) of one quantity where any engine was measured.
+
+    The first two are positions; the engine is "" and the cost infinite where no engine reaches the accuracy.
+    """
     cost = Row(ds).cost.value  # fraction, accuracy, solver
     for f, a in np.ndindex(*cost.shape[:2]):
         if not np.isnan(cost[f, a]).all():
@@ -69,8 +71,10 @@ def cheapest_engine(ds: xr.Dataset) -> Iterator[tuple[int, int, str, float]]:
 
 
 def map_of(axis: Axes, ds: xr.Dataset) -> None:
-    """One quantity: a field for each density and accuracy, in the colour of the cheapest engine, with its
-    cost."""
+    """Draw one quantity: a field for each density and accuracy, with its cost.
+
+    The colour is that for the cheapest engine.
+    """
     gas, fields = Row(ds), list(cheapest_engine(ds))
     columns = sorted({f for f, *_ in fields})
     colours = np.ones((len(gas.accuracy), max(1, len(columns)), 3))
@@ -90,12 +94,12 @@ def map_of(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _fraction(value: float) -> str:
-    """A packing fraction, a small one as a power of ten."""
+    """Return a packing fraction, a small one as a power of ten."""
     return rf"$10^{{{round(math.log10(value))}}}$" if value < 0.005 else f"{value:g}"
 
 
 def places(ds: xr.Dataset) -> list[Row]:
-    """The `PLACES`, or the measured ones nearest to them, each once."""
+    """Return the `PLACES`, or the measured ones nearest to them, each once."""
     found: dict[tuple[str, float, float], Row] = {}
     for quantity, fraction, accuracy in PLACES:
         of = ds.sel(quantity=quantity)
@@ -108,12 +112,12 @@ def places(ds: xr.Dataset) -> list[Row]:
 
 
 def _nearest(values: xr.DataArray, wanted: float) -> int:
-    """The position of the value whose ratio to the wanted one is nearest to 1."""
+    """Return the position of the value whose ratio to the wanted one is nearest to 1."""
     return int(np.argmin(np.abs(np.log(values.values / wanted))))
 
 
 def breakdown(axis: Axes, ds: xr.Dataset) -> None:
-    """Errors over the required accuracy of every engine at the `PLACES`, by what makes them."""
+    """Draw errors over the required accuracy of every engine at the `PLACES`, by what makes them."""
     rows: list[tuple[float, str]] = []
     for p, at in enumerate(places(ds)):
         top = -(len(ENGINES) + 1.5) * p
@@ -135,7 +139,7 @@ def breakdown(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _stack(axis: Axes, y: float, parts: list[float]) -> None:
-    """One bar of parts after each other, cut off at `HIGHEST`, with its length where it is cut off."""
+    """Draw one bar of parts, cut off at `HIGHEST`, with its length if it is cut off."""
     low = 0.0
     for kind, part in enumerate(parts):
         if math.isfinite(part) and low < HIGHEST:

@@ -11,8 +11,10 @@ FREE_TIMES = 2.5
 
 
 def relaxation_time(slower: float) -> float:
-    """That of a gas whose speeds follow the homogeneous Boltzmann equation, with collisions rarer by a
-    factor."""
+    """Compute the relaxation time of a gas with collisions rarer by a factor.
+
+    Its speeds follow the homogeneous Boltzmann equation.
+    """
     times = np.linspace(0.0, FREE_TIMES / slower, 251)
     curve = theory.relaxation(3)
     end = theory.kurtosis(3)

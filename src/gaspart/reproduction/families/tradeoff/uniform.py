@@ -1,9 +1,9 @@
 """Choices for a gas in equilibrium: its collision rate, its compressibility factor Z and its D.
 
-The event-driven engine has no error but that of noise. Errors of time steps are measured, see `errors` in
-`shared.accuracy`. Those of the DSMC engine follow from theory: its model lacks the contact value, the virial
-or the memory of collisions, and its steps change D by a law that `dsmc_convergence` confirms; only what the
-few particles of a cell do to the collisions of the Enskog model is measured.
+The event-driven engine has no error but noise. Errors of time steps are measured, see `errors` in
+`shared.accuracy`. Errors of the DSMC engine follow from theory: its model lacks the contact value, the virial
+or the memory of collisions, and its steps change D by a law that `dsmc_convergence` confirms; only the effect
+of the few particles of a cell on the collisions of the Enskog model is measured.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ OBSERVABLES = ("collision_rate", "Z", "D")
 BOUND = 2.0
 """Standard errors that are added to a measured error, so that it is a bound."""
 _VISCOSITY_UNCERTAINTY = 0.05
-"""Of Enskog's viscosity, with which D is corrected for the size of the container [Yeh 2004]."""
+"""Uncertainty of Enskog's viscosity, with which D is corrected for the size of the container [Yeh 2004]."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,11 @@ class Uniform:
     count: int
 
     def finite_size(self, observable: str) -> float:
-        """What theory's correction leaves, relatively: the square of a correction of first order in 1/N; of D
-        the uncertainty of the viscosity, and the next order of hydrodynamics, see `displacement`."""
+        """Compute the relative error that theory's correction for finite size leaves.
+
+        It is the square of a correction of first order in 1/N; for D the uncertainty of the viscosity, and
+        the next order of hydrodynamics, see `displacement`.
+        """
         eta, count = self.packing_fraction, self.count
         if observable == "collision_rate":
             return float(theory.collision_rate_finite_size_factor(eta, 3, count) - 1.0) ** 2
@@ -54,9 +57,12 @@ class Uniform:
         return self._lost * min(1.0, math.hypot(_VISCOSITY_UNCERTAINTY, order))
 
     def decay(self, observable: str) -> tuple[float, float]:
-        """Collisions per particle in which the slowest trace of the initial state falls to 1/e, and how much
-        of the observable it is at first, at most: that of the speeds, all of it; but of D that of the longest
-        shear wave, which carries what D lacks in a finite container."""
+        """Return the decay of the slowest trace of the initial state, and its initial size.
+
+        The decay to 1/e is in collisions per particle; the size is a maximum, relative to the observable. The
+        trace is in the speeds, all of the observable; but for D it is the longest shear wave, which carries
+        what D lacks in a finite container.
+        """
         speeds = 1.0 / theory.KURTOSIS_RELAXATION_RATE[3]
         wave = (self._side / (2.0 * math.pi)) ** 2 / self._spreading
         wave *= float(theory.collision_rate(self.packing_fraction, 3))
@@ -65,8 +71,12 @@ class Uniform:
     def choice(
         self, engine: str, observable: str, errors: tuple[float, float], each: Estimate, noise: float
     ) -> Choice:
-        """That of an engine. errors: of model and discretisation; each: processor time per contact; noise:
-        relative variance times contacts."""
+        """Return the choice of an engine.
+
+        errors : errors of model and discretisation.
+        each : CPU time per contact.
+        noise : relative variance times contacts.
+        """
         particle = 0.5 * self.count * each.value  # per collision of every particle
         decay, trace = self.decay(observable)
         return Choice(
@@ -98,16 +108,19 @@ class Uniform:
 
     @property
     def _spreading(self) -> float:
-        """By which shear waves decay, a particle's own diffusion included."""
+        """Coefficient by which shear waves decay, a particle's own diffusion included."""
         viscosity = float(theory.enskog_viscosity(self.packing_fraction, 3))
         return viscosity / self._density + float(theory.enskog_diffusion(self.packing_fraction, 3))
 
 
 @dataclass(frozen=True)
 class Cells:
-    """What the cells of the Enskog model do at one packing fraction. rate: the collision rate over that of
-    its equation; bound: on the part of the collisions that is lost, from docs/dsmc.md; noise: relative
-    variance times contacts, by observable."""
+    """Effect of the cells of the Enskog model at one packing fraction.
+
+    rate : collision rate divided by the rate of its equation.
+    bound : bound on the fraction of the collisions that is lost, from docs/dsmc.md.
+    noise : relative variance times contacts, by observable.
+    """
 
     rate: Estimate
     bound: float
@@ -115,12 +128,15 @@ class Cells:
 
     @property
     def error(self) -> float:
-        """A bound on the relative error of the collision rate, and of all that follows from it."""
+        """Bound on the relative error of the collision rate, and of all that follows from it."""
         return abs(self.rate.value - 1.0) + BOUND * self.rate.error
 
 
 def cells_of(point: Point) -> Cells:
-    """Those of a run of the Enskog model in its default cells, beside what its equation states."""
+    """Return the cells of a run of the Enskog model in its default cells.
+
+    The rate is relative to its equation.
+    """
     (found,) = (series_of(run) for run in runs(point))
     fraction, count = point.scene.packing_fraction, point.scene.count
     contact = (float(theory.carnahan_starling(fraction)) - 1.0) / (4.0 * fraction)
@@ -135,7 +151,10 @@ def cells_of(point: Point) -> Cells:
 
 
 def cells_by_fraction(points: Iterable[Point], experiments: Sequence[str]) -> dict[float, Cells]:
-    """Those of the points of some experiments, by the packing fraction of their settings."""
+    """Return the cells of the points of some experiments, by packing fraction.
+
+    The packing fraction is in their settings.
+    """
     of = (point for point in points if point.experiment in experiments)
     return {float(point.settings["packing_fraction"]): cells_of(point) for point in of}
 
@@ -143,7 +162,10 @@ def cells_by_fraction(points: Iterable[Point], experiments: Sequence[str]) -> di
 def choices(
     gas: Uniform, observable: str, timed: list[dict], compared: list[dict], cells: Cells | None
 ) -> Iterator[Choice]:
-    """All settings of all engines that were timed in a gas; cells: of the Enskog model, None if unknown."""
+    """Yield all settings of all engines that were timed in a gas.
+
+    `cells` are those for the Enskog model, None if unknown.
+    """
     same = [one for one in timed if one["gas"] == (3, gas.packing_fraction)]
     event = next(one for one in same if one["setting"] == "event")
     rate = float(event["collisions"][0])
@@ -174,12 +196,15 @@ def choices(
 
 
 def each_of(timed: dict, rate: float) -> Estimate:
-    """Processor time per contact with each time step of a timing, (T,); rate: contacts per time."""
+    """Compute the CPU time per contact with each time step of a timing, (T,).
+
+    `rate` is the number of contacts per time.
+    """
     return Estimate(timed["seconds"], timed["error"]) / rate
 
 
 def compared(points: list[Point], timed: list[dict]) -> list[dict]:
-    """Errors of time steps with their costs, see `shared.accuracy`."""
+    """Return the errors of time steps with their costs, see `shared.accuracy`."""
     rows = [errors(point) for point in points if point.job == "compare"]
     for row in rows:
         add_costs(row, timed)

@@ -19,18 +19,18 @@ FEW_PER_CENT = 0.05
 
 
 def viscosity(ds: xr.Dataset) -> list[Claim]:
-    """The shear and the bulk viscosity of spheres and discs."""
+    """Return the claims on the shear and the bulk viscosity of spheres and discs."""
     gases = Table(ds, "point")
     return _claims(gases, "viscosity") + [_bulk(gas) for gas in gases]
 
 
 def conductivity(ds: xr.Dataset) -> list[Claim]:
-    """The conductivity of heat of spheres and discs."""
+    """Return the claims on the thermal conductivity of spheres and discs."""
     return _claims(Table(ds, "point"), "conductivity")
 
 
 def _is_within(gas: Row, packing_fraction: float) -> bool:
-    """Whether a gas is at most so dense, but for rounding."""
+    """Return True if a gas is at most at this packing fraction, but for rounding."""
     return bool(gas.packing_fraction <= packing_fraction * (1.0 + 1e-6))
 
 
@@ -40,7 +40,7 @@ def _which(gas: Row) -> str:
 
 
 def _bulk(gas: Row) -> Claim:
-    """The bulk viscosity."""
+    """Return the claim on the bulk viscosity."""
     unknown = {
         2: "of discs its integral grows with the logarithm of time",
         3: "what correlated collisions do near freezing is not known",
@@ -97,7 +97,7 @@ def _claims(gases: Table, name: str) -> list[Claim]:
 
 
 def logarithmic_growth(ds: xr.Dataset) -> list[Claim]:
-    """The growth of discs' coefficients with the logarithm of time."""
+    """Return the claims on the growth of discs' coefficients with the logarithm of time."""
     gases = Table(ds, "point")
     growths = {
         "viscosity": (gases.viscosity_growth, gases.viscosity_short_waves),

@@ -15,18 +15,23 @@ SHOWN_FROM = 4.0
 
 
 def viscosity(ds: xr.Dataset) -> Figure:
-    """The shear viscosity over Enskog's, and the bulk viscosity, against density, and the integral of the
-    former until each time."""
+    """Draw the shear viscosity over Enskog's and the bulk viscosity, and the running integral.
+
+    The viscosities are against density, the integral of the former is until each time.
+    """
     return _figure(ds, r"$\eta/\eta_\mathrm{Enskog}$")
 
 
 def conductivity(ds: xr.Dataset) -> Figure:
-    """The conductivity of heat over Enskog's, likewise."""
+    """Draw the thermal conductivity over Enskog's against density, and the running integral."""
     return _figure(ds, r"$\lambda/\lambda_\mathrm{Enskog}$")
 
 
 def logarithmic_growth(ds: xr.Dataset) -> Figure:
-    """The integrals of both fluxes of discs against the logarithm of time, in containers of several sizes."""
+    """Draw the integrals of both fluxes of discs against the logarithm of time.
+
+    The containers have several sizes.
+    """
     figure, axes = style.new((2.4,), (2.4,))
     gases = Table(ds, "point")
     late = (gases.time >= SHOWN_FROM).all(axis=0)
@@ -61,7 +66,7 @@ def _figure(ds: xr.Dataset, name: str) -> Figure:
 
 
 def _density(axis: Axes, gases: Table) -> None:
-    """Both forms against the packing fraction."""
+    """Draw both forms against the packing fraction."""
     eta, shift = gases.packing_fraction, 0.004
     style.points(axis, eta - shift, gases.value, kind=0, label="Green-Kubo")
     style.points(axis, eta + shift, gases.growth, kind=1, hollow=True, label="Helfand")
@@ -73,7 +78,7 @@ def _density(axis: Axes, gases: Table) -> None:
 
 
 def _running(axis: Axes, gases: Table) -> None:
-    """The integral of the correlation until each time."""
+    """Draw the integral of the correlation until each time."""
     for kind, gas in enumerate(gases[:: max(1, len(gases) // 4)]):
         style.points(axis, gas.time, gas.running, kind=kind, label=rf"$\phi={gas.packing_fraction:.3g}$")
     axis.axhline(1.0, color=style.GREY, lw=0.8)

@@ -1,7 +1,7 @@
-"""Viscosity and conductivity of heat from equilibrium, by Green and Kubo and by Helfand.
+"""Viscosity and thermal conductivity from equilibrium, by Green and Kubo and by Helfand.
 
-A point is a gas whose runs have correlated the stress tensor and the heat flux. Its coefficients are over
-those of Enskog's theory; times are in collisions of a particle.
+A point is a gas whose runs have correlated the stress tensor and the heat flux. Its coefficients are divided
+by Enskog's; times are in collisions of a particle.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from gaspart.scene.gas import plain_gas
 from gaspart.trajectory.reading import open_trajectory
 
 QUANTITIES = {"shear": "viscosity", "heat": "conductivity"}
-"""What the correlation of each flux makes."""
+"""Quantity that follows from the correlation of each flux."""
 ENSKOG = {"viscosity": theory.enskog_viscosity, "conductivity": theory.enskog_conductivity}
 LONGER = 2.0
 """Mean free paths: if only longer waves count, the modes' growth differs by the theory's uncertainty."""
@@ -36,12 +36,15 @@ UNITS = {"time": "collisions per particle"}
 
 
 def viscosity(points: list[Point], settings: dict) -> xr.Dataset:
-    """Shear viscosity; see `coefficient`; and `bulk`, the bulk viscosity over Enskog's by Green and Kubo."""
+    """Measure the shear viscosity, see `coefficient`, and `bulk`, the bulk viscosity.
+
+    The latter is over Enskog's, by Green and Kubo.
+    """
     return table("point", points, _viscosities, inner=("lag",), units=UNITS)
 
 
 def conductivity(points: list[Point], settings: dict) -> xr.Dataset:
-    """Conductivity of heat; see `coefficient`."""
+    """Return the thermal conductivity; see `coefficient`."""
     of = "heat", theory.enskog_conductivity
     return table("point", points, coefficient, *of, inner=("lag",), units=UNITS)
 
@@ -51,8 +54,10 @@ def _viscosities(point: Point) -> dict[str, Any]:
 
 
 def _bulk(point: Point) -> Estimate:
-    """The bulk viscosity over Enskog's, until a part `LATE` of the longest lag. The mean of the pressure is
-    that of each run, of duration T, which takes off 2 lag / T of the value."""
+    """Measure the bulk viscosity over Enskog's, until a part `LATE` of the longest lag.
+
+    The mean of the pressure is taken in each run, of duration T, which takes off 2 lag / T of the value.
+    """
     gas, samples = plain_gas(point.scene), []
     for path in point.replica_paths:
         with open_trajectory(path) as trajectory:
@@ -65,13 +70,15 @@ def _bulk(point: Point) -> Estimate:
 
 
 def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict[str, Any]:
-    """A coefficient of a point over Enskog's, by the flux of `trajectory.correlator.STRESS` of this name.
+    """Measure a coefficient of a point over Enskog's, by the flux of this name.
+
+    The flux is in `trajectory.correlator.STRESS`.
 
     `value`, the integral of the correlation until the longest lag, and `growth`, half of the slope of
     Helfand's squared change between lags `LATE` and 1 of the longest; `difference`, growth over the mean of
     the integral between these lags, minus 1, from the same runs; running (lag,), the integral until each lag;
-    all estimates. `time`, `end` of the integral. dimension, packing_fraction, count; `finite`, what a dilute
-    gas of so many particles has over an infinite one.
+    all estimates. `time`, `end` of the integral. dimension, packing_fraction, count; `finite`, the ratio of a
+    dilute gas of `count` particles to an infinite one.
     """
     gas = plain_gas(point.scene)
     exact, rate = float(enskog(**gas.parameters)), float(theory.collision_rate(**gas.parameters))
@@ -99,27 +106,32 @@ def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict[str
 
 
 def end(lags: np.ndarray) -> np.ndarray:
-    """The time until which the integral with each lag goes: half an interval later, the mean until the next
-    lag, since fluxes are means over intervals."""
+    """Compute the time until which the integral with each lag extends.
+
+    It is half an interval later, the mean until the next lag, since fluxes are means over intervals.
+    """
     return lags + 0.5 * (lags[1] - lags[0])
 
 
 def _half(lags: np.ndarray) -> int:
-    """The lag from which on the growth counts."""
+    """Return the lag from which on the growth counts."""
     return round(LATE * (len(lags) - 1))
 
 
 def _growth(lags: np.ndarray, slopes: np.ndarray) -> float:
-    """Half of the slope of the squared change between two lags; slopes: half of it over each lag."""
+    """Compute half of the slope of the squared change between two lags.
+
+    `slopes` are half of it over each lag.
+    """
     first = _half(lags)
     change = slopes * lags
     return float((change[-1] - change[first]) / (lags[-1] - lags[first]))
 
 
 def logarithmic_growth(points: list[Point], settings: dict) -> xr.Dataset:
-    """How much the integrals of discs grow with time, beside hydrodynamic modes.
+    """Measure the growth of the integrals of discs with time, and of hydrodynamic modes.
 
-    settings: `viscosity_from` and `conductivity_from`, collisions of a particle from which on they are
+    The settings are `viscosity_from` and `conductivity_from`, collisions of a particle from which on they are
     compared. Over `point`: count, packing_fraction, sound (collisions until sound has crossed the container);
     over `lag` too: time, in collisions. Of each quantity, "viscosity" and "conductivity", over Enskog's: its
     integral until each time (lag,) and `_error`; _modes (lag,), the modes of the container, with the height
@@ -133,7 +145,7 @@ def logarithmic_growth(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _growing(point: Point, starts: dict[str, float]) -> dict[str, Any]:
-    """One point of `logarithmic_growth`."""
+    """Measure one point of `logarithmic_growth`."""
     gas, lengths = plain_gas(point.scene), point.scene.container.lengths
     if gas.dimension != 2 or gas.diameter != 1.0 or gas.temperature != 1.0:
         raise SceneError(f"experiments.{point.experiment}", "gas", "must be discs of diameter and k_B T 1")
@@ -165,7 +177,10 @@ def _growing(point: Point, starts: dict[str, float]) -> dict[str, Any]:
 
 
 def _integrals(point: Point, flux: str) -> tuple[np.ndarray, np.ndarray]:
-    """(lags,) the lags, and (B, lags) Green and Kubo's integrals of a flux in all blocks of all runs."""
+    """Return the lags (lags,), and Green and Kubo's integrals of a flux (B, lags).
+
+    The blocks are of all runs.
+    """
     blocks = []
     for path in point.replica_paths:
         with open_trajectory(path) as trajectory:

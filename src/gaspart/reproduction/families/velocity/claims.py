@@ -11,7 +11,10 @@ from gaspart.reproduction.table import Row, Table
 
 
 def velocity_autocorrelation(ds: xr.Dataset) -> list[Claim]:
-    """The initial decay, which is exact, and the amplitude of the long-time tail."""
+    """Return the claims on the exact initial decay, and on the long-time tail.
+
+    The amplitude of the tail is claimed.
+    """
     return [claim for gas in Table(ds, "point") for claim in _of_gas(gas)]
 
 

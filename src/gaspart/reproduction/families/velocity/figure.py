@@ -16,7 +16,10 @@ S = r"collisions per particle $s=\nu t$"
 
 
 def velocity_autocorrelation(ds: xr.Dataset) -> Figure:
-    """Three panels: C against collisions per particle, log-log; its start; C - 1/N over the modes."""
+    """Draw C against collisions per particle, its start, and C - 1/N over the modes.
+
+    The first panel is log-log.
+    """
     figure, (upper, middle, lower) = style.new((2.6,), (2.0,), (2.2,))
     gases = Table(ds, "point")
     long = gases[np.isfinite(gases.tail_ratio.value)].sorted_by("dimension", "packing_fraction")
@@ -32,13 +35,13 @@ def _name(gas: Row) -> str:
 
 
 def _lags(gas: Row) -> Table:
-    """The lags after 0 that a gas has."""
+    """Return the lags after 0 that a gas has."""
     lags = Table(gas.dataset, "lag")
     return lags[np.isfinite(lags.correlation.value)][1:]
 
 
 def _tails(axis: Axes, gases: Table) -> None:
-    """Measured C, the initial exponentials exp(-2 s / d), and mode coupling's tails."""
+    """Draw measured C, the initial exponentials exp(-2 s / d), and mode coupling's tails."""
     s = np.linspace(0.5, 9.0, 100)
     for dimension, line in ((2, "--"), (3, ":")):
         label = rf"$\mathrm{{e}}^{{-2s/{dimension}}}$"
@@ -57,7 +60,7 @@ def _tails(axis: Axes, gases: Table) -> None:
 
 
 def _starts(axis: Axes, gases: Table) -> None:
-    """ln C against collisions, and the exact initial slopes."""
+    """Draw ln C against collisions, and the exact initial slopes."""
     s = np.linspace(0.0, 2.0, 50)
     for kind, gas in enumerate(gases):
         axis.plot(s, np.exp(-2.0 / gas.dimension * s), color=style.COLOURS[kind], zorder=1)
@@ -71,7 +74,10 @@ def _starts(axis: Axes, gases: Table) -> None:
 
 
 def _ratios(axis: Axes, gases: Table) -> None:
-    """C - 1/N over the sum of the container's modes with its fit; marked, when sound has crossed it."""
+    """Draw C - 1/N over the sum of the container's modes, with its fit.
+
+    The time when sound has crossed it is marked.
+    """
     style.level(axis, 1.0)
     for kind, gas in enumerate(gases):
         lags, share = _lags(gas), 1.0 / gas.count

@@ -1,16 +1,16 @@
-"""The velocity autocorrelation: its start, exponential, and its long-time tail, a power of time.
+"""Velocity autocorrelation: its exponential start, and its long-time tail, a power of time.
 
 Everything is in reduced units: the particles' diameter, mass and temperature are 1; s is time in Enskog's
 collisions of a particle. The runs' total momentum is subtracted, leaving velocities u relative to the centre
-of mass; where momentum is free (canonical) one has the centre's own beside, which does not decay:
+of mass; where momentum is free (canonical) the centre's own velocity, which does not decay, is added:
 
     C(t) = 1/N + <u(0).u(t)> / (d k_B T),    k_B T = m <u^2> / d * N / (N-1) .
 
 That is exact. C(t) of an infinite fluid differs from it once momentum has come round the container, sound
 first, so that the tail is compared with the modes of the container (`theory.velocity_autocorrelation_modes`).
-These decay with the transport coefficients of long waves; at a time t the waves that matter are some
-sqrt((D + nu) t) long, and the next terms of their decay rates, of order k^4, are of the order of 1/t of the
-first. So the ratio to the modes is fitted by A + B/s, and A compared with 1.
+These decay with the transport coefficients of long waves; at a time t the waves that matter are some sqrt((D
++ nu) t) long, and the next terms of their decay rates, of order k^4, are of the order of 1/t of the first. So
+the ratio to the modes is fitted by A + B/s, and A compared with 1.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from gaspart.reproduction.table import table
 
 
 def velocity_autocorrelation(points: list[Point], settings: dict) -> xr.Dataset:
-    """C(t) of every point, the rate of its start and the amplitude of its tail.
+    """Return C(t) of every point, the rate of its start and the amplitude of its tail.
 
     settings: `start_to`, collisions of a particle up to which -ln C is fitted by a line and a parabola, where
     it is sampled that often; `tail`, from and to which the tail is fitted of all other points.
@@ -79,10 +79,10 @@ def _row(point: Point, settings: dict) -> dict:
 
 
 def _tail(collisions: np.ndarray, values: np.ndarray, modes: np.ndarray) -> np.ndarray:
-    """A and B of values = modes (A + B / s); the noise of C is the same at all lags."""
+    """Fit A and B of values = modes (A + B / s); the noise of C is the same at all lags."""
     return fit_linear(np.stack([modes, modes / collisions], axis=1), values).values
 
 
 def _initial_rate(collisions: np.ndarray, values: np.ndarray) -> float:
-    """-d ln C / ds at s = 0, of a parabola through 0."""
+    """Compute -d ln C / ds at s = 0, of a parabola through 0."""
     return float(fit_polynomial(collisions, -np.log(values), powers=(1, 2)).values[0])

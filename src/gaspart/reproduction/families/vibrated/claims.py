@@ -20,25 +20,28 @@ BALANCE = (
 
 
 def small_parameter(beds: Table) -> np.ndarray:
-    """The power that each bed would lose over its weight and the speed sqrt(T)."""
+    """Compute the power that each bed would lose over its weight and the speed sqrt(T)."""
     return np.asarray(theory.bed_loss(beds.layers, beds.restitution, beds.packing_fraction))
 
 
 def expected_temperature(beds: Table) -> np.ndarray:
-    """The temperature of each bed where that parameter is small."""
+    """Compute the temperature of each bed where that parameter is small."""
     of = beds.layers, beds.restitution, beds.packing_fraction
     sawtooth, sine = theory.sawtooth_temperature(*of), theory.sine_temperature(*of)
     return np.where(beds.sine == 1, sine, sawtooth) * beds.speed**2
 
 
 def extrapolation(beds: Table) -> Fit:
-    """The temperature over that of theory, as a polynomial of second order in the small parameter."""
+    """Fit the temperature over theory's by a polynomial of second order in the small parameter."""
     ratio = beds.temperature / expected_temperature(beds)
     return fit_polynomial(small_parameter(beds), ratio, powers=(0, 1, 2))
 
 
 def vibrated_bed(dataset: xr.Dataset) -> list[Claim]:
-    """What the floor gives, what contacts take, and the temperature and height where the two balance."""
+    """Return the claims on given and lost energy, and on temperature and height of balance.
+
+    The floor gives energy, contacts take it.
+    """
     table, claims = Table(dataset, "bed"), []
     for kind, name in WAVEFORMS.items():
         beds = table[table.sine == kind]

@@ -17,7 +17,7 @@ from gaspart.reproduction.table import Table
 
 
 def vibrated_bed(dataset: xr.Dataset) -> Figure:
-    """Two panels: temperature over theory's, with fits, and density profiles of the most elastic beds."""
+    """Draw temperature over theory's, with fits, and density of the most elastic beds."""
     figure, (upper, lower) = style.new((2.4,), (2.4,))
     table = Table(dataset, "bed")
     style.level(upper, 1.0)

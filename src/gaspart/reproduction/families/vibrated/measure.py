@@ -20,15 +20,17 @@ _FLOOR = 2  # the number of the face y_low
 
 
 def vibrated_bed(points: list[Point], settings: dict) -> xr.Dataset:
-    """Temperature, energy flows and density of vibrated beds of one kind of discs, of mass 1.
+    """Measure temperature, energy flows and density of vibrated beds of one kind of discs.
 
-    settings: `bins` of the density profile, and `highest`, the height up to which it reaches, over T/g.
-    Returns over `bed`: sine, 1 if the floor is one, 0 for a sawtooth; restitution; layers, (N - 1) d /
-    width; packing_fraction that an ideal gas of the measured temperature has at the floor;
-    speed, that of the sawtooth or the rms speed of the sine; temperature, of both components; given and
-    lost, the energies per time that the floor gives and contacts take, over the weight; height, the mean
-    height above the floor's lowest place times g over the vertical temperature; and over (bed, bin) density,
-    the share of discs in a bin over its width, in units of T/g, at `place`. All with errors from replicas.
+    The discs have the mass 1.
+
+    The settings are `bins` of the density profile, and `highest`, the height up to which it reaches, over
+    T/g. Returns over `bed`: sine, 1 if the floor's motion is a sine, 0 for a sawtooth; restitution; layers,
+    (N - 1) d / width; packing_fraction that an ideal gas of the measured temperature has at the floor; speed,
+    of the sawtooth, or the rms speed of the sine; temperature, of both components; given and lost, the
+    energies per time that the floor gives and contacts take, over the weight; height, the mean height above
+    the floor's lowest place times g over the vertical temperature; and over (bed, bin) density, the fraction
+    of discs in a bin over its width, in units of T/g, at `place`. All with errors from replicas.
     """
     units = {"temperature": "energy", **dict.fromkeys(("speed", "given", "lost"), "length / time")}
     beds = table("bed", points, _bed, settings, inner=("bin",), units=units)
@@ -59,7 +61,7 @@ def _bed(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def means(run: Run, settings: dict) -> dict[str, Any]:
-    """Those of a run, by the names of `vibrated_bed`."""
+    """Measure the numbers of a run, by the names of `vibrated_bed`."""
     scene = run.scene
     assert scene.gravity is not None
     gravity = -scene.gravity[1]

@@ -36,7 +36,10 @@ KOLAFA_RANGE = (0.19, 0.41)
 
 
 def virial_discs(dataset: xr.Dataset) -> list[Claim]:
-    """Z at every packing fraction; B2, B3, B4; the collision rate; and that the error bars are correct."""
+    """Return the claims on Z, B2, B3, B4, the collision rate, and correct error bars.
+
+    Z is claimed at every packing fraction.
+    """
     gases, fits = Table(dataset, "packing_fraction"), Table(dataset, "fit")
     dimension = gases.dimension
     # Enskog's rate is as accurate as Z - 1: the same reference, the same uncertainty.
@@ -69,8 +72,10 @@ def virial_discs(dataset: xr.Dataset) -> list[Claim]:
 
 
 def virial_spheres(dataset: xr.Dataset) -> list[Claim]:
-    """As for discs, and that Kolafa, Labík and Malijevský's equation is distinguished from Carnahan and
-    Starling's."""
+    """Return the claims of `virial_discs`, and that two equations are distinguished.
+
+    They are Kolafa, Labík and Malijevský's and Carnahan and Starling's.
+    """
     gases, (low, high) = Table(dataset, "packing_fraction"), KOLAFA_RANGE
     chosen = gases[(gases.packing_fraction >= low) & (gases.packing_fraction <= high)]
     return virial_discs(dataset) + ([_distinguished(chosen)] if chosen else [])
@@ -108,7 +113,10 @@ def _replicas(gases: Table) -> list[Claim]:
 
 
 def _distinguished(chosen: Table) -> Claim:
-    """Mean of Z / Z_CS - 1: what Kolafa, Labík and Malijevský's equation gives there, not 0."""
+    """Return the claim on the mean of Z / Z_CS - 1.
+
+    It is the value of Kolafa, Labík and Malijevský's equation there, not 0.
+    """
     eta = chosen.packing_fraction
     measured, stated = (z / theory.carnahan_starling(eta) - 1.0 for z in (chosen.Z, chosen.reference))
     expected = Estimate(measured.weights @ stated.value, measured.weights @ stated.error)

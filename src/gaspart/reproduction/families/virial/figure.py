@@ -17,22 +17,30 @@ SERIES = (2, 3, 4, 6, 10)
 REQUIRED = {2: 1e-3, 3: 1e-2, 4: 1e-1}
 """Scale of the lowest panel: the required relative accuracy of each coefficient."""
 Lines = dict[str, tuple[np.ndarray, dict]]
-"""By name: Z on the grid of packing fractions, and how it is drawn."""
+"""By name, Z on the grid of packing fractions, and the style of the line."""
 
 
 def virial_discs(dataset: xr.Dataset) -> Figure:
-    """Z of discs, with Henderson's equation, van der Waals's and the partial sums."""
+    """Draw Z of discs, with Henderson's equation, van der Waals's and the partial sums."""
     return _draw(dataset, "$B_{10}$ and tail", {"Henderson": theory.henderson}, ceiling=7.0, percent=0.6)
 
 
 def virial_spheres(dataset: xr.Dataset) -> Figure:
-    """Z of spheres, with Carnahan and Starling's, Kolafa's, van der Waals's equation and the partial sums."""
+    """Draw Z of spheres, with three equations of state and the partial sums.
+
+    The equations are Carnahan and Starling's, Kolafa's and van der Waals's.
+    """
     curves = {"Carnahan–Starling": theory.carnahan_starling, "Kolafa 1986": theory.kolafa_1986}
     return _draw(dataset, "Kolafa–Labík–Malijevský", curves, ceiling=11.0, percent=0.5)
 
 
 def _draw(dataset: xr.Dataset, name: str, equations: dict, ceiling: float, percent: float) -> Figure:
-    """Three panels. name: the reference's; ceiling: top of Z's axis; percent: residuals' half height."""
+    """Draw Z, residuals and coefficients in three panels.
+
+    name : name of the reference.
+    ceiling : top of Z's axis.
+    percent : residuals' half height.
+    """
     gases = Table(dataset, "packing_fraction")
     grid = np.linspace(1e-3, 1.04 * gases.packing_fraction.max(), 300)
     figure, (upper, middle, lower) = style.new((2.6, 1.7), (2.2,))
@@ -49,7 +57,7 @@ def _draw(dataset: xr.Dataset, name: str, equations: dict, ceiling: float, perce
 
 
 def _equations(grid: np.ndarray, dimension: int, equations: dict) -> Lines:
-    """Z is NaN beyond an equation's divergence."""
+    """Return the curves of equations; Z is NaN beyond an equation's divergence."""
     limit = 0.999 / 2.0 ** (dimension - 1)
     waals = np.where(grid < limit, theory.van_der_waals(np.minimum(grid, limit), dimension), np.nan)
     lines = {"van der Waals": (waals, {"color": style.COLOURS[3], "linestyle": (0, (5, 1.5, 1, 1.5))})}
@@ -59,7 +67,7 @@ def _equations(grid: np.ndarray, dimension: int, equations: dict) -> Lines:
 
 
 def _shade(order: int) -> str:
-    """Grey of a partial sum: the more terms, the darker."""
+    """Return the grey of a partial sum: the more terms, the darker."""
     return str(0.70 - 0.50 * SERIES.index(order) / (len(SERIES) - 1))
 
 
@@ -90,7 +98,7 @@ def _residuals(
     sums: dict,
     percent: float,
 ) -> None:
-    """100 (Z / Z_reference - 1), with one standard error."""
+    """Draw 100 (Z / Z_reference - 1), with one standard error."""
     style.level(axis, 0.0)
     for order, curve in sums.items():
         excess = 100.0 * (curve / reference - 1.0)
@@ -107,7 +115,10 @@ def _residuals(
 
 
 def _coefficients(axis: Axes, fits: Table) -> None:
-    """Each fitted coefficient's deviation from the exact one, in units of the accuracy required, by fit."""
+    """Draw each fitted coefficient's deviation from the exact one, by fit.
+
+    The unit is the accuracy required.
+    """
     style.band(axis, -1.0, 1.0)
     style.level(axis, 0.0)
     places = np.arange(len(fits))

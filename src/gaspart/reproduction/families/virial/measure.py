@@ -20,16 +20,18 @@ ONE = {"units": "1"}
 
 
 def equation_of_state(points: list[Point], settings: dict) -> xr.Dataset:
-    """Z against packing fraction of one dimension, with the reference, and fits of B2, B3, B4.
+    """Measure Z against packing fraction of one dimension, and fit B2, B3, B4.
 
-    settings: `fits`, a list of mappings {free: highest coefficient left free, up_to: largest packing fraction
-    used, held: bool} (see `fit_coefficients`), the first of them being the one that is claimed.
+    The reference is added.
+
+    The setting is `fits`, a list of mappings {free: highest coefficient left free, up_to: largest packing
+    fraction used, held: bool} (see `fit_coefficients`), the first of them being the one that is claimed.
 
     Returns over `packing_fraction` (ascending): Z with its error, corrected to the infinite system by adding
     -finite_size, which is of first order in 1/N; poisson_error, (Z-1)/sqrt(collisions); reference with its
     error; collision_rate with its error, over Enskog's for N particles; replica_chi_square, of replicas about
     their mean, and replica_degrees_of_freedom; correlation, the autocorrelation time in samples; flat, 1 if
-    all block errors reached a plateau; collisions, those that were measured; count. Over `fit` and `order`:
+    all block errors reached a plateau; collisions, the measured ones; count. Over `fit` and `order`:
     coefficient with its error (in powers of the packing fraction; NaN where it was not free), and held_error;
     over `order`: exact with its error; over `fit`: free, up_to, held, fit_chi_square, fit_degrees_of_freedom.
     """
@@ -68,7 +70,7 @@ def _gas(point: Point) -> dict:
 
 
 def fit_table(dataset: xr.Dataset, choices: list[dict]) -> xr.Dataset:
-    """`fit_coefficients` by every choice, side by side; choices with too few points are left out."""
+    """Apply `fit_coefficients` with every choice; leave out choices with too few points."""
     gases, dimension = Table(dataset, "packing_fraction"), dataset.attrs["dimension"]
     used = [gases[gases.packing_fraction <= choice["up_to"] * (1.0 + 1e-9)] for choice in choices]
     pairs = [
@@ -99,7 +101,7 @@ def _fit(pair: tuple[dict, Table], dimension: int) -> dict:
 
 
 def _no_fits(highest: int) -> xr.Dataset:
-    """The columns that are drawn, without a row."""
+    """Return the columns that are drawn, without a row."""
     names = ("coefficient", "coefficient_error", "held_error")
     return xr.Dataset({name: (("fit", "order"), np.zeros((0, highest - 1))) for name in names})
 
@@ -107,9 +109,9 @@ def _no_fits(highest: int) -> xr.Dataset:
 def fit_coefficients(
     eta: np.ndarray, z: Estimate, dimension: int, free: int, held: bool
 ) -> tuple[Fit, np.ndarray]:
-    """Weighted fit of (Z-1)/eta = b_2 + b_3 eta + ... with b_2 ... b_free free.
+    """Fit (Z-1)/eta = b_2 + b_3 eta + ... by weights, with b_2 ... b_free free.
 
-    held: the higher coefficients, to B10, are held at their literature values and the terms beyond at
+    If `held`, the higher coefficients, to B10, are held at their literature values and the terms beyond at
     `theory.linear_tail`; otherwise they are taken as zero (the series is cut), which shows what they matter.
 
     Returns the Fit (values b_2 ... b_free) and held_error (free - 1,): the standard errors that the

@@ -25,8 +25,11 @@ LESS_CERTAIN = "surfaces and edges are less certain than the measurement, by an 
 
 
 def wall_pressure(dataset: xr.Dataset) -> list[Claim]:
-    """The pressure on walls is the bulk's, with the container's surface terms; it is proportional to T;
-    without these terms the deviation is far larger than the error."""
+    """Return the claims on the pressure on walls, with the container's surface terms.
+
+    It is the bulk's with these terms, and proportional to T; without them the deviation is far larger than
+    the error.
+    """
     table = Table(dataset, "point")
     table = table.assign(particles=[PARTICLES[dimension] for dimension in table.dimension])
     slits, closed = table[table.axes < table.dimension], table[table.axes == table.dimension]

@@ -17,7 +17,7 @@ Z = r"$P/(n k_\mathrm{B}T)$"
 
 
 def wall_pressure(dataset: xr.Dataset) -> Figure:
-    """Three panels: P/(n k T) against T; the same against packing fraction, raw and corrected; residuals."""
+    """Draw P/(n k T) against T and packing fraction, raw and corrected, and residuals."""
     figure, panels = style.new((2.0,), (2.4, 1.7))
     for draw, panel in zip((_temperatures, _densities, _residuals), panels, strict=True):
         draw(panel, Table(dataset, "point"))
@@ -26,7 +26,10 @@ def wall_pressure(dataset: xr.Dataset) -> Figure:
 
 
 def _temperatures(axis: Axes, table: Table) -> None:
-    """P / (n k T) against T where one density has several temperatures; lines: theory, ideal gas."""
+    """Draw P / (n k T) against T where one density has several temperatures.
+
+    Lines are theory, ideal gas.
+    """
     series = [(n, part) for n, part in table.by(table.density.round(9)) if np.ptp(part.temperature) > 1.0]
     for kind, (n, part) in enumerate(series):
         part = part.sorted_by("temperature")
@@ -42,7 +45,10 @@ def _temperatures(axis: Axes, table: Table) -> None:
 
 
 def _densities(axis: Axes, table: Table) -> None:
-    """P / (n k T): the force over the whole wall (hollow), and corrected to the infinite fluid (filled)."""
+    """Draw P / (n k T) by the force over the whole wall, and corrected to the infinite fluid.
+
+    The former is hollow, the latter filled.
+    """
     for kind, (dimension, part) in enumerate(table.by("dimension")):
         eta, name = part.packing_fraction, PARTICLES[dimension]
         curve = np.linspace(1e-3, 1.05 * eta.max(), 200)
@@ -57,7 +63,7 @@ def _densities(axis: Axes, table: Table) -> None:
 
 
 def _residuals(axis: Axes, table: Table) -> None:
-    """100 (P / theory - 1) of every container, with both uncertainties."""
+    """Draw 100 (P / theory - 1) of every container, with both uncertainties."""
     style.level(axis, 0.0)
     for kind, (dimension, part) in enumerate(table.by("dimension")):
         for closed, containers in part.by(part.axes == dimension):

@@ -1,7 +1,7 @@
 """Pressure from the momentum transferred to the walls of the container.
 
 Everything is in reduced units: the particles' diameter, mass and temperature are 1. Along a periodic axis the
-total momentum is conserved: the temperature is that of the motion about it.
+total momentum is conserved: the temperature is defined by the motion about it.
 """
 
 from __future__ import annotations
@@ -23,14 +23,16 @@ UNITS |= dict.fromkeys(("pressure", "whole_pressure", "bulk_pressure", "expected
 
 
 def wall_pressure(points: list[Point], settings: dict) -> xr.Dataset:
-    """The pressure on the walls of containers that have them on some or all axes, with theory for each.
+    """Measure the pressure on the walls of containers, with theory for each.
+
+    The containers have walls on some or all axes.
 
     Returns over `point`: pressure with its error, the mean force on a wall over the area that centres can
     touch; whole_pressure, the same force over the full area of the wall; bulk_pressure, of an infinite fluid
     with as many particles per volume of the container; expected with its error, theory for this container;
-    density, particles per volume of the container, and packing_fraction; temperature of
-    the scene; hits; count, dimension, axes with walls, length along
-    them. Raises SceneError for containers without walls, or with walled sides of several lengths.
+    density, particles per volume of the container, and packing_fraction; temperature of the scene; hits;
+    count, dimension, axes with walls, length along them. Raises SceneError for containers without walls, or
+    with walled sides of several lengths.
     """
     return table("point", points, _row, units=UNITS)
 
@@ -68,7 +70,10 @@ def _row(point: Point) -> dict:
 
 
 def _replica(run: Run) -> tuple[np.ndarray, float, int]:
-    """One replica: (samples,) mean pressure on the walls; the temperature; the number of hits."""
+    """Return the mean pressure (samples,), the temperature and the number of hits of a replica.
+
+    The pressure is on the walls.
+    """
     walled = np.repeat(~run.periodic, 2)
     hits = run.increments("wall_hits")[:, : 2 * run.dimension].sum()
     return face_pressures(run)[:, walled].mean(axis=1), run.temperature, hits

@@ -1,0 +1,112 @@
+"""Local density and temperature of a steady scene, from which bounds on the errors of engines follow."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from gaspart.engines.dsmc.defaults import accessible, contact_values
+from gaspart.scene.geometry import ball_volume
+from gaspart.scene.scene import Scene
+
+_FREE = 0.02
+"""The least part of the volume that is free of a pair, where its contact value is evaluated."""
+
+
+@dataclass(frozen=True)
+class Layers:
+    """Layers across an axis, from wall to wall: share (S,) of all particles in each; crowding (S,), the
+    density over that of a gas that fills evenly what centres can reach; temperature (S,). axis: None of an
+    even gas; scale: the shortest length along it over which density or temperature change by the factor e."""
+
+    scene: Scene
+    share: np.ndarray
+    crowding: np.ndarray
+    temperature: np.ndarray
+    axis: int | None = None
+    scale: float = math.inf
+
+    @cached_property
+    def free(self) -> np.ndarray:
+        """Lengths that centres can reach, shape (d,)."""
+        lower, upper = accessible(self.scene)
+        return np.asarray(upper - lower)
+
+    @cached_property
+    def _kinds(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(K,) radii, masses and mean number densities of the kinds of particles that move."""
+        kinds = self.scene.moving_kinds
+        radii = np.array([kind.radius for kind in kinds])
+        masses = np.array([kind.mass for kind in kinds])
+        return radii, masses, np.array([kind.count for kind in kinds]) / float(self.free.prod())
+
+    @cached_property
+    def filled(self) -> np.ndarray:
+        """(S,) packing fraction, of what centres can reach."""
+        radii, _, numbers = self._kinds
+        d = self.scene.dimension
+        return self.crowding * ball_volume(d) * float((numbers * radii**d).sum())
+
+    @cached_property
+    def contact(self) -> np.ndarray:
+        """(S,) contact value of an infinite gas, the largest one of all pairs of kinds."""
+        radii, _, numbers = self._kinds
+        d = self.scene.dimension
+        return np.array([float(contact_values(numbers * ratio, radii, d).max()) for ratio in self.crowding])
+
+    @cached_property
+    def contact_of_few(self) -> np.ndarray:
+        """(S,) that of so many particles, inf where a pair has no room.
+
+        A pair at contact has not to avoid itself: 1 / (1 - v / V), v the volume from which one of the pair
+        keeps the centre of the other, which is exact of two particles, times the contact value of the rest.
+        To first order in the packing fraction of spheres 1 + (5/2 + 3/N) eta: 4 eta of two, 5/2 eta of many.
+        """
+        radii, _, numbers = self._kinds
+        d, count = self.scene.dimension, self.scene.count
+        pair = ball_volume(d) * (2.0 * float(radii.max())) ** d / float(self.free.prod())
+        others = max(0.0, count - 2.0) / count
+        room = np.maximum(0.0, 1.0 - pair * self.crowding)
+        rest = [float(contact_values(others * numbers * ratio, radii, d).max()) for ratio in self.crowding]
+        return np.where(room > _FREE, np.array(rest) / np.maximum(room, _FREE), math.inf)
+
+    @cached_property
+    def virial(self) -> np.ndarray:
+        """Local Z - 1, shape (S,)."""
+        return 2.0 ** (self.scene.dimension - 1) * self.filled * self.contact_of_few
+
+    @cached_property
+    def path(self) -> np.ndarray:
+        """(S,) mean free path of the kind that has the shortest one."""
+        radii, _, numbers = self._kinds
+        d = self.scene.dimension
+        sigma = radii[:, None] + radii
+        section = math.pi * sigma**2 if d == 3 else 2.0 * sigma
+        most = float((section * numbers).sum(axis=1).max())
+        return np.asarray(1.0 / (math.sqrt(2.0) * most * self.crowding * self.contact))
+
+    @cached_property
+    def speed(self) -> np.ndarray:
+        """(S,) mean speed of the lightest particles."""
+        _, masses, _ = self._kinds
+        mean = 8.0 / math.pi if self.scene.dimension == 3 else math.pi / 2.0
+        return np.sqrt(mean * self.temperature / masses.min())
+
+    @property
+    def contrast(self) -> float:
+        """Shortest free path of a homogeneous gas divided by the shortest one here."""
+        radii, _, numbers = self._kinds
+        even = float(contact_values(numbers, radii, self.scene.dimension).max())
+        return float((self.crowding * self.contact).max() / even)
+
+    @cached_property
+    def surfaces(self) -> float:
+        """What part of all contacts lack a neighbour beyond a wall, to first order: the sum over axes with
+        walls of the largest diameter over the length in which the particles are."""
+        sides = np.where(self.scene.container.periodic, math.inf, self.free)
+        if self.axis is not None and math.isfinite(sides[self.axis]):
+            sides[self.axis] = min(sides[self.axis], self.scale)
+        return float((2.0 * self.scene.largest_radius / np.maximum(sides, 1e-300)).sum())

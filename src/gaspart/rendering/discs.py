@@ -1,0 +1,130 @@
+"""Discs, walls and paths in the plane, drawn by the fraction of each pixel that they cover."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise, product
+
+import numpy as np
+
+from gaspart.kernels.drawing.ray_tracing import draw_discs, draw_segments
+from gaspart.rendering.surfaces import INK, DrawnSurface
+
+_MARGIN = 0.02  # of the picture's shorter side
+PAPER = (1.0, 1.0, 1.0)
+_SHADE = (0.88, 0.88, 0.88)
+
+
+def scale_of(lengths: np.ndarray, size: tuple[int, int]) -> tuple[float, np.ndarray]:
+    """Pixels per length of a container of `lengths` (2,) in the middle of a picture of `size` (W, H), and
+    where its corner is (2,)."""
+    width, height = size
+    margin = max(2.0, _MARGIN * min(size))
+    scale = float(min((width - 2 * margin) / lengths[0], (height - 2 * margin) / lengths[1]))
+    return scale, 0.5 * (np.array([width, height]) - scale * np.asarray(lengths))
+
+
+class Canvas:
+    """A white picture of `size` (W, H) pixels, with a container of `lengths` (2,) in the middle."""
+
+    def __init__(self, lengths: np.ndarray, size: tuple[int, int]) -> None:
+        width, height = size
+        self.lengths, (self.scale, self.corner) = lengths, scale_of(lengths, size)
+        self.image = np.ones((height, width, 3))
+        self._height = height
+
+    def _pixels(self, points: np.ndarray) -> np.ndarray:
+        """Points (N, 2) of the container as columns and rows of pixels."""
+        places = self.corner + self.scale * np.asarray(points, dtype=float)
+        return np.column_stack([places[:, 0], self._height - places[:, 1]])
+
+    def discs(self, positions: np.ndarray, radii: np.ndarray, colours: np.ndarray) -> None:
+        """Discs, later ones over earlier ones; none smaller than half a pixel in radius."""
+        draw_discs(self.image, self._pixels(positions), np.maximum(self.scale * radii, 0.5), colours)
+
+    def cut(self, periodic: Sequence[bool]) -> None:
+        """Leave white what lies beyond the container along the axes that are periodic."""
+        width, height = self.lengths
+        low, high = np.rint(self._pixels(np.array([[0.0, height], [width, 0.0]]))).astype(int)
+        if periodic[0]:
+            self.image[:, : low[0]] = self.image[:, high[0] :] = 1.0
+        if periodic[1]:
+            self.image[: low[1]] = self.image[high[1] :] = 1.0
+
+    def line(self, points: np.ndarray, colour: tuple[float, ...] = INK, width: int = 1) -> None:
+        """A line through points (N, 2), `width` pixels wide (odd)."""
+        half = width // 2
+        for shift in product(range(-half, half + 1), repeat=2):
+            places = self._pixels(points) + np.array(shift)
+            draw_segments(self.image, places[:-1], places[1:], np.array(colour, dtype=float))
+
+    def outline(self, surfaces: Sequence[DrawnSurface]) -> None:
+        """Draw the sides of the container, without those on which a surface lies."""
+        x, y = self.lengths
+        corners = np.array([[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]])
+        for side in pairwise(corners):
+            ends = np.array(sorted(side, key=tuple))
+            if not any(np.allclose(sorted(one.ends, key=tuple), ends) for one in surfaces):
+                self.line(ends)
+
+    def shade_behind(self, surface: DrawnSurface) -> None:
+        """Shade the part of the container behind a surface that has moved in."""
+        if surface.depth > 0.0:
+            corners = np.vstack([surface.ends, surface.ends - surface.depth * surface.inward])
+            (left, right), (top, bottom) = (
+                (int(np.rint(ends.min())), int(np.rint(ends.max()))) for ends in self._pixels(corners).T
+            )
+            self.image[max(top, 0) : bottom, max(left, 0) : right] = _SHADE
+
+    def surface(self, surface: DrawnSurface) -> None:
+        """Draw a surface in its look: its line, dashes, hatching, arrows and the edge of its well."""
+        start, end = surface.ends
+        along = (end - start) / np.linalg.norm(end - start)
+        unit = self._thickness / self.scale  # the thickness of the line as a length
+        points = np.linspace(start, end, len(surface.colours) + 1)
+        for n, colour in enumerate(surface.colours):
+            self._stroke(points[n : n + 2], tuple(colour), 4.0 * unit if surface.dashed else 0.0)
+        colour = tuple(surface.colours[len(surface.colours) // 2])
+        if surface.band:
+            self._stroke(surface.ends + surface.band * surface.inward, colour, unit)
+        if surface.hatched:
+            count = max(2, int(np.linalg.norm(end - start) / (4.0 * unit)))
+            for part in np.linspace(0.0, 1.0, count):
+                foot = start + part * (end - start)
+                self.line(np.array([foot, foot - 2.5 * unit * (surface.inward + along)]), INK)
+        arrows = [(0.5, surface.motion)] if surface.motion is not None else []
+        places = np.linspace(0.0, 1.0, 2 * len(surface.through) + 3)[1:-1]
+        arrows += [(p, sign * surface.inward) for p, sign in zip(places, 2 * surface.through, strict=False)]
+        for part, direction in arrows:
+            middle = start + part * (end - start) + 5.0 * unit * surface.inward  # the margin is narrow
+            self._arrow(middle - 8.0 * unit * direction, middle + 8.0 * unit * direction, colour)
+
+    @property
+    def _thickness(self) -> int:
+        """Width of the line of a surface in pixels, odd."""
+        return max(3, round(0.004 * min(self.image.shape[:2])) // 2 * 2 + 1)
+
+    def _stroke(self, points: np.ndarray, colour: tuple[float, ...], dash: float) -> None:
+        """Draw a thick line, in dashes of this length unless it is 0."""
+        if not dash:
+            self.line(points, colour, self._thickness)
+            return
+        length = float(np.linalg.norm(points[1] - points[0]))
+        count = max(1, round(length / dash) // 2 * 2 + 1)
+        marks = np.linspace(points[0], points[1], count + 1)
+        for n in range(0, count, 2):
+            self.line(marks[n : n + 2], colour, self._thickness)
+
+    def _arrow(self, tail: np.ndarray, head: np.ndarray, colour: tuple[float, ...]) -> None:
+        """Draw an arrow with a bright border, so that it is seen on discs of any colour."""
+        back = 0.25 * (tail - head)
+        barbs = [head + back + sign * 0.6 * np.array([-back[1], back[0]]) for sign in (-1.0, 1.0)]
+        lines = [np.array([tail, head]), *(np.array([barb, head]) for barb in barbs)]
+        for shade, width in ((PAPER, self._thickness + 2), (colour, self._thickness)):
+            for line in lines:
+                self.line(line, shade, width)
+
+    def path(self, points: np.ndarray) -> None:
+        """A line through points (N, 2) that is seen on discs of any colour: dark, with a bright border."""
+        self.line(points, PAPER, 5)
+        self.line(points, INK, 3)

@@ -1,0 +1,78 @@
+"""A small ray tracer for spheres on the floor of a container: one lamp, its shadows, and ambient light.
+
+Rays find spheres through a grid of cells. Ambient light is dimmed by each near sphere by the part of the sky
+that it covers, in closed form, without random rays and without noise. One ray goes through
+the middle of each pixel; where neighbours show different objects, SUBRAYS x SUBRAYS take its place.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from gaspart.kernels.drawing.ray_tracing import (
+    EDGE,
+    FLOOR,
+    NOTHING,
+    SPHERE,
+    list_spheres,
+    refine,
+    render_once,
+)
+from gaspart.rendering.camera import Camera, edges_of, segments
+
+__all__ = ["EDGE", "FLOOR", "NOTHING", "SPHERE", "cells", "trace"]
+_GAMMA = 2.2
+
+
+def trace(
+    positions: np.ndarray,
+    radii: np.ndarray,
+    colours: np.ndarray,
+    lengths: np.ndarray,
+    camera: Camera,
+    size: tuple[int, int],
+    lines: np.ndarray | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """The picture (H, W, 3), from 0 to 1, and the kind of object in the middle of each pixel (H, W).
+
+    positions (N, 3), radii (N,), colours (N, 3); lengths (3,) of the container, whose lower face is the
+    floor; size: (W, H) pixels; lines (M, 2, 3), drawn like the container's edges.
+    """
+    spheres = np.column_stack([positions, radii]).astype(float)
+    grid = cells(spheres, np.asarray(lengths, dtype=float))
+    width, height = size
+    image, shown = np.empty((height, width, 3)), np.empty((height, width), dtype=np.int64)
+    view = np.array([camera.eye, camera.forward, camera.right, camera.up, camera.light])
+    scales = (camera.half_width, camera.half_height, camera.near, camera.far)
+    edges = edges_of(lengths)
+    if lines is not None and len(lines):
+        edges = np.vstack([edges, segments(lines)])
+    scene = (spheres, np.asarray(colours, dtype=float) ** _GAMMA, edges, np.array(lengths, float))
+    render_once(image, shown, view, scales, scene, grid)
+    around = sliding_window_view(np.pad(shown, 1, mode="edge"), (3, 3))
+    mixed = (around != shown[..., None, None]).any(axis=(2, 3))
+    refine(image, np.argwhere(mixed), view, scales, scene, grid)
+    return np.clip(image, 0.0, 1.0) ** (1.0 / _GAMMA), shown
+
+
+def cells(spheres: np.ndarray, lengths: np.ndarray) -> tuple:
+    """Cubic cells over container and spheres: lowest corner (3,), side, numbers (3,), the lists of the
+    spheres that reach into each (listed[first[c] : first[c + 1]]), and each sphere's lowest cell (N, 3)."""
+    low, high = np.zeros(3), lengths.copy()
+    side = float(lengths.max())
+    if len(spheres):
+        low = np.minimum(low, (spheres[:, :3] - spheres[:, 3:]).min(axis=0))
+        high = np.maximum(high, (spheres[:, :3] + spheres[:, 3:]).max(axis=0))
+        side = max(((high - low).prod() / len(spheres)) ** (1 / 3), 2.5 * float(np.median(spheres[:, 3])))
+    numbers = np.maximum(1, np.ceil((high - low) / side)).astype(np.int64)
+    lowest, highest = (
+        np.clip(((spheres[:, :3] + sign * spheres[:, 3:] - low) / side).astype(np.int64), 0, numbers - 1)
+        for sign in (-1.0, 1.0)
+    )
+    first = np.zeros(numbers.prod() + 1, dtype=np.int64)
+    list_spheres(lowest, highest, numbers, first[1:], np.empty(0, dtype=np.int64))
+    listed = np.empty(first.sum(), dtype=np.int64)
+    first = np.cumsum(first)
+    list_spheres(lowest, highest, numbers, first[:-1].copy(), listed)
+    return low, side, numbers, first, listed, lowest
