@@ -65,6 +65,9 @@ SAMPLED = {
 """Those that hold within errors only, and why."""
 SINGLE = {"order": 1e-4}
 """The limit of rounding of what freud computes in single precision."""
+OF_FILES = {"rdf": 1e-2}
+"""The limit where a file has in single precision what a simulation has in double: a pair may lie in the next
+bin."""
 MEANS = ("Z", "pressure", "collision_rate", "pair_rates", "pressure_tensor")
 """Means over the intervals between frames: that of a whole run follows from its parts."""
 

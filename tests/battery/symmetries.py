@@ -7,7 +7,17 @@ import numpy as np
 import xarray as xr
 from battery.isometries import View, data_seen, result_seen
 from battery.kinds_of_runs import FRAMES, KINDS, recorded, repeated_simulation
-from battery.observed import MEANS, SAMPLED, apart, deviation, form_of, outcome, plain_name, traits_of
+from battery.observed import (
+    MEANS,
+    OF_FILES,
+    SAMPLED,
+    apart,
+    deviation,
+    form_of,
+    outcome,
+    plain_name,
+    traits_of,
+)
 from battery.observed import SINGLE as IN_SINGLE
 from battery.scaling import data_in_units, result_in_units
 
@@ -154,7 +164,9 @@ def judged(place, expected, after, limit=ROUNDING):
     if sampled:
         good = found.errors <= SURPRISING
         return Cell(*place, "tested" if good else "broken", "", found.errors, "errors")
-    good = found.rounding <= max(limit, IN_SINGLE.get(plain_name(observable), 0.0))
+    name = plain_name(observable)
+    limit = max(limit, IN_SINGLE.get(name, 0.0), OF_FILES.get(name, 0.0) if symmetry == "simulation" else 0.0)
+    good = found.rounding <= limit
     return Cell(*place, "tested" if good else "broken", "", found.rounding, "rounding")
 
 

@@ -152,16 +152,16 @@ PLANTS = [
     ),
     Plant(
         "half of the crossed term",
-        "analysis.motion",
-        "- 2.0 * np.diag(rr, lag)",
-        "- np.diag(rr, lag)",
+        "analysis.correlations",
+        "- 2.0 * _products(r)",
+        "- _products(r)",
         ("points_walls", "msd"),
     ),
     Plant(
         "displacements per N - 1",
-        "analysis.motion",
-        "pairs = (frames - lag) * count",
-        "pairs = (frames - lag) * (count - 1)",
+        "analysis.correlations",
+        "sums / ((frames - lag) * count)",
+        "sums / ((frames - lag) * (count - 1))",
         ("spheres_short", "msd"),
     ),
     Plant(
@@ -194,16 +194,16 @@ PLANTS = [
     ),
     Plant(
         "correlation per frame",
-        "analysis.motion",
-        "/ flat.shape[1]",
-        "/ len(flat)",
+        "analysis.correlations",
+        "* flat.shape[1])",
+        "* len(flat))",
         ("spheres_short", "vacf"),
     ),
     Plant(
         "drift left in",
         _MOTION,
-        "np.where(about, centre, 0.0)[:, None]",
-        "np.where(about, 0.0 * centre, 0.0)[:, None]",
+        "np.where(about, centre, 0.0)[frames, None]",
+        "np.where(about, 0.0 * centre, 0.0)[frames, None]",
         ("wind", "vacf"),
     ),
     Plant(
@@ -224,8 +224,8 @@ PLANTS = [
     Plant(
         "pairs N / (N - 1) twice",
         "analysis.pairs",
-        "each = np.array([g for",
-        "each = stored / (stored - 1) * np.array([g for",
+        "each[n] = counts / (len(run.time[part]) * ideal)",
+        "each[n] = stored / (stored - 1) * counts / (len(run.time[part]) * ideal)",
         ("periodic", "rdf"),
     ),
     Plant(

@@ -7,7 +7,8 @@ import pytest
 from scenes import centred, gas
 
 import gaspart as gp
-from gaspart.analysis.motion import accumulated, correlate
+from gaspart.analysis.correlations import correlate
+from gaspart.analysis.motion import accumulated
 from gaspart.trajectory.correlator import SUMS, Correlations, Correlator
 from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import read_recipe

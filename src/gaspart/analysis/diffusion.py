@@ -264,10 +264,7 @@ def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
     The shape is (G, stretches, d).
     """
     squares = np.array(
-        [
-            [((path[lag:] - path[: len(path) - lag]) ** 2).mean(axis=(0, 1)) for lag in lags]
-            for path in groups.paths
-        ]
+        [[((path[lag:] - path[: len(path) - lag]) ** 2).mean(axis=(0, 1)) for lag in lags] for path in groups]
     )
     return 0.5 * np.diff(squares, axis=1) / (groups.interval * np.diff(lags))[:, None]
 

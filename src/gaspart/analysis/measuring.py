@@ -12,6 +12,8 @@ from gaspart.analysis.observables import OBSERVABLES, known, require_selection
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from gaspart.analysis.observable import Observable
     from gaspart.analysis.run import Source
 
@@ -80,7 +82,8 @@ def measure(
     """
     if not isinstance(observable, str):
         names = [known(name) for name in observable]
-        return {name: measure(source, name, start, end, **selection) for name in names}
+        with opened(source, any(OBSERVABLES[name].needs == "pairs" for name in names)) as data:
+            return {name: measure(data, name, start, end, **selection) for name in names}
     name = known(observable)
     one = OBSERVABLES[name]
     require_selection(name, selection)
@@ -97,14 +100,9 @@ def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterat
     if end is None:
         yield source
         return
-    from gaspart.analysis.run import repeated
     from gaspart.keys.values import number
-    from gaspart.simulation import Simulation
-    from gaspart.trajectory.reading import open_trajectory
 
-    if isinstance(source, Simulation):
-        source = repeated(source, pairs)
-    with open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source) as data:
+    with opened(source, pairs) as data:
         time = data["time"].values
         last = number("end", end, "must be a finite number")
         count = int((time <= last + 1e-9 * abs(last)).sum())
@@ -112,3 +110,17 @@ def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterat
             longest = float(time[-1]) if len(time) else 0.0
             raise SceneError("end", end, f"leaves {count} frames of a run until time {longest:g}")
         yield data.isel(frame=slice(count))
+
+
+@contextmanager
+def opened(source: Source, pairs: bool = False) -> Iterator[xr.Dataset]:
+    """Yield the frames of a source, which are read or made once. A file is closed after the block. pairs: see
+    `until_time`."""
+    from gaspart.analysis.run import repeated
+    from gaspart.simulation import Simulation
+    from gaspart.trajectory.reading import open_trajectory
+
+    if isinstance(source, Simulation):
+        source = repeated(source, pairs)
+    with open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source) as data:
+        yield data

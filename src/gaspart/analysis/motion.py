@@ -8,7 +8,7 @@ particles, which are taken as independent.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +16,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.conditions import GROUPS
+from gaspart.analysis.correlations import Curves, autocorrelation, squared_displacement
 from gaspart.analysis.expected.equilibrium import described
 from gaspart.analysis.flow import FLOW
 from gaspart.analysis.observable import Observable, observable
@@ -26,54 +27,13 @@ from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
 from gaspart.trajectory.correlator import SUMS
 
-# Time correlations of one run's displacements and velocities, averaged over particles and time origins:
-# computed from frames, or accumulated by the run.
+# Time correlations that a run has accumulated.
 
 
 _PARTS = 16, 32
 """Of a run, whose scatter gives an uncertainty: the least and the largest number."""
 _PART = 4.0
 """The length of one in longest lags, so that few pairs of samples are on both sides of an edge."""
-
-
-@dataclass(frozen=True)
-class Curves:
-    """Time correlations of one replica at L lags, in reduced units, (L,) each.
-
-    time; msd <|r(t) - r(0)|^2>; correlation <v(0).v(t)> / d; running, the msd's derivative over 2d, from
-    <(r(t) - r(0)).(v(t) + v(0))> / 2d, which holds at every lag.
-    """
-
-    time: np.ndarray
-    msd: np.ndarray
-    correlation: np.ndarray
-    running: np.ndarray
-
-
-def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float, lags: int) -> Curves:
-    """Averages over particles and all time origins at lags 0 ... `lags` - 1 of `interval`.
-
-    displacements, velocities: (T, N, d), evenly sampled. In double precision throughout: freud's windowed
-    mean-squared displacement is the same average, but rounds positions to single precision first.
-    Raises ValueError for more lags than frames.
-    """
-    frames, count, dimension = displacements.shape
-    if not 1 <= lags <= frames:
-        raise ValueError(f"lags: {lags} (must be between 1 and the {frames} frames)")
-    r = np.asarray(displacements, dtype=float).reshape(frames, -1)
-    v = np.asarray(velocities, dtype=float).reshape(frames, -1)
-    # Sums over particles and axes for every pair of frames at once; a lag is a diagonal of these T x T
-    # matrices.
-    rr, rv = r @ r.T, r @ v.T
-    square, product = np.diag(rr), np.diag(rv)
-    msd, running = np.empty(lags), np.empty(lags)
-    for lag in range(lags):
-        late, early = slice(lag, frames), slice(0, frames - lag)
-        pairs = (frames - lag) * count
-        msd[lag] = (square[late] + square[early] - 2.0 * np.diag(rr, lag)).sum() / pairs
-        crossed = np.diag(rv, -lag) - np.diag(rv, lag)
-        running[lag] = (product[late] - product[early] + crossed).sum() / (2 * dimension * pairs)
-    return Curves(interval * np.arange(lags), msd, autocorrelation(velocities, lags), running)
 
 
 def accumulated(trajectory: xr.Dataset) -> Curves:
@@ -125,14 +85,6 @@ def _of_free_particles(run: Run) -> float:
     return count / (count - 1.0)
 
 
-def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:
-    """(lags,) mean over particles, axes and all time origins of values(0) values(t); values: (T, N, d)."""
-    frames = len(values)
-    flat = np.asarray(values, dtype=float).reshape(frames, -1)
-    products = flat @ flat.T
-    return np.array([np.diag(products, lag).mean() for lag in range(lags)]) / flat.shape[1]
-
-
 def between(time: np.ndarray, start: float, stop: float) -> np.ndarray:
     """Mask of the times from `start` to `stop`, both included."""
     return (time >= start * (1.0 - 1e-9)) & (time <= stop * (1.0 + 1e-9))
@@ -151,16 +103,19 @@ _FARTHEST = 0.45  # of a side: the longest way between frames by which a particl
 
 @dataclass(frozen=True)
 class Groups:
-    """Paths and velocities (G, T, n, d) of groups of moving particles, at even times, `interval` apart."""
+    """Paths or velocities (T, n, d) of groups of moving particles, at even times, `interval` apart.
 
-    paths: list[np.ndarray]
-    velocities: list[np.ndarray]
+    sizes: numbers of particles of the groups; frames: T; make: returns one of the groups, by its number. They
+    are made one after another as they are iterated over.
+    """
+
+    sizes: list[int]
+    frames: int
     interval: float
+    make: Callable[[int], np.ndarray]
 
-    @property
-    def sizes(self) -> list[int]:
-        """(G,) numbers of particles."""
-        return [velocity.shape[1] for velocity in self.velocities]
+    def __iter__(self) -> Iterator[np.ndarray]:
+        return (self.make(number) for number in range(len(self.sizes)))
 
 
 def mean_squared_displacement(
@@ -228,12 +183,7 @@ def mean_squared_displacement(
         groups = groups_of(run, chosen=selected(run, species, particles))
         number = _lags(groups, lags)
         axes = [slice(k, k + 1) for k in range(run.dimension)] if per_axis else [slice(None)]
-        found = np.array(
-            [
-                [correlate(path[..., k], velocity[..., k], groups.interval, number).msd for k in axes]
-                for path, velocity in zip(groups.paths, groups.velocities, strict=True)
-            ]
-        )
+        found = np.array([[squared_displacement(path[..., k], number) for k in axes] for path in groups])
         time = groups.interval * np.arange(number)
         values, errors = means_of(found if per_axis else found[:, 0], groups.sizes)
         return _displacement(run, time, values, errors)
@@ -297,7 +247,7 @@ def velocity_autocorrelation(
             return _autocorrelation(run, time, values / run.dimension, errors / run.dimension)
         groups = groups_of(run, paths=False, chosen=selected(run, species, particles))
         number = _lags(groups, lags)
-        found = np.array([autocorrelation(velocity, number) for velocity in groups.velocities])
+        found = np.array([autocorrelation(velocity, number) for velocity in groups])
         return _autocorrelation(run, groups.interval * np.arange(number), *means_of(found, groups.sizes))
 
 
@@ -348,7 +298,7 @@ def _lag(time: np.ndarray) -> dict[str, Any]:
 
 
 def _lags(groups: Groups, lags: int | None) -> int:
-    frames = len(groups.velocities[0])
+    frames = groups.frames
     number = max(2, frames // 2) if lags is None else count_of("lags", lags, least=2)
     if number > frames:
         raise SceneError("lags", lags, f"there are {frames} frames")
@@ -373,7 +323,7 @@ def groups_of(
     run : Run
         The run.
     paths : bool, default True
-        Include paths.
+        Paths; otherwise velocities.
     about : ndarray of bool, shape (d,), optional
         Axes along which values are about the centre of mass. Default: those along which its velocity is
         conserved.
@@ -400,50 +350,43 @@ def groups_of(
         raise SceneError("count", len(masses), "a single particle keeps its velocity")
     free = np.where(about, np.sqrt(masses.sum() / np.where(others > 0.0, others, 1.0))[:, None], 1.0)
 
-    velocities, carried = run.velocities[:, moving], None
-    if run.flow_axes:
-        peculiar, free_part = run.motion.velocities, run.motion.freedom
+    values = _values(run, paths, stride)
+    centre = np.array([masses @ frame for frame in values]) / masses.sum()
+
+    def motion(frames: slice, members: np.ndarray) -> np.ndarray:
+        part = values[frames][:, chosen[members]].astype(float)
+        part -= np.where(about, centre, 0.0)[frames, None]
+        part *= free[members]
+        return np.asarray(part)
+
+    interval = float(steps.mean()) * stride
+    if len(chosen) >= GROUPS:
+        alike = _alike(run.species[moving][chosen])
+        sizes = [len(members) for members in alike]
+        return Groups(sizes, len(values), interval, lambda n: motion(slice(None), alike[n]))
+    length, everyone = len(values) // GROUPS, np.arange(len(chosen))
+    if length < 4:
+        rule = f"an error of fewer than {GROUPS} particles needs {4 * GROUPS} frames or more"
+        raise SceneError("frames", len(values), rule)
+    sizes = [len(chosen)] * GROUPS
+    return Groups(sizes, length, interval, lambda n: motion(slice(n * length, (n + 1) * length), everyone))
+
+
+def _values(run: Run, paths: bool, stride: int) -> np.ndarray:
+    """Return paths or velocities (T, M, d) of the moving particles in every `stride`-th frame, where the gas
+    flows about its local flow."""
+    moving = run.moving
+    if not run.flow_axes:
+        values = unwrapped(run, stride) if paths else run.vectors("velocities")[::stride].values
+        return values if moving.all() else values[:, moving]
+    velocities, peculiar, free_part = run.velocities[:, moving], run.motion.velocities, run.motion.freedom
+    if paths:
         from scipy.integrate import cumulative_trapezoid
 
         carried = cumulative_trapezoid(velocities - peculiar, run.time, axis=0, initial=0.0)
-        velocities = peculiar / np.sqrt(np.where(free_part > 0.0, free_part, 1.0))
-
-    def parts(values: np.ndarray) -> list[np.ndarray]:
-        values = values[::stride]
-        centre = np.einsum("tnd,n->td", values, masses) / masses.sum()
-        motion = free * (values[:, chosen] - np.where(about, centre, 0.0)[:, None])
-        if len(chosen) >= GROUPS:
-            return [motion[:, part] for part in _alike(run.species[moving][chosen])]
-        length = len(motion) // GROUPS
-        if length < 4:
-            rule = f"an error of fewer than {GROUPS} particles needs {4 * GROUPS} frames or more"
-            raise SceneError("frames", len(motion), rule)
-        return [motion[first : first + length] for first in range(0, GROUPS * length, length)]
-
-    return Groups(
-        paths=parts(paths_of(run, carried)) if paths else [],
-        velocities=parts(velocities),
-        interval=float(steps.mean()) * stride,
-    )
-
-
-def paths_of(run: Run, carried: np.ndarray | None) -> np.ndarray:
-    """Return the paths of the moving particles, without the displacements by the flow.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    carried : ndarray, optional
-        Displacements by the flow.
-
-    Returns
-    -------
-    ndarray, shape (T, M, d)
-        The paths.
-    """
-    paths = unwrapped(run)[:, run.moving]
-    return paths if carried is None else paths - carried
+        return np.asarray((unwrapped(run)[:, moving] - carried)[::stride])
+    velocities = peculiar / np.sqrt(np.where(free_part > 0.0, free_part, 1.0))
+    return velocities[::stride]
 
 
 def _alike(species: np.ndarray) -> list[np.ndarray]:
@@ -475,13 +418,15 @@ def stride_of(run: Run, count: int = GROUPS) -> int:
     return -(-len(run.time) // (MOST_FRAMES * (GROUPS if count < GROUPS else 1)))
 
 
-def unwrapped(run: Run) -> np.ndarray:
+def unwrapped(run: Run, stride: int = 1) -> np.ndarray:
     """Return positions continued across periodic faces: those of the file, or by the nearest image.
 
     Parameters
     ----------
     run : Run
         The run.
+    stride : int, default 1
+        One of this number of frames is returned.
 
     Returns
     -------
@@ -489,12 +434,20 @@ def unwrapped(run: Run) -> np.ndarray:
         The positions.
     """
     if "displacements" in run.data:
-        return run.data["displacements"].values
-    steps = np.diff(run.positions, axis=0)
+        return run.data["displacements"][::stride].values
+    positions = run.vectors("coordinates").values
     lengths = np.where(run.periodic, run.scene.container.lengths, np.inf)
     finite = np.where(run.periodic, run.scene.container.lengths, 1.0)
-    steps -= np.where(run.periodic, finite * np.round(steps / finite), 0.0)
-    if (np.abs(steps) > _FARTHEST * lengths).any():
-        rule = "is too long to follow particles across periodic faces; make the run with --displacements"
-        raise SceneError("sample_interval", float(run.time[1] - run.time[0]), rule)
-    return np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])
+    path, last = np.zeros(positions.shape[1:]), positions[0].astype(float)
+    paths = np.zeros((len(range(0, len(positions), stride)), *path.shape))
+    for frame in range(1, len(positions)):
+        present = positions[frame].astype(float)
+        step, last = present - last, present
+        step -= np.where(run.periodic, finite * np.round(step / finite), 0.0)
+        if (np.abs(step) > _FARTHEST * lengths).any():
+            rule = "is too long to follow particles across periodic faces; make the run with --displacements"
+            raise SceneError("sample_interval", float(run.time[1] - run.time[0]), rule)
+        path += step
+        if frame % stride == 0:
+            paths[frame // stride] = path
+    return paths

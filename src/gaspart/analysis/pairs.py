@@ -86,11 +86,18 @@ def radial_distribution(
 
     Pairs are compared with the N (N - 1) / 2 pairs of an ideal gas.
     """
-    count, dimension = np.shape(frames)[1:]
+    count = np.shape(frames)[1]
     counts = pair_counts(frames, lengths, bins, furthest, threads)
+    g = counts / (len(frames) * ideal_counts(count, lengths, bins, furthest))
+    return (np.arange(bins) + 0.5) * (furthest / bins), g
+
+
+def ideal_counts(count: int, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float) -> np.ndarray:
+    """Return the mean `pair_counts` of a frame of an ideal gas of N particles, shape (bins,)."""
+    dimension = len(lengths)
     unit = unit_sphere_surface(dimension) / dimension * (furthest / bins) ** dimension
-    ideal = 0.5 * count * (count - 1) * unit * shell_volumes(bins, dimension) / np.prod(lengths)
-    return (np.arange(bins) + 0.5) * (furthest / bins), counts / (len(frames) * ideal)
+    pairs = 0.5 * count * (count - 1)
+    return np.asarray(pairs * unit * shell_volumes(bins, dimension) / np.prod(lengths))
 
 
 # g(r) from the momentum that pairs of particles gain along their separation.
@@ -215,14 +222,17 @@ def rdf(
         end = min(5.0 * diameter, half) if has is None else has.furthest
         end = end if furthest is None else furthest
         end = number("furthest", end, rule, above=0.0, most=half)
-        stretches = np.array_split(chosen_frames(run, np.arange(len(run.time))), STRETCHES)
-        found = [radial_distribution(run.positions[part], lengths, bins, end) for part in stretches]
-        each = np.array([g for _, g in found], dtype=float)
-        parts = g_by_impulses(run, np.array([part[0] for part in stretches]), bins, end)
+        stretches, ideal = stretches_of(run), ideal_counts(stored, lengths, bins, end)
+        each = np.empty((STRETCHES, bins))
+        for n, part in enumerate(stretches):
+            blocks = run.blocks("coordinates", part)
+            counts = sum(pair_counts(block, lengths, bins, end) for block in blocks)
+            each[n] = counts / (len(run.time[part]) * ideal)
+        parts = g_by_impulses(run, np.array([part.start for part in stretches]), bins, end)
         if parts is not None:
             each = mixed_g(each, parts, shell_volumes(bins, run.dimension))
         values, errors = means_of(each)
-        distance = found[0][0]
+        distance = (np.arange(bins) + 0.5) * (end / bins)
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
         about = described("rdf", run, distance, end / bins)
         result = observable("rdf", along, values, errors, **about)
@@ -254,6 +264,13 @@ def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:
     if len(run.time) < STRETCHES:
         raise SceneError("frames", len(run.time), f"an error needs {STRETCHES} or more")
     return values[:: -(-len(run.time) // MOST_FRAMES)]
+
+
+def stretches_of(run: Run) -> list[slice]:
+    """Return the `chosen_frames` of 16 consecutive stretches of a run. Raises SceneError as that."""
+    numbers = chosen_frames(run, np.arange(len(run.time)))
+    step = int(numbers[1] - numbers[0])
+    return [slice(int(part[0]), int(part[-1]) + 1, step) for part in np.array_split(numbers, STRETCHES)]
 
 
 # Collision rates and contact values of each pair of species.

@@ -8,7 +8,7 @@ from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -41,6 +41,7 @@ REPEATED = 129
 """Frames of a simulation, which is run again to measure it; fewer of many particles."""
 _AT_REST = 1e-24  # of a kinetic energy: a rounding error, squared
 _MOST = 20_000_000  # numbers that such frames hold
+_BLOCK = 2_000_000  # numbers of a block of frames that are read at once; of one frame, if it has more
 
 
 @dataclass(frozen=True)
@@ -103,19 +104,27 @@ class Run:
     @cached_property
     def positions(self) -> np.ndarray:
         """(T, N, d); NaN where faces are open, of numbers that no particle has."""
-        return self._vectors("coordinates").values.astype(float)
+        return self.vectors("coordinates").values.astype(float)
 
     @cached_property
     def velocities(self) -> np.ndarray:
         """(T, N, d)."""
-        return self._vectors("velocities").values.astype(float)
+        return self.vectors("velocities").values.astype(float)
 
-    def _vectors(self, name: str) -> xr.DataArray:
-        """Return the vectors of this name in all frames; raise SceneError if the file lacks them."""
+    def vectors(self, name: str) -> xr.DataArray:
+        """Return the vectors (T, N, d) of this name, read on use; raise SceneError if the file lacks them."""
         if name not in self.data:
-            rule = f"of each particle the file has nothing else, and {name} are needed"
-            raise SceneError("keep", self.data.attrs.get("keep"), rule)
+            kept = self.data.attrs.get("keep")
+            rule = f"the file holds only {kept} of the particles, and {name} are needed; run without keep"
+            raise SceneError("keep", kept, rule)
         return self.data[name]
+
+    def blocks(self, name: str, frames: slice) -> Iterator[np.ndarray]:
+        """Read vectors (T, N, d) of some frames in blocks, whose memory does not grow with their number."""
+        values = self.vectors(name)[frames]
+        length = max(1, _BLOCK // max(1, values[0].size))
+        for first in range(0, len(values), length):
+            yield values[first : first + length].values
 
     @cached_property
     def masses(self) -> np.ndarray:
@@ -226,7 +235,7 @@ class Run:
             whole = np.einsum("tnd,tnd,n->t", *[self.velocities[:, self.moving]] * 2, masses)
         else:  # the energy is in double precision, and the momentum that of any frame
             whole = 2.0 * self.data["kinetic_energy"].values
-            first = self._vectors("velocities")[0].values[self.moving].astype(float)
+            first = self.vectors("velocities")[0].values[self.moving].astype(float)
             momentum = np.where(self.conserved, masses @ first, 0.0)
             energies = whole - (momentum @ momentum) / (masses.sum() or 1.0)
         moves = energies.mean() > _AT_REST * whole.mean()
@@ -404,7 +413,7 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
     """
     scene, engine = simulation.scene, simulation.engine
     if simulation.time <= 0.0:
-        raise SceneError("simulation", "at time 0", "has not advanced")
+        raise SceneError("simulation", "at time 0", "has not advanced; call advance(duration=...) first")
     frames = int(np.clip(_MOST // (3 * max(1, scene.count) * scene.dimension), 33, REPEATED))
     times = np.linspace(0.0, simulation.time, frames)
     if step := engine.quantum:  # half a step more, so that rounding does not cost one
@@ -415,17 +424,29 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
     counter = PairCounter(again) if pairs else None
     for time in times:
         again.advance(until=time)
-        state, tally = again.state, again.tally
-        places = {"coordinates": state.positions, "velocities": state.velocities}
-        places["displacements"] = state.unwrapped
-        places = {name: by_number(state, values, scene.capacity) for name, values in places.items()}
-        extra = {} if state.piston is None else {"piston_position": state.piston[0]}
+        row = frame_of(again)
         if counter:
             counter.take()
-            extra["pair_collisions"] = counter.counts.copy()
-        row = {**vars(tally), **places, **extra, "time": again.time}
-        row["kinetic_energy"] = state.kinetic_energy
-        rows.append({name: value for name, value in row.items() if value is not None})
+            row["pair_collisions"] = counter.counts.copy()
+        rows.append(row)
+    return with_frames(simulation, rows)
+
+
+def frame_of(simulation: Simulation) -> dict[str, Any]:
+    """Return the variables of a frame: those of a simulation now."""
+    state, scene = simulation.state, simulation.scene
+    places = {"coordinates": state.positions, "velocities": state.velocities}
+    places["displacements"] = state.unwrapped
+    row = {name: by_number(state, values, scene.capacity) for name, values in places.items()}
+    if state.piston is not None:
+        row["piston_position"] = state.piston[0]
+    row = {**vars(simulation.tally), **row, "time": simulation.time, "kinetic_energy": state.kinetic_energy}
+    return {name: value for name, value in row.items() if value is not None}
+
+
+def with_frames(simulation: Simulation, rows: Sequence[dict[str, Any]]) -> xr.Dataset:
+    """Return frames of a simulation as a trajectory has them."""
+    scene, engine = simulation.scene, simulation.engine
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]
     if scene.is_open:

@@ -13,7 +13,7 @@ import numpy as np
 from gaspart.analysis.expected.equilibrium import described
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
-from gaspart.analysis.pairs import STRETCHES, chosen_frames
+from gaspart.analysis.pairs import STRETCHES, stretches_of
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import means_of
 from gaspart.kernels.analysis.waves import CONJUGATE, sum_waves
@@ -128,7 +128,7 @@ _HIGHEST = 20.0
 """Wave number times the diameter up to which S(k) is measured: the first three maxima."""
 _WAVES = 24
 """Wave vectors of each bin of S(k) that are used, evenly chosen among those that the container admits."""
-_WORK = 2**31
+_WORK = 2**35
 """Terms of all sums over particles, above which fewer frames are used."""
 
 
@@ -268,11 +268,13 @@ def _measured(
     end = _HIGHEST / diameter if highest is None else highest
     end = number("highest", end, rule, above=least)
     waves, shell, k = shells_of(lengths, end, bins, _WAVES)
-    frames = chosen_frames(run, run.positions)
-    room = max(STRETCHES, _WORK // (run.count * len(waves)))
-    frames = frames[:: -(-len(frames) // room)]
-    found = [
-        np.apply_along_axis(in_shells, -1, products(part, waves).mean(axis=0), shell)
-        for part in np.array_split(frames, STRETCHES)
-    ]
+    stretches = stretches_of(run)
+    most = max(1, _WORK // (run.count * len(waves) * STRETCHES))
+    found = []
+    for part in stretches:
+        fewer = -(-len(run.time[part]) // most)
+        part = slice(part.start, part.stop, part.step * fewer)
+        blocks = run.blocks("coordinates", part)
+        total = sum(products(block, waves).sum(axis=0) for block in blocks)
+        found.append(np.apply_along_axis(in_shells, -1, total / len(run.time[part]), shell))
     return np.array(found), {"wave_number": (k, {"units": "1 / length", "long_name": "wave number"})}

@@ -11,7 +11,6 @@ gases (1970), chapter 5, for spheres.
 import math
 
 import numpy as np
-from scipy.special import erf, ive
 
 from gaspart.theory.enskog import collision_rate
 from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension
@@ -74,6 +73,8 @@ def collision_rate_at_speed(
     >>> theory.collision_rate_at_speed([0.0, 1.0, 3.0], 0.1, dimension=3).round(4)
     array([1.2486, 1.447 , 2.6081])
     """
+    from scipy.special import erf, ive
+
     gas = {"diameter": diameter, "temperature": temperature, "mass": mass}
     thermal = math.sqrt(2.0 * temperature / mass)
     c = np.abs(np.asarray(speed, dtype=float)) / thermal

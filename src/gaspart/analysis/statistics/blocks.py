@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import chdtrc
 
 from gaspart.analysis.estimate import Estimate
 
@@ -221,6 +220,8 @@ def histogram_chi_square(samples: ArrayLike, cdf: Callable[[np.ndarray], Any], b
 
     The bins have equal probability: cdf(samples) is uniform on [0, 1]. At least 5 samples a bin.
     """
+    from scipy.special import chdtrc
+
     samples = series_of("samples", samples, 1)
     if bins < 2 or samples.size < 5 * bins:
         raise ValueError(f"bins: {bins} (at least 2, with 5 or more of the {samples.size} samples each)")

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import chdtrc, fdtrc, stdtrit
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics.blocks import positive_errors, positive_freedoms, series_of
@@ -109,6 +108,8 @@ def fit_linear(
     chi_square /= factor
     p_value = math.nan
     if freedom:
+        from scipy.special import chdtrc, fdtrc
+
         each = chi_square / freedom
         p_value = float(fdtrc(freedom, error_freedom, each) if few.any() else chdtrc(freedom, chi_square))
     return Fit(values, covariance, own, chi_square, freedom, error_freedom, p_value, residuals)
@@ -401,6 +402,8 @@ def optimum(x: ArrayLike, cost: ArrayLike, within: float = 3.0) -> Optimum:
         least = cheapest[0]
         return Optimum(float(x[least]), 0.0, math.inf, float(cost[least]), False, 0.0, math.inf)
     gradient = np.array([0.0, 0.5 / falling, -0.5 / rising])  # of ln location
+    from scipy.special import stdtrit
+
     quantile = stdtrit(fit.degrees_of_freedom, 0.975)
     spread = math.exp(quantile * math.sqrt(gradient @ covariance @ gradient))
     middle = math.sqrt(falling * rising)

@@ -7,7 +7,7 @@ import xarray as xr
 from scenes import centred
 
 from gaspart import theory
-from gaspart.analysis.motion import correlate
+from gaspart.analysis.correlations import correlate
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import from_rows
 from gaspart.trajectory.correlator import SUMS

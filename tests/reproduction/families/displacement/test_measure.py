@@ -7,7 +7,8 @@ from reproduction.families.displacement.data import langevin, point
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.analysis.motion import Curves, between, correlate, line
+from gaspart.analysis.correlations import Curves, correlate
+from gaspart.analysis.motion import between, line
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.displacement import measure as displacement
 from gaspart.reproduction.families.shared import curves

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.motion import autocorrelation
+from gaspart.analysis.correlations import autocorrelation
 from gaspart.reproduction.families.velocity import measure as velocity
 from gaspart.reproduction.points.point import Point
 

@@ -16,9 +16,10 @@ import xarray as xr
 from scipy.integrate import cumulative_simpson
 
 from gaspart import theory
+from gaspart.analysis.correlations import Curves
 from gaspart.analysis.diffusion import LINEAR_FROM
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.motion import Curves, between, line
+from gaspart.analysis.motion import between, line
 from gaspart.analysis.statistics import fit_polynomial, means_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.curves import reduced_curves

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from gaspart.analysis.motion import Curves, accumulated
+from gaspart.analysis.correlations import Curves
+from gaspart.analysis.motion import accumulated
 from gaspart.errors import SceneError
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
