@@ -298,11 +298,7 @@ def _contacts(frame: xr.Dataset) -> float:
 
 
 def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
-<<<<<<< HEAD
-    """Return True if an observable is made of contacts of which there was none, or never changed."""
-=======
-    """Return True if an observable is made of contacts and there was no contact."""
->>>>>>> main
+    """Return True if an observable never changed, or is made of contacts and there was no contact."""
     return any(
         one.rule == _UNCHANGED
         or (one.value == 0.0 if "face" in OBSERVABLES[one.asked.observable].along else collisions == 0.0)
