@@ -1,4 +1,4 @@
-"""Options of the command line for declared settings: of engines, and of what the file of a run holds."""
+"""Options of the command line for declared settings of engines and of files of runs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ def engine_settings() -> dict[str, Kind]:
 
 
 def add_setting(group: argparse._ArgumentGroup, name: str, kind: Kind) -> None:
-    """Add the option of a setting: a number, a word, a text, or a flag that changes its default."""
+    """Add the option of a setting: a number, a word, a text, or a flag.
+
+    A flag changes the default.
+    """
     option, meaning, default = name.replace("_", "-"), kind["description"], kind.get("default")
     usual = "" if default is None else f"; default: {default}"
     types = kind.get("type", ())

@@ -159,7 +159,7 @@ def sweep(
 
 @dataclass(frozen=True)
 class _Plan:
-    """Points of a sweep, and reasons why some cannot be run, by the names of the points."""
+    """Points of a sweep, and reasons why some cannot be run, by names."""
 
     points: list[Point]
     failures: dict[str, str]
