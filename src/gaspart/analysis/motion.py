@@ -51,7 +51,9 @@ def accumulated(trajectory: xr.Dataset) -> Curves:
 
 
 def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute the lags of a run's correlations, the mean of one of `SUMS` and its error, (lags,).
+    """Compute the mean of one of `SUMS` of a run's correlations, and its error, by lag.
+
+    Returned are the lags, the mean and its standard error, (lags,).
 
     The mean is over pairs of samples of which the later one is in the measured part; the error is the scatter
     of 16 to 32 consecutive parts of it, of four times the longest lag if it is long enough. It holds for

@@ -38,11 +38,11 @@ _MOST_BOXES = 4
 def pair_counts(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
 ) -> np.ndarray:
-    """Count the pairs of all frames in equal intervals of the distance up to `furthest`, shape (bins,).
+    """Count the pairs of all frames in equal intervals of the distance up to `furthest`.
 
-    frames: positions (T, N, d) in a periodic container of lengths (d,), by the nearest image. In double
-    precision; the counts do not depend on the number of threads. Raises ValueError for a distance beyond half
-    of the shortest side, where a pair has several images.
+    The shape is (bins,). The frames are positions (T, N, d) in a periodic container of lengths (d,); the
+    nearest image counts, in double precision. The counts do not depend on the number of threads. Raises
+    ValueError for a distance beyond half of the shortest side, where a pair has several images.
     """
     sides = np.asarray(lengths, dtype=float)
     if not 0.0 < furthest <= 0.5 * sides.min():
@@ -82,7 +82,9 @@ def _boxes(size: np.ndarray, count: int, furthest: float, first: int) -> np.ndar
 def radial_distribution(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the centres (bins,) of shells up to `furthest` and g(r) there, the mean over frames (T, N, d).
+    """Return the centres (bins,) of shells up to `furthest`, and the mean of g(r) over frames.
+
+    The frames have the shape (T, N, d).
 
     Pairs are compared with the N (N - 1) / 2 pairs of an ideal gas.
     """
@@ -115,7 +117,7 @@ _ALIKE = 1e-9
 def kept(run: Run) -> PairImpulseTally | None:
     """Return the stored impulses of pairs of a run, or None.
 
-    None if there are none, or not all particles are in the file, from which the temperature follows.
+    It is None without them, and if not all particles are in the file, from which the temperature follows.
     """
     return None if run.is_subset else stored_tally(run.data.attrs, PairImpulseTally)
 

@@ -48,7 +48,7 @@ def live(
     size : tuple of int
         Width and height of the picture in pixels.
     colour : str, default "speed"
-        Colours of particles, as of `render`.
+        Colours of particles, as for `render`.
 
     Returns
     -------

@@ -299,7 +299,8 @@ class LiveGas:
     def speeds(self) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
         """Return edges and density of the histogram of speeds since the last change, and Maxwell's.
 
-        Maxwell's density holds for the mean energy, for particles of one mass; otherwise it is None.
+        Maxwell's density holds for the mean energy, for particles of one mass; for others it has the value
+        None.
         """
         masses, d = self.simulation.state.masses, self._first.dimension
         moving = np.isfinite(masses)
