@@ -42,13 +42,16 @@ class Fit:
         return Estimate(self.values, self.errors, self.freedoms)
 
     def estimate(self, number: int) -> Estimate:
-        """One of the parameters, with its uncertainty."""
+        """Return a parameter with its uncertainty."""
         return self.estimates[number]
 
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """y = amplitude x^exponent; exponent_freedom: degrees of freedom of the exponent's error."""
+    """Power law y = amplitude x^exponent.
+
+    `exponent_freedom` are the degrees of freedom of the exponent's error.
+    """
 
     exponent: float
     exponent_error: float
@@ -116,7 +119,7 @@ def fit_linear(
 
 
 def _with_errors(y: Values, errors: ArrayLike | None, freedoms: ArrayLike) -> tuple:
-    """Values, their errors and degrees of freedom."""
+    """Return values, their errors and degrees of freedom."""
     return (y.value, y.error, y.freedom) if isinstance(y, Estimate) else (y, errors, freedoms)
 
 
