@@ -1,4 +1,4 @@
-"""A gas to play with in a notebook: sliders change it, gauges measure it while it runs."""
+"""Gas to play with in a notebook: sliders change it, gauges measure it."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def live(
     size : tuple of int
         Width and height of the picture in pixels.
     colour : str, default "speed"
-        Colours of particles, as of `render`.
+        Colours of particles, as for `render`.
 
     Returns
     -------
@@ -128,7 +128,7 @@ def live(
 
 
 def _ranges(gas: LiveGas) -> list[tuple[str, tuple[float, float, float], Callable[[float], None]]]:
-    """Return the name, the range and the effect of each slider that has a meaning for a gas."""
+    """Return the name, the range and the effect of each slider that suits a gas."""
     scene = gas.simulation.scene
     found: list[tuple[str, tuple[float, float, float], Callable[[float], None]]] = []
     if gas.emptiest < scene.packing_fraction:
@@ -154,7 +154,7 @@ def meters_of(gas: LiveGas) -> str:
         rows.append((name, f"{value:.4g} &plusmn; {error:.1g}", expected))
     lines = "".join(f"<tr><td>{html.escape(name)}</td><td>{a}</td><td>{b}</td></tr>" for name, a, b in rows)
     waiting = "" if rows else f"<tr><td>measuring: {LEAST_FRAMES} pictures</td></tr>"
-    head = "<tr><th></th><th>since the last change</th><th>theory</th></tr>"
+    head = "<tr><th></th><th>measured</th><th>theory</th></tr>"
     edges, density, expected = gas.speeds()
     width, height = 260.0, 110.0
     most = max(density.max(), expected.max() if expected is not None else 0.0) or 1.0

@@ -2,7 +2,7 @@
 
 Everywhere: `error` is one standard deviation of the estimate; errors given to a fit are standard deviations
 of independent Gaussian scatter, exact unless their degrees of freedom are given; arrays are one-dimensional
-and of equal length unless stated. Probabilities `p_value` are those of a chi-square at least as large if the
+and of equal length unless stated. A `p_value` is the probability of a chi-square at least as large if the
 model holds. Inputs that are too short, of unequal length or not finite raise ValueError.
 """
 

@@ -34,8 +34,10 @@ def positive_errors(errors: ArrayLike, size: int) -> np.ndarray:
 
 
 def positive_freedoms(freedoms: ArrayLike, size: int) -> np.ndarray:
-    """Return degrees of freedom broadcast to (size,); raise ValueError unless positive. They may be
-    infinite."""
+    """Return degrees of freedom broadcast to (size,); raise ValueError unless positive.
+
+    They may be infinite.
+    """
     freedoms = np.broadcast_to(np.asarray(freedoms, dtype=float), (size,))
     if not np.all(freedoms > 0.0):
         raise ValueError("freedoms: must be positive")
@@ -50,11 +52,11 @@ _ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class CorrelatedMean:
-    """The mean of a correlated series, and what blocks say of its error; `errors[k]` is the standard error
-    from blocks of `lengths[k]` samples.
+    """Mean of a correlated series, with errors from blocks.
 
-    `flat`: the error from blocks no longer grows with their length beyond its own uncertainty, so that the
-    series is long enough; from blocks of `block_length` on, of which there are `blocks`.
+    `errors[k]` is the standard error from blocks of `lengths[k]` samples. `flat` is True if the error from
+    blocks no longer grows with their length beyond its own uncertainty, so that the series is long enough; it
+    does so from blocks of `block_length` on, of which there are `blocks`.
     """
 
     estimate: Estimate
@@ -66,18 +68,18 @@ class CorrelatedMean:
 
 
 def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMean:
-    """Mean and standard error of a stationary correlated series.
+    """Compute the mean and standard error of a stationary correlated series.
 
-    The squared error is the spectrum at frequency 0 over the length: that of an autoregressive process fitted
-    to the series, whose order grows as the cube root of the length (Berk, Ann. Stat. 2, 489 (1974)). It is
-    right for independent, correlated and anticorrelated series alike, and its own uncertainty, that of the
-    fitted coefficients, is stated as degrees of freedom: 13 for 200 independent samples. These are no more
-    than the changes from one sample to the next: a series that has been the same so far says nothing of its
-    error, 0 with a single degree of freedom.
+    The squared error is the spectrum at frequency 0 over the length, for an autoregressive process fitted to
+    the series, whose order grows as the cube root of the length (Berk, Ann. Stat. 2, 489 (1974)). It is right
+    for independent, correlated and anticorrelated series alike, and its own uncertainty, from the fitted
+    coefficients, is stated as degrees of freedom: 13 for 200 independent samples. These are no more than the
+    changes from one sample to the next: a series that has been the same so far says nothing of its error, 0
+    with a single degree of freedom.
 
     Whether the series is long enough is decided by blocks (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461
-    (1989)): the error from blocks of 1, 2, 4 ... samples grows until they are independent; that from n of
-    them is uncertain by the part 1 / sqrt(2 (n-1)). It is flat from the shortest length on that no longer
+    (1989)): the error from blocks of 1, 2, 4 ... samples grows until they are independent; the error from n
+    of them is uncertain by the part 1 / sqrt(2 (n-1)). It is flat from the shortest length on that no longer
     length exceeds by more than the uncertainty of the longer one. The error at that length is not taken: the
     first one that is not clearly too small is too small on average, by 5 to 40 % with 16 to 300
     autocorrelation times. Needs minimum_blocks (>= 4) samples; a remainder at the start that fills no block
@@ -150,10 +152,11 @@ def slow_mean(series: ArrayLike, minimum_blocks: int = 16) -> Estimate:
 
 
 def autocorrelation_time(series: ArrayLike) -> float:
-    """Integrated autocorrelation time 1/2 + sum of rho(k), in samples: 1/2 for independent ones, less for
-    anticorrelated ones.
+    """Compute the integrated autocorrelation time 1/2 + sum of rho(k), in samples.
 
-    A series of n samples holds n / (2 time) independent ones: the squared error of its mean, as of
+    It is 1/2 for independent samples, less for anticorrelated ones.
+
+    A series of n samples holds n / (2 time) independent ones: the squared error of its mean, by
     `correlated_mean`, is 2 time / n times its variance. A constant series has none of its own: 1/2.
     """
     series = series_of("series", series, 4)
@@ -162,7 +165,9 @@ def autocorrelation_time(series: ArrayLike) -> float:
 
 
 def _spectrum(series: np.ndarray) -> tuple[float, float]:
-    """Return the sum of a series' autocovariances over all lags, and the degrees of freedom of this estimate.
+    """Compute the sum of a series' autocovariances over all lags.
+
+    The degrees of freedom of this estimate are returned too.
 
     The autocovariances about a measured mean are too small by the sum itself over n: they are shifted by a
     first estimate of it, and the fit is repeated.
@@ -180,12 +185,12 @@ def _spectrum(series: np.ndarray) -> tuple[float, float]:
 
 
 def _autoregression(covariances: np.ndarray) -> tuple[float, float]:
-    """The spectrum at frequency 0 of the autoregressive process that has these autocovariances, S = E / A^2,
-    and the uncertainty of A: n times its variance over A^2.
+    """Compute the spectrum at frequency 0 of an autoregressive process, S = E / A^2.
 
-    By the recursion of Levinson and Durbin: E is the variance of what the earlier values do not predict, A is
-    1 less the sum of the coefficients; their covariance matrix is E / n times the inverse of that of the
-    values, whose elements' sum is that of A^2 / E over the lower orders.
+    The process has these autocovariances. The uncertainty of A is returned too, n times its variance over
+    A^2. By the recursion of Levinson and Durbin, E is the variance of what the earlier values do not predict,
+    A is 1 less the sum of the coefficients; their covariance matrix is E / n times the inverse of the
+    covariance matrix of the values, whose elements' sum is the sum of A^2 / E over the lower orders.
     """
     coefficients = np.zeros(0)
     unpredicted, rest, inverse = float(covariances[0]), 1.0, 0.0
@@ -216,7 +221,9 @@ class Histogram:
 
 
 def histogram_chi_square(samples: ArrayLike, cdf: Callable[[np.ndarray], Any], bins: int) -> Histogram:
-    """Chi-square of independent samples against a distribution without fitted parameters, given by its `cdf`.
+    """Compute chi-square of independent samples against a distribution given by its `cdf`.
+
+    No parameter is fitted.
 
     The bins have equal probability: cdf(samples) is uniform on [0, 1]. At least 5 samples a bin.
     """
