@@ -50,7 +50,7 @@ def test_the_table_is_known_to_two_in_a_thousand(dimension):
     rows = theory.small_systems("contact_value", dimension)
     relative = rows.error / rows.value
     assert len(rows) > 90 and np.median(relative) < 1.5e-3 and np.mean(relative < 2.5e-3) > 0.9
-    several = {(5, 0.475), (6, 0.5), (32, 0.5), (48, 0.5), (64, 0.5)} if dimension == 3 else set()
+    several = {(5, 0.475), (6, 0.5), (32, 0.49), (32, 0.5), (48, 0.5), (64, 0.5)} if dimension == 3 else set()
     uncertain = rows[relative > 0.02]
     assert set(zip(uncertain["count"].tolist(), uncertain.packing_fraction.tolist(), strict=True)) == several
 
