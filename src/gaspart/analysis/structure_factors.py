@@ -30,9 +30,10 @@ every second one along each axis, and so on."""
 
 
 def admitted(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Wave vectors k = 2 pi n / L with 0 < |k| <= highest, one of each pair k, -k, which have one S.
+    """Return the wave vectors k = 2 pi n / L with 0 < |k| <= highest, one of each pair k, -k.
 
-    lengths (d,). Returns the integers n (M, d) and |k| (M,), by ascending |k|.
+    Both vectors of a pair have one S. The lengths have the shape (d,). Returns the integers n (M, d) and |k|
+    (M,), by ascending |k|.
     """
     unit = 2.0 * np.pi / np.asarray(lengths, dtype=float)
     most = (highest / unit).astype(int)
@@ -49,9 +50,9 @@ def admitted(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.
 def shells_of(
     lengths: Sequence[float] | np.ndarray, highest: float, bins: int, most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Up to `most` of the `admitted` wave vectors of each of `bins` equal intervals of |k|, evenly chosen,
-    where these are many from those of every second (fourth, ...) wave along each axis.
+    """Select up to `most` of the `admitted` wave vectors of each of `bins` equal intervals of |k|.
 
+    They are evenly chosen; where there are many, from every second (fourth, ...) wave along each axis.
     Returns n (M, d), the number of the shell of each (M,), and the mean |k| of each of the S shells that are
     not empty (S,).
     """
@@ -73,7 +74,7 @@ def shells_of(
 
 
 def in_shells(values: np.ndarray, shell: np.ndarray) -> np.ndarray:
-    """(S,) means of the values (M,) of each shell."""
+    """Average the values (M,) of each shell, shape (S,)."""
     return np.bincount(shell, values) / np.bincount(shell)
 
 
@@ -87,9 +88,10 @@ def factors(
 def amplitudes(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray, threads: int = 1
 ) -> np.ndarray:
-    """Return sum exp(i k.r) of each frame, complex, shape (T, M), at wave vectors k = 2 pi n / L.
+    """Compute sum exp(i k.r) of each frame, complex, at wave vectors k = 2 pi n / L.
 
-    frames: positions (T, N, d); waves: the integers n (M, d). Each thread sums whole frames.
+    The shape is (T, M). Frames are positions (T, N, d), `waves` the integers n (M, d). Each thread sums whole
+    frames.
     """
     base = 2.0 * np.pi / np.asarray(lengths, dtype=float)
     made, rows = _factor_rows(waves)
@@ -104,8 +106,10 @@ def amplitudes(
 
 
 def _factor_rows(waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the products that make all factors exp(2 pi i n x / L) of the waves (M, d), as `sum_waves` takes
-    them, and the rows (M, d) of the factors of each wave."""
+    """Return the products that make all factors exp(2 pi i n x / L) of the waves (M, d).
+
+    `sum_waves` takes them; the rows (M, d) of the factors of each wave are returned too.
+    """
     dimension = waves.shape[1]
     made: list[tuple[int, int]] = []
     row_of = {(axis, 0): 0 for axis in range(dimension)} | {(axis, 1): 1 + axis for axis in range(dimension)}
@@ -257,9 +261,11 @@ def _measured(
     highest: float | None,
     products: Callable[[np.ndarray, np.ndarray], np.ndarray],
 ) -> tuple[np.ndarray, dict[str, Any]]:
-    """Return means over 16 stretches of the run of `products` (T, ..., M), of frames and M wave vectors, in
-    intervals of |k|, shape (16, ..., wave_number), and the coordinate. Raises SceneError; see
-    `structure_factor`."""
+    """Average `products` over 16 blocks of the run, in intervals of |k|.
+
+    The products (T, ..., M) are of frames and M wave vectors; the means have the shape (16, ...,
+    wave_number), and the coordinate is returned too. Raises SceneError; see `structure_factor`.
+    """
     bins = count_of("bins", bins, least=2)
     lengths = run.scene.container.lengths
     run.require_all()

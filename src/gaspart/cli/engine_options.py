@@ -68,7 +68,10 @@ def as_option(error: SceneError, engine: str) -> str:
 
 
 def stated(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> list[str]:
-    """The options for settings of these kinds that differ from their defaults, or have none."""
+    """Return the options for settings of these kinds that differ from their defaults.
+
+    Settings without a default have options too.
+    """
     options: list[str] = []
     for name, kind in kinds.items():
         value, option = settings.get(name), name.replace("_", "-")

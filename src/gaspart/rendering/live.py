@@ -1,4 +1,4 @@
-"""A gas to play with in a notebook: sliders change it, gauges measure it while it runs."""
+"""Gas to play with in a notebook: sliders change it, gauges measure it."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def live(
     size : tuple of int
         Width and height of the picture in pixels.
     colour : str, default "speed"
-        Colours of particles, as of `render`.
+        Colours of particles, as for `render`.
 
     Returns
     -------
@@ -141,7 +141,7 @@ def _slider(
 
 
 def _ranges(gas: LiveGas) -> list[tuple[str, tuple[float, float, float], Callable[[float], None]]]:
-    """Return the name, the range and the effect of each slider that has a meaning for a gas."""
+    """Return the name, the range and the effect of each slider that suits a gas."""
     scene = gas.simulation.scene
     found: list[tuple[str, tuple[float, float, float], Callable[[float], None]]] = []
     if gas.emptiest < scene.packing_fraction:

@@ -30,7 +30,7 @@ _DENSEST = {2: 0.45, 3: 0.28}
 _WEIGHTS = 8.0
 """The strongest gravity of the slider: of a fall through the container, in units of m v^2 of a particle."""
 _HOTTEST = 4.0
-"""Highest temperature of the walls, divided by that of the gas at the start."""
+"""Highest temperature of the walls, divided by the temperature of the gas at the start."""
 _SMALLEST = 0.4
 """Least distance of the piston from the other side, as a fraction of the length."""
 _SPEED = 0.25
@@ -43,11 +43,15 @@ LIVE_SIZE = (600, 450)
 
 
 class LiveGas:
-    """A simulation that goes on from picture to picture, of a scene that may change.
+    """Simulation that goes on from picture to picture, of a scene that may change.
 
-    interval: the time between two pictures; size: (W, H) pixels; collisions: those since the start; traced:
-    the path of the first moving particle is drawn. Other arguments as of `Simulation`, and `colour` as of
-    `render`. Raises SceneError as that, for open faces, and for a scene in which nothing moves or falls.
+    interval : time between two pictures.
+    size : (W, H) in pixels.
+    collisions : number of collisions since the start.
+    traced : True if the path of the first moving particle is drawn.
+
+    Other arguments are those for `Simulation`, and `colour` is explained in `render`. Raises SceneError as
+    `Simulation`, for open faces, and for a scene in which nothing moves or falls.
     """
 
     def __init__(
@@ -282,7 +286,7 @@ class LiveGas:
         return found + list(zip(names, values, errors, known, strict=True))
 
     def _bulk(self, temperature: float) -> float | None:
-        """Return the pressure, or Z, of the gas in a container without walls; None for other scenes."""
+        """Return the pressure, or Z, of the gas without walls; None for other scenes."""
         scene = self.simulation.scene
         gas = replace(scene, faces={}).gas
         try:
@@ -294,9 +298,10 @@ class LiveGas:
         return z * self.simulation.state.count * temperature / float(np.prod(scene.container.lengths))
 
     def speeds(self) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
-        """Edges and density of the histogram of speeds since the last change, and Maxwell's density.
+        """Return edges and density of the histogram of speeds since the last change, and Maxwell's.
 
-        Maxwell's density is that of the mean energy, for particles of one mass; otherwise None.
+        Maxwell's density holds for the mean energy, for particles of one mass; for others it has the value
+        None.
         """
         masses, d = self.simulation.state.masses, self._first.dimension
         moving = np.isfinite(masses)

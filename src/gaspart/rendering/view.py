@@ -223,7 +223,10 @@ def _order(shown: list[DrawnParticles]) -> dict:
 
 
 def _looks(shown: list[tuple[DrawnSurface, ...]]) -> dict:
-    """Return the looks of faces and walls, and their corners in each frame, once if nothing moves."""
+    """Return the looks of faces and walls, and their corners in each frame.
+
+    If nothing moves, the corners are returned once.
+    """
     frames = [
         [
             {"corners": np.pad(one.ends, ((0, 0), (0, 3 - one.ends.shape[1]))).tolist(), "depth": one.depth}

@@ -192,7 +192,7 @@ def _config_of(root: Path, name: str | None) -> Path:
 
 
 def _is_config_of(file: Path, name: str | None) -> bool:
-    """Return True if a file is a config with this key `run`, or a whole one without."""
+    """Return True if a file is a config with this key `run`, or whole without it."""
     try:
         content = read_yaml(file)
     except SceneError:

@@ -21,7 +21,6 @@ def speed_up(cores: ArrayLike, count: ArrayLike, serial: float, overhead: float)
     serial : fraction s of the work that one core does alone.
     overhead : N_0, number of particles whose work on one core takes the time in which threads are begun and
         awaited.
-
     """
     shared, waited = (1.0 - serial) / np.asarray(cores), overhead / np.asarray(count)
     return np.asarray(1.0 / (serial + shared + waited))
