@@ -80,13 +80,13 @@ def live(
     meters = widgets.HTML(meters_of(gas))
 
     async def play() -> None:
-        shown = 0.0
+        updated = 0.0
         try:
             while running.value:
                 start = time.perf_counter()
                 image.value = gas.advance()._repr_png_()
-                if start - shown > _METERS:
-                    meters.value, shown = meters_of(gas), start
+                if start - updated > _METERS:
+                    meters.value, updated = meters_of(gas), start
                 await asyncio.sleep(max(_PAUSE, _SECONDS - (time.perf_counter() - start)))
         except SimulationError as error:
             running.value, note.value = False, str(error)
@@ -134,29 +134,29 @@ def _slider(
 ) -> Any:
     """Return a slider of a name and a range (least, value, most) that changes a gas."""
     least, value, most = range_
-    made = widgets.FloatSlider(value, min=least, max=most, step=(most - least) / 50.0, description=name)
-    made.continuous_update, made.style.description_width = False, "initial"
-    made.observe(lambda event: changing(change, event.new), "value")
-    return made
+    slider = widgets.FloatSlider(value, min=least, max=most, step=(most - least) / 50.0, description=name)
+    slider.continuous_update, slider.style.description_width = False, "initial"
+    slider.observe(lambda event: changing(change, event.new), "value")
+    return slider
 
 
 def _ranges(gas: LiveGas) -> list[tuple[str, tuple[float, float, float], Callable[[float], None]]]:
     """Return the name, the range and the effect of each slider that suits a gas."""
     scene = gas.simulation.scene
-    found: list[tuple[str, tuple[float, float, float], Callable[[float], None]]] = []
+    ranges: list[tuple[str, tuple[float, float, float], Callable[[float], None]]] = []
     if gas.emptiest < scene.packing_fraction:
-        found.append(("packing fraction", (gas.emptiest, scene.packing_fraction, gas.densest), gas.fill))
+        ranges.append(("packing fraction", (gas.emptiest, scene.packing_fraction, gas.densest), gas.fill))
     if gas.strongest:
-        found.append(("gravity", (0.0, gas.gravity, gas.strongest), gas.pull))
+        ranges.append(("gravity", (0.0, gas.gravity, gas.strongest), gas.pull))
     if gas.hottest:
-        found.append(("temperature of walls", (0.0, gas.temperature, gas.hottest), gas.heat))
+        ranges.append(("temperature of walls", (0.0, gas.temperature, gas.hottest), gas.heat))
     normal = scene.restitution.normal if scene.restitution else 1.0
     if scene.count > 1:
-        found.append(("restitution", (min(0.5, normal), normal, 1.0), gas.damp))
+        ranges.append(("restitution", (min(0.5, normal), normal, 1.0), gas.damp))
     if gas.shortest:
         length = scene.container.lengths[0]
-        found.append(("piston", (gas.shortest, length, length), gas.push))
-    return found
+        ranges.append(("piston", (gas.shortest, length, length), gas.push))
+    return ranges
 
 
 def meters_of(gas: LiveGas) -> str:

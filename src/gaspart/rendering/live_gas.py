@@ -159,8 +159,8 @@ class LiveGas:
         smaller = np.prod(now.container.lengths) / np.prod(self._first.container.lengths)
         factor = (packing_fraction - self.emptiest) / (self._first.packing_fraction - self.emptiest) * smaller
         species = [
-            one if one.fixed else replace(one, count=max(1, round(factor * one.count)))
-            for one in self._first.species
+            item if item.fixed else replace(item, count=max(1, round(factor * item.count)))
+            for item in self._first.species
         ]
         self._begin(replace(now, species=species))
 
@@ -267,23 +267,23 @@ class LiveGas:
         walls = {face.temperatures for face in scene.faces.values() if isinstance(face, Thermal)}
         bath = walls.pop() if len(walls) == 1 and scene.restitution is None else ()
         mean = correlated_mean(temperatures).estimate
-        found = [("temperature", mean.value, mean.error, bath[0] if len(set(bath)) == 1 else None)]
+        readings = [("temperature", mean.value, mean.error, bath[0] if len(set(bath)) == 1 else None)]
         if self._target is not None:  # the volume changes
-            return found
+            return readings
         try:
             result = measure(data, "Z" if scene.is_periodic else "pressure")
         except SceneError:  # not defined in this scene
-            return found
+            return readings
         names = (
             ["Z"] if scene.is_periodic else [f"pressure, {face}" for face in result.estimate["face"].values]
         )
-        known = (
+        theories = (
             [self._bulk(mean.value)] * len(names)
             if result.theory is None
             else np.atleast_1d(result.theory.values)
         )
-        values, errors = (np.atleast_1d(one.values) for one in (result.estimate, result.error))
-        return found + list(zip(names, values, errors, known, strict=True))
+        values, errors = (np.atleast_1d(item.values) for item in (result.estimate, result.error))
+        return readings + list(zip(names, values, errors, theories, strict=True))
 
     def _bulk(self, temperature: float) -> float | None:
         """Return the pressure, or Z, of the gas without walls; None for other scenes."""
@@ -319,7 +319,7 @@ class LiveGas:
     @property
     def emptiest(self) -> float:
         """Packing fraction of all particles except species that move."""
-        fixed = [one for one in self._first.species if one.fixed]
+        fixed = [item for item in self._first.species if item.fixed]
         return replace(self._first, species=fixed).packing_fraction
 
     @property
@@ -345,7 +345,7 @@ class LiveGas:
     def temperature(self) -> float:
         """Temperature of the hottest wall of the first scene; 0 without thermal walls."""
         faces = self._first.faces.values()
-        return max((max(one.temperatures) for one in faces if isinstance(one, Thermal)), default=0.0)
+        return max((max(item.temperatures) for item in faces if isinstance(item, Thermal)), default=0.0)
 
     @property
     def hottest(self) -> float | None:
@@ -359,7 +359,7 @@ class LiveGas:
     def shortest(self) -> float | None:
         """Least coordinate of the side x high to choose; None if it cannot be moved."""
         first = self._first
-        fixed = bool(self.emptiest) or any(one.fixed for one in first.particles)
+        fixed = bool(self.emptiest) or any(item.fixed for item in first.particles)
         bound = first.walls or first.pistons or (first.gravity and first.gravity[0])
         if bound or fixed or "x_high" not in (*self._hard, *self._warm):
             return None
@@ -369,14 +369,14 @@ class LiveGas:
     def _warm(self) -> dict[str, Thermal]:
         """Thermal faces of the first scene, of one temperature each."""
         faces = self._first.faces.items()
-        return {name: one for name, one in faces if isinstance(one, Thermal) and one.varies_along is None}
+        return {name: item for name, item in faces if isinstance(item, Thermal) and item.varies_along is None}
 
     @property
     def _hard(self) -> list[str]:
         """Faces of the container that reflect."""
         axes = range(self._first.dimension)
         names = [f"{'xyz'[axis]}_{end}" for axis in axes for end in ("low", "high")]
-        walls = np.repeat([not one for one in self._first.container.periodic], 2)
+        walls = np.repeat([not item for item in self._first.container.periodic], 2)
         return [
             name for name, wall in zip(names, walls, strict=True) if wall and name not in self._first.faces
         ]
