@@ -137,7 +137,11 @@ results/docs/symmetries.csv: $(MEASURED) $(wildcard tests/battery/*.py) | setup
 results/docs/exact_values.csv: $(MEASURED) $(wildcard tests/exact/*) | setup
 	PYTHONPATH=tests .venv/bin/python -m exact.table
 
-docs: setup results/docs/symmetries.csv results/docs/exact_values.csv
+# Recorded runs that one can play with, in some two minutes.
+results/docs/extra/play/index.html: docs/play.py docs/play.html src/gaspart/rendering/view.html $(MEASURED) | setup
+	.venv/bin/python docs/play.py results/docs/extra/play
+
+docs: setup results/docs/symmetries.csv results/docs/exact_values.csv results/docs/extra/play/index.html
 	.venv/bin/python docs/gallery.py results docs/gallery.png
 	.venv/bin/python docs/thumbnails.py results
 	.venv/bin/python -m sphinx --quiet --fail-on-warning --jobs auto docs results/docs/html

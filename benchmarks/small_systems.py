@@ -56,6 +56,11 @@ LAGS = (1, 2, 3, 4, 6, 8, 12, 16, 24)
 """Lags of the mean-squared displacement, in samples."""
 LEAST_FITTED, SHORTEST = 4, 2.2
 """Number of particles and side, in diameters, from which on rows determine the remainder."""
+LEAST_RUNS, MANY_RUNS = 4, 8
+"""Runs from which on their own scatter is their error, and from which on it is known well enough."""
+SEPARATE = 8.0
+"""Scatter, divided by that of independent collisions, above which runs are in several states: fluids have 1
+to 7, 64 spheres at 0.5 17, five spheres at 0.475 618, whose contact value is 108, 131 or 1291."""
 PILOT, BATCH, ATTEMPTS = 1, 2, 20
 """Runs of each row at first, in a turn, and attempts at a start without a jam."""
 
@@ -160,12 +165,17 @@ def read(path: Path) -> dict[tuple, list[dict]]:
 
 
 def combined(runs: list[dict]) -> tuple[float, float]:
-    """The contact value of both estimates with least variance, and its standard error by half runs."""
-    values = np.array([half for run in runs for half in run["halves"]])
-    weights = np.array(
-        [part for run in runs for part in (run["middle"], run["events"] - run["middle"])], float
-    )
-    weights /= weights.sum()
+    """Return the contact value of both estimates with least variance, and its standard error.
+
+    The error follows from the scatter of runs, or of half runs if there are fewer than `LEAST_RUNS`.
+    """
+    if len(runs) < LEAST_RUNS:
+        values = np.array([half for run in runs for half in run["halves"]])
+        weights = np.array([part for run in runs for part in (run["middle"], run["events"] - run["middle"])])
+    else:
+        values = np.array([(run["virial"], run["rate"]) for run in runs])
+        weights = np.array([run["events"] for run in runs])
+    weights = weights / weights.sum()
     difference = values[:, 0] - values[:, 1]
     spread = np.sqrt(weights)[:, None] * (values - weights @ values)
     scatter = np.sqrt(weights) * difference
@@ -173,6 +183,28 @@ def combined(runs: list[dict]) -> tuple[float, float]:
     each = values[:, 1] + share * difference
     mean = float(weights @ each)
     return mean, math.sqrt(weights @ (each - mean) ** 2 / (len(each) - 1.0))
+
+
+def results(runs: dict[tuple, list[dict]]) -> dict[tuple, tuple[float, float]]:
+    """Return the contact value of each row, and its standard error.
+
+    Few runs do not know their own scatter. Of fewer than `MANY_RUNS`, the error is no less than half the rows
+    of this density have for as many collisions, nor than independent collisions have. Where runs do not pass
+    between the states of a system, the error is the standard deviation of runs: no number of them tells how
+    likely each state is.
+    """
+    found = {row: combined(entries) for row, entries in runs.items()}
+    events = {row: sum(entry["events"] for entry in entries) for row, entries in runs.items()}
+    kinds = defaultdict(list)
+    for row, (value, error) in found.items():
+        kinds[row[0], row[2]].append(error / value * math.sqrt(events[row]))
+    for row, (value, error) in found.items():
+        if len(runs[row]) < MANY_RUNS:
+            least = max(1.0, float(np.median(kinds[row[0], row[2]]))) / math.sqrt(events[row])
+            found[row] = value, max(error, value * least)
+        elif error / value * math.sqrt(events[row]) > SEPARATE:
+            found[row] = value, error * math.sqrt(len(runs[row]))
+    return found
 
 
 def run_all(path: Path, rounds: int) -> None:
@@ -204,27 +236,18 @@ def run_all(path: Path, rounds: int) -> None:
 
 def gains(runs: dict[tuple, list[dict]]) -> dict[tuple, float]:
     """By how much one more run lowers the relative variance of each row above the target, per CPU time."""
-    relative = {}
-    for row, entries in runs.items():
-        mean, error = combined(entries)
-        relative[row] = error / mean * math.sqrt(sum(entry["events"] for entry in entries))
-    kinds = defaultdict(list)
-    for (dimension, _, fraction), value in relative.items():
-        kinds[dimension, fraction].append(value)
     gain = {}
-    for row, entries in runs.items():
-        # The scatter of a few half runs is itself uncertain: no less than that of most rows of this density.
-        scatter = max(relative[row], float(np.median(kinds[row[0], row[2]])) * (len(entries) < 8))
-        events, cpu = (sum(entry[key] for entry in entries) for key in ("events", "cpu"))
-        if scatter / math.sqrt(events) > TARGET:
-            gain[row] = scatter**2 / events / len(entries) / (cpu / len(entries))
+    for row, (value, error) in results(runs).items():
+        if error / value > TARGET:
+            gain[row] = (error / value) ** 2 / sum(entry["cpu"] for entry in runs[row])
     return gain
 
 
 def table(path: Path) -> list[list]:
     """Rows of the table in the form of `theory.literature`."""
-    found = []
-    for (dimension, count, fraction), runs in sorted(read(path).items()):
+    found, runs = [], read(path)
+    known = results(runs)
+    for dimension, count, fraction in sorted(runs):
         container = {2: "square", 3: "cube"}[dimension]
 
         def row(quantity: str, value: float, error: float) -> list:
@@ -232,17 +255,14 @@ def table(path: Path) -> list[list]:
             numbers = f"{value:.{digits}f}", f"{error:.{digits}f}"
             return [dimension, quantity, fraction, count, container, *numbers, "small_systems"]  # noqa: B023
 
-        value, error = combined(runs)
-        # Few half runs do not know their own scatter: no less than twice that of independent collisions.
-        if len(runs) < 4:
-            error = max(error, 2.0 * value / math.sqrt(sum(run["events"] for run in runs)))
+        value, error = known[dimension, count, fraction]
         first_order = 2.0 ** (dimension - 1) * fraction * (1.0 - 1.0 / count)
         rate = float(theory.collision_rate(fraction, dimension, contact=1.0)) * (1.0 - 1.0 / count)
         rate *= theory.speeds.mean_speed_factor(dimension * (count - 1))
         found.append(row("contact_value", value, error))
         found.append(row("Z", 1.0 + first_order * value, first_order * error))
         found.append(row("collision_rate", rate * value, rate * error))
-        if diffusive := diffusion(dimension, count, runs):
+        if diffusive := diffusion(dimension, count, runs[dimension, count, fraction]):
             found.append(row("diffusion", *diffusive))
     return found
 
@@ -268,9 +288,7 @@ def diffusion(dimension: int, count: int, runs: list[dict]) -> tuple[float, floa
 def fit(path: Path) -> None:
     """Print the coefficients of `theory.finite_size_remainder` that make the table most likely."""
     for dimension in (2, 3):
-        rows = [
-            (row, *combined(runs), sum(run["events"] for run in runs)) for row, runs in read(path).items()
-        ]
+        rows = [(row, *known) for row, known in results(read(path)).items()]
         rows = [row for row in rows if row[0][0] == dimension and row[0][1] >= LEAST_FITTED]
         rows = [row for row in rows if side_of(*row[0]) >= SHORTEST]
         eta = np.array([row[2] for row, *_ in rows])
@@ -279,7 +297,7 @@ def fit(path: Path) -> None:
         expansion = [finite_size._expansion(row[2], dimension, row[1], 100.0) for row, *_ in rows]
         value, error = np.array(expansion).T
         contact = np.array([entry[1] for entry in rows])
-        scatter = [max(entry[2], entry[1] / math.sqrt(entry[3])) for entry in rows]
+        scatter = np.array([entry[2] for entry in rows])
         differences, known = contact / value - 1.0, np.hypot(scatter, error) / value
 
         def deviation(p: np.ndarray) -> np.ndarray:

@@ -55,4 +55,5 @@ html_theme_options = {
 }
 html_static_path = ["static"]
 html_css_files = ["site.css"]
+html_extra_path = [str(extra)] if (extra := ROOT / "results/docs/extra").is_dir() else []  # docs/play.py
 copybutton_prompt_text = "$ "

@@ -242,6 +242,12 @@ def paper():
     return {"paper.md": filled(text, rows, "(see the claims)")}
 
 
+def changelog():
+    """Return the page of changes, which includes CHANGELOG.md."""
+    include = "```{include} ../../CHANGELOG.md\n:start-line: 1\n:relative-docs: docs/\n```\n"
+    return {"changelog.md": f"# Changes\n\n{include}"}
+
+
 def table(columns, rows):
     """A table of rows: title of a column -> pattern of its cells."""
     text = ".. list-table::\n   :header-rows: 1\n\n"
@@ -262,6 +268,7 @@ def write(folder):
         **referees(),
         **paper(),
         **reference(),
+        **changelog(),
     }
     pages["symmetries.rst"] = symmetries.page(heading, table)
     pages["exact-values.rst"] = exact_values.page(heading, table)

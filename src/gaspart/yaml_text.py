@@ -65,8 +65,10 @@ def parse_yaml(text: str, name: str = "YAML") -> Any:
         mark = error.problem_mark or error.context_mark
         if mark is None:
             raise SceneError("YAML", text, f"is not valid YAML: {error}", name) from None
-        line = "".join(text.split("\n", mark.line + 1)[mark.line : mark.line + 1]).strip() or "the end"
-        raise _error(mark, line, f"is not valid YAML: {error.problem}").inside("", name) from None
+        line = "".join(text.split("\n", mark.line + 1)[mark.line : mark.line + 1])
+        remedy = "; indent with spaces, not with tabs" if "\t" in line else ""
+        rule = f"is not valid YAML: {error.problem}{remedy}"
+        raise _error(mark, line.strip() or "the end", rule).inside("", name) from None
     except (yaml.YAMLError, UnicodeEncodeError) as error:  # characters that no YAML may hold
         raise SceneError("YAML", text, f"is not valid YAML: {error}", name) from None
 

@@ -292,7 +292,11 @@ def test_what_is_stored_falls_faster_than_noise():
         (gp.Scene(BOX.container, [gp.Species(40, 0.5)]), "pressure", "moving particles"),
         (gp.Scene(BOX.container), "pressure", "count = 0"),
         (BOX, "Z", "observable = 'Z': container.boundary"),
-        (BOX, "shear_viscosity", "stress: needs a periodic container"),
+        (
+            BOX,
+            "shear_viscosity",
+            "container.boundary: the stress, viscosity and conductivity need a periodic",
+        ),
         (SHEARED, "pressure", "observable = 'pressure': container.boundary: has no walls"),
         (BOX, "pressure:z low", "there is no such wall; the walls are x low, x high, y low, y high"),
         (BOX, "collision_rate:x low", "collision_rate is not of a wall"),

@@ -120,6 +120,36 @@ def test_without_the_corrections_it_would_cover_less():
     assert covered < 0.92 and kept < 0.7
 
 
+@pytest.mark.parametrize("form", ["square", "sine"])
+@pytest.mark.parametrize("period", [10, 20, 50, 100, 150, 200, 300, 500, 1000, 2000])
+def test_a_periodic_series_ends_no_run_before_it_is_known(form, period):
+    """By one of even period, whose mean is 1; of long periods less than one is seen, at any phase."""
+    ends = 0
+    for phase in np.random.default_rng(9).random(10):
+        wave = np.sin(2.0 * math.pi * ((np.arange(COUNTS[-1]) + 0.01) / period + phase))
+        series = 1.0 + 0.5 * (np.sign(wave) if form == "square" else wave)
+        known = [astuple(correlated_mean(series[count // 4 : count]).estimate) for count in COUNTS]
+        if end := ended(known, 0.02, correct=True):
+            low, high = end[1]
+            assert low <= 1.0 <= high
+            ends += 1
+    assert ends == (10 if period <= 20 else ends if period <= 100 else 0)
+
+
+def test_a_series_that_never_changes_is_given_up(tmp_path, monkeypatch):
+    """A particle that hits a wall once in each interval between frames: the next one may differ."""
+    monkeypatch.setattr(reached, "IDLE", 128)
+    scene = gp.Scene(gp.Container((8.0, 8.0)), [], [gp.Particle((1.0, 1.0), (1.0, 0.0), 0.5)])
+    run = {"engine": gp.EventDriven(), "seed": 1, "sample_interval": 14.0}
+    path = tmp_path / "run.nc"
+    gp.run(scene, path=path, until=gp.Accuracy("pressure", 0.1, face="x low"), **run)
+    (one,) = gp.reached_accuracy(path)
+    assert one.value == pytest.approx(1.0 / 7.0**2, rel=1e-9) and not one.met
+    assert "all are the same so far" in accuracy_lines(path)[0]
+    with gp.open_trajectory(path) as data:
+        assert data.sizes["frame"] == 128
+
+
 GAS = gas(3, 32, 0.2)
 FROM_REST = gp.Scene(
     gp.Container((8.0, 8.0, 8.0), boundary="periodic"),

@@ -7,6 +7,7 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.analysis.estimate import Estimate
 
 A = gp.analysis
 
@@ -65,3 +66,40 @@ def test_the_speeds_of_few_particles_at_fixed_energy(boundary, tmp_path):
         for curve in (found.theory, maxwell)
     )
     assert chi < 20.0 < wrong
+
+
+def about_the_centre_of_mass(side, total, bins):
+    """Density in bins of two discs of diameter 1, whose coordinates have a fixed sum: the difference of the
+    coordinates has as much room as the other axis leaves."""
+    fine = (np.arange(bins * 400) + 0.5) * side / (bins * 400)
+    apart = np.abs((2.0 * fine - total + 0.5 * side) % side - 0.5 * side)
+    room = side - 2.0 * np.sqrt(np.maximum(1.0 - apart**2, 0.0))
+    return 2.0 / side**2 * (room / room.mean()).reshape(bins, -1).mean(axis=1)
+
+
+def test_the_density_of_two_discs_is_that_about_their_centre_of_mass():
+    deviations, uniform, side = [], [], math.sqrt(2.0 * math.pi / 4.0 / 0.3)
+    kind = gp.Species(2, 0.5, temperature=1.0, arrangement="compressed", exact_temperature=True)
+    scene = gp.Scene(gp.Container((side, side), "periodic"), [kind])
+    for seed in range(20):
+        simulation = gp.Simulation(scene, gp.EventDriven(), seed)
+        total = float(simulation.state.positions[:, 0].sum())
+        simulation.advance(1000.0)
+        found = A.profile(simulation, axis="x", bins=20)
+        assert found.theory is None
+        exact = about_the_centre_of_mass(side, total, 20)
+        measured = Estimate.of(found, "density")
+        deviations.append((measured - exact).deviation)
+        uniform.append((measured - 2.0 / side**2).deviation)
+    z, without = (np.array(one)[np.isfinite(one)] for one in (deviations, uniform))
+    assert z.size > 380 and abs(z).max() < 4.0 and 0.75 < np.sqrt((z**2).mean()) < 1.1
+    assert np.sqrt((without**2).mean()) > 1.6
+
+
+@pytest.mark.parametrize(("count", "stated"), [(3, False), (15, False), (16, True)])
+def test_density_has_a_theory_where_the_fixed_centre_of_mass_does_not_matter(count, stated):
+    scene = gp.Scene(gp.Container((8.0, 8.0), "periodic"), [gp.Species(count, 0.5, temperature=1.0)])
+    for engine, known in ((gp.EventDriven(), stated), (gp.DSMC(), True)):
+        simulation = gp.Simulation(scene, engine, 1)
+        simulation.advance(100.0)
+        assert (A.profile(simulation, axis="x").theory is not None) == known

@@ -1,4 +1,4 @@
-"""Sixty typical mistakes on the command line: each is one line that states what to do, with exit code 2."""
+"""A hundred typical mistakes on the command line: one line states what to do, with exit code 2."""
 
 import pytest
 
@@ -19,6 +19,8 @@ experiments:
     point: {dimension: 2, count: 50, packing_fraction: 0.1, boundary: periodic, collisions_per_particle: 5}
 figures: {wall_pressure: {experiments: [gas]}}
 """
+RESERVOIR = "{kind: open, activity: 0.1, temperature: 1.0}"
+KEPT = ["--keep", "positions"]
 RUN = ["run", "scene.yaml", "-o", "run.nc", "--duration", "1", "--sample-interval", "0.5"]
 CHECK = ["check", "scene.yaml"]
 
@@ -99,6 +101,16 @@ MISTAKES = {
     "table of two": (line("measure", "run.nc", "Z", "D", "-o", "a.csv"), "-o takes one observable"),
     "unknown quantity of theory": (line("theory", "pressure", "--eta", "0.1"), "'pressure': unknown name"),
     "theory beyond the fluid": (line("theory", "Z", "--eta", "0.9"), "0.9"),
+    "accuracy in percent": (line(*RUN[:4], "--until", "Z=1%"), "as Z=1e-3 for 0.1 %"),
+    "accuracy without a number": (line(*RUN[:4], "--until", "Z"), "as Z=1e-3 for 0.1 %"),
+    "budget of a scene": (line("budget", "scene.yaml"), "unknown key; known are title, seed, points"),
+    "unknown part to keep": (line(*RUN, "--keep", "speeds"), "must be one of ('positions', 'velocities')"),
+    "film as .avi": (line("render", "a.nc", "-o", "a.avi"), "must end in .png, .mp4, .gif"),
+    "no interval": (line(*RUN[:6]), "required: --sample-interval, or --until; for this scene --duration"),
+    "piston beyond the gas": (
+        (GAS + "faces: {x_low: {kind: piston, speed: 1.5}}\n", [*RUN[:4], "--duration", "9", *RUN[6:]]),
+        "leaves no room for the particles at 7.",
+    ),
     "theory without density": (line("theory", "Z"), "required: --eta"),
     "unknown template": (line("new", "a.yaml", "--template", "haet"), "did you mean heat?"),
     "template without a name": (line("new"), "give the name of the file, or --list"),
@@ -111,7 +123,7 @@ MISTAKES = {
     # scene files
     "empty file": (("", CHECK), "must be a mapping"),
     "not YAML": (("container: [1\n", CHECK), "is not valid YAML"),
-    "tab": (("container:\n\tlengths: [9, 9]\n", CHECK), "is not valid YAML"),
+    "tab": (("container:\n\tlengths: [9, 9]\n", CHECK), "indent with spaces, not with tabs"),
     "key twice": (added("gravity: [0, -1]\ngravity: [0, -2]"), "gravity"),
     "misspelt key": (scene("temperature", "temprature"), "unknown key; did you mean temperature?"),
     "misspelt top key": (added("gravitiy: [0.0, -1.0]"), "unknown key; did you mean gravity?"),
@@ -129,9 +141,56 @@ MISTAKES = {
         "gravity",
     ),
     "gravity of three components": (added("gravity: [0.0, 0.0, -1.0]"), "gravity"),
-    "too dense": (scene("count: 20", "count: 150"), "count = 150"),
+    "too dense": (
+        scene("count: 20", "count: 150"),
+        "scene.yaml: species[0].count = 150: does not fit by random insertion",
+    ),
     "particle too large": (scene("0.5", "7.0"), "radius = 7.0: a particle must fit"),
-    "unknown face": (added("faces: {left: {kind: thermal, temperature: 1.0}}"), "faces"),
+    "unknown face": (
+        added("faces: {left: {kind: thermal, temperature: 1.0}}"),
+        "faces.left = 'thermal': unknown face; here it is x_low",
+    ),
+    "open face passed by surfaces": (added("faces: {x_low: {kind: open}}"), "needs centres_to_walls: true"),
+    "reservoir without a temperature": (
+        added("centres_to_walls: true\nfaces: {x_low: {kind: open, activity: 0.1}}"),
+        "faces.x_low.temperature = None: a reservoir has an activity and a temperature",
+    ),
+    "reservoir of two species": (
+        added(f"centres_to_walls: true\nfaces: {{x_low: {RESERVOIR}}}", GAS + GAS.splitlines()[-1] + "\n"),
+        "needs particles of one species",
+    ),
+    "reservoir by its density": (
+        added("centres_to_walls: true\nfaces: {x_low: {kind: open, density: 0.1}}"),
+        "here it is activity, which gaspart.theory.activity computes",
+    ),
+    "piston with a speed and a mass": (
+        added("faces: {x_low: {kind: piston, speed: 1.5, mass: 10.0}}"),
+        "a piston has a mass and a pressure, or a speed alone",
+    ),
+    "piston that recedes": (added("faces: {x_low: {kind: piston, speed: -1.5}}"), "must be positive"),
+    "piston by its velocity": (added("faces: {x_low: {kind: piston, velocity: 1.5}}"), "here it is speed"),
+    "part of a wall that moves": (
+        added("walls: [{start: [6.0, 0.0], end: [6.0, 9.0], mass: 5.0}]"),
+        "a wall that moves must reach across the whole container",
+    ),
+    "wall below zero temperature": (
+        added("walls: [{start: [6.0, 0.0], end: [6.0, 12.0], temperature: -2}]"),
+        "walls[0].temperature = -2: must be positive",
+    ),
+    "temperature along a face of one end": (
+        added("faces: {y_low: {kind: thermal, temperature: {x_low: 1.0}}}"),
+        "must be of two opposite faces",
+    ),
+    "accommodation above one": (
+        added("faces: {x_low: {kind: thermal, temperature: 1.0, accommodation: 1.5}}"),
+        "must be above 0 and at most 1",
+    ),
+    "face of a periodic axis": (
+        (GAS.replace("wall", "periodic") + "faces: {x_low: {kind: thermal, temperature: 1.0}}\n", CHECK),
+        "a periodic axis has no faces",
+    ),
+    "temperature with a unit": (scene("1.0", "300 K"), "must be a number, without a unit"),
+    "gravity without a direction": (added("gravity: -9.81"), "must be a list of 2 or 3 finite numbers"),
     "unknown kind of face": (
         added("faces: {x_low: {kind: hot, temperature: 1.0}}"),
         "faces.x_low.kind = 'hot'",
@@ -157,8 +216,75 @@ MISTAKES = {
 }
 
 
-def test_there_are_sixty():
-    assert len(MISTAKES) >= 60
+OF_RUNS = {
+    "run that is longer": (
+        ["run", "gas.yaml", "-o", "gas.nc", "--duration", "4", "--sample-interval", "0.5"],
+        "exists, with a shorter duration; continue it: gaspart resume gas.nc --duration 4",
+    ),
+    "run of another seed": (
+        ["run", "gas.yaml", "-o", "gas.nc", *RUN[4:], "--seed", "7"],
+        "exists, of another run, which differs in seed 0, not 7; move it away",
+    ),
+    "run of other frames": (
+        ["run", "gas.yaml", "-o", "gas.nc", "--duration", "1", "--sample-interval", "0.25"],
+        "which differs in sample_interval 0.5, not 0.25",
+    ),
+    "run of another scene": (
+        ["run", "open.yaml", "-o", "gas.nc", *RUN[4:]],
+        "which differs in scene",
+    ),
+    "misspelt observable": (["measure", "gas.nc", "presure"], "did you mean pressure?"),
+    "g(r) between walls": (
+        ["measure", "gas.nc", "rdf"],
+        "needs a periodic container; set boundary: periodic",
+    ),
+    "diffusion between walls": (["measure", "gas.nc", "D"], "displacements between walls are bounded"),
+    "viscosity between walls": (
+        ["measure", "gas.nc", "viscosity"],
+        "the stress, viscosity and conductivity need a periodic container; set boundary: periodic",
+    ),
+    "displacements of an open gas": (
+        ["measure", "open.nc", "msd"],
+        "lets particles enter and leave, and this observable follows particles that stay; defined here are",
+    ),
+    "budget of a run": (["budget", "gas.nc"], "config = 'gas.nc': must be a config of the workflow (.yaml)"),
+    "speeds that are not kept": (
+        ["measure", "places.nc", "speeds"],
+        "the file holds only positions of the particles, and velocities are needed; run without keep",
+    ),
+    "film of the gallery": (["films", "gas.nc"], "gaspart film gas.nc"),
+}
+"""Mistakes with the files of `runs`: those of a gas, of an open one, and of positions alone."""
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """The folder of a few runs."""
+    folder = tmp_path_factory.mktemp("runs")
+    (folder / "gas.yaml").write_text(GAS)
+    (folder / "open.yaml").write_text(f"{GAS}centres_to_walls: true\nfaces: {{x_low: {RESERVOIR}}}\n")
+    for scene, name, options in (("gas", "gas", []), ("open", "open", []), ("gas", "places", KEPT)):
+        output = ["-o", str(folder / f"{name}.nc"), "--quiet"]
+        assert main(["run", str(folder / f"{scene}.yaml"), *output, *RUN[4:], *options]) == 0
+    return folder
+
+
+def test_there_are_a_hundred():
+    assert len(MISTAKES) + len(OF_RUNS) >= 100
+
+
+@pytest.mark.parametrize("name", OF_RUNS)
+def test_a_mistake_with_a_run_is_one_line_that_states_what_to_do(name, runs, monkeypatch, capsys):
+    monkeypatch.chdir(runs)
+    before = {path.name: path.read_bytes() for path in runs.iterdir()}
+    arguments, expected = OF_RUNS[name]
+    code = main(arguments)
+    shown = capsys.readouterr()
+    assert code == 2, shown
+    assert shown.err.count("\n") == 1 and shown.err.startswith("gaspart: error: "), shown.err
+    assert expected in shown.err
+    assert len(shown.err) < 400
+    assert {path.name: path.read_bytes() for path in runs.iterdir()} == before
 
 
 @pytest.mark.parametrize("name", MISTAKES)

@@ -7,7 +7,7 @@ import pytest
 import gaspart as gp
 from gaspart.cli import main
 from gaspart.rendering import films
-from gaspart.rendering.films import _pieces, film, poster
+from gaspart.rendering.films import film, pieces, poster
 from gaspart.rendering.frames import particles_of
 from gaspart.rendering.particles import Labels, legend_of, round_length, time_format
 
@@ -148,9 +148,9 @@ def test_walls_of_the_scene_are_drawn(runs):
 def test_a_trail_is_cut_where_a_periodic_face_is_crossed():
     way = [np.array(p) for p in ((8.0, 5.0), (9.5, 5.0), (0.5, 5.0), (1.0, 5.0), (1.0, 9.9))]
     lengths = np.array([10.0, 10.0])
-    assert [len(piece) for piece in _pieces(way[:4], lengths)] == [2, 2]
-    assert [len(piece) for piece in _pieces(way[:3], lengths)] == [2]
-    assert _pieces(way[:1], lengths) == []
+    assert [len(piece) for piece in pieces(way[:4], lengths)] == [2, 2]
+    assert [len(piece) for piece in pieces(way[:3], lengths)] == [2]
+    assert pieces(way[:1], lengths) == []
 
 
 def test_the_command_line_makes_pictures_and_films(runs, capsys):

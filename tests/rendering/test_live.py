@@ -9,7 +9,8 @@ import pytest
 from nbclient import NotebookClient
 
 import gaspart as gp
-from gaspart.rendering.live import LiveGas, live
+from gaspart.rendering.live import live
+from gaspart.rendering.live_gas import LiveGas
 
 
 @pytest.fixture(scope="module")
@@ -47,8 +48,9 @@ def test_a_packing_fraction_begins_anew_in_the_same_proportions(scene):
 
 def parts(widget):
     """The picture, the button, the sliders by their names, and the note."""
-    image, (button, *sliders), note = widget.children[0], widget.children[1].children, widget.children[2]
-    return image, button, {one.description: one for one in sliders}, note
+    image, note = widget.children[0].children[0], widget.children[2]
+    button, *others = widget.children[1].children
+    return image, button, {one.description: one for one in others}, note
 
 
 def test_the_film_runs_until_it_is_stopped_and_follows_its_sliders(scene):
@@ -84,12 +86,136 @@ def test_what_does_not_fit_is_said_in_a_line_and_changes_nothing(scene):
 
 def test_sliders_that_would_mean_nothing_are_left_out():
     periodic = gp.Scene(gp.Container((10.0, 10.0), "periodic"), [gp.Species(9, 0.5, temperature=1.0)])
-    assert list(parts(live(periodic, size=(80, 60)))[2]) == ["packing fraction"]
+    assert list(parts(live(periodic, size=(80, 60)))[2]) == ["tracer", "packing fraction", "restitution"]
     single = gp.Scene(gp.Container((10.0, 10.0)), particles=[gp.Particle((5.0, 5.0), (1.0, 0.0), 0.5)])
-    assert list(parts(live(single, size=(80, 60)))[2]) == ["gravity"]
+    assert list(parts(live(single, size=(80, 60)))[2]) == ["tracer", "gravity", "temperature of walls"]
     still = gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(9, 0.5)])
     with pytest.raises(gp.SceneError, match="nothing moves"):
         live(still)
+
+
+def test_hot_walls_heat_the_gas_to_their_temperature_and_none_keep_it():
+    scene = gp.Scene(gp.Container((12.0, 12.0)), [gp.Species(40, 0.3, temperature=1.0)])
+    gas = LiveGas(scene, size=(80, 60))
+    gas.heat(3.0)
+    assert {face.temperature for face in gas.simulation.scene.faces.values()} == {3.0}
+    gas.simulation.advance(duration=200.0)
+    gas.observe()
+    gas.simulation.advance(duration=1.0)
+    for _ in range(200):
+        gas.interval = 2.0
+        gas.advance()
+    (name, value, error, known), *_ = gas.gauges()
+    assert name == "temperature" and known == 3.0 and abs(value - known) < 4.0 * error < 0.8
+    gas.heat(0.0)
+    energy = gas.simulation.state.kinetic_energy
+    gas.advance()
+    assert gas.simulation.scene.faces == {} and gas.simulation.state.kinetic_energy == pytest.approx(energy)
+
+
+def test_thermal_faces_of_the_scene_keep_their_ratio():
+    faces = {"x_low": gp.Thermal(2.0), "x_high": gp.Thermal(1.0)}
+    gas = LiveGas(
+        gp.Scene(gp.Container((12.0, 12.0)), [gp.Species(9, 0.3, temperature=1.0)], faces=faces),
+        size=(80, 60),
+    )
+    gas.heat(5.0)
+    now = gas.simulation.scene.faces
+    assert (now["x_low"].temperature, now["x_high"].temperature) == (5.0, 2.5)
+    gas.heat(0.0)
+    assert gas.simulation.scene.faces == faces
+
+
+def test_a_piston_does_work_and_an_expansion_into_a_vacuum_does_none():
+    scene = gp.Scene(gp.Container((20.0, 12.0)), [gp.Species(60, 0.05, temperature=1.0)])
+    gas = LiveGas(scene, size=(80, 60))
+    before = gas.simulation.state.kinetic_energy
+    gas.push(10.0)
+    gas.push(10.0)  # once more on the way, which stops it there and starts anew
+    while gas.simulation.scene.pistons:
+        gas.advance()
+    state = gas.simulation.state
+    assert gas.simulation.scene.container.lengths == (10.0, 12.0) == tuple(state.lengths)
+    assert (state.positions[:, 0] <= 10.0 - 0.05 + 1e-9).all()
+    hot = state.kinetic_energy
+    slow = before * (20.0 / 10.0)  # T V^(2/d) is constant in a slow compression of an ideal gas in the plane
+    assert hot > 0.9 * slow and hot < 2.0 * slow
+    gas.push(20.0)
+    for _ in range(20):
+        gas.advance()
+    assert gas.simulation.state.kinetic_energy == pytest.approx(hot, rel=1e-12)
+    assert gas.simulation.state.positions[:, 0].max() > 10.0
+    with pytest.raises(gp.SceneError, match="does not fit"):
+        gas.fill(0.9)
+
+
+def test_restitution_takes_energy_until_it_is_one_again(scene):
+    gas = LiveGas(scene, size=(80, 60))
+    energies = [gas.simulation.state.kinetic_energy]
+    for normal in (0.8, 1.0):
+        gas.damp(normal)
+        for _ in range(30):
+            gas.advance()
+        energies.append(gas.simulation.state.kinetic_energy)
+    assert gas.simulation.scene.restitution is None
+    assert energies[1] < energies[0]
+    gas.advance()
+    assert gas.simulation.state.kinetic_energy == pytest.approx(energies[2], rel=1e-12)
+
+
+def test_a_wall_that_is_removed_lets_gases_mix():
+    left = gp.Species(20, 0.2, temperature=1.0, region=((0.0, 0.0), (5.8, 12.0)))
+    gas = LiveGas(
+        gp.Scene(
+            gp.Container((12.0, 12.0)),
+            [left],
+            walls=[gp.Wall((6.0, 0.0), (6.0, 12.0))],
+        ),
+        size=(80, 60),
+        colour="species",
+    )
+    for _ in range(100):
+        gas.advance()
+    assert (gas.simulation.state.positions[:, 0] < 6.0).all()
+    collisions, time = gas.collisions, gas.time
+    gas.open_walls()
+    for _ in range(100):
+        gas.advance()
+    assert (gas.simulation.state.positions[:, 0] > 6.0).sum() > 3
+    assert gas.collisions > collisions and gas.time > time
+
+
+def test_gauges_agree_with_the_observables_of_the_library():
+    scene = gp.Scene(gp.Container((20.0, 20.0)), [gp.Species(60, 0.3, temperature=1.0)])
+    gas = LiveGas(scene, size=(80, 60))
+    assert gas.gauges() == []
+    for _ in range(300):  # more than are stored
+        gas.advance()
+    temperature, *pressures = gas.gauges()
+    assert temperature[1] == pytest.approx(gas.simulation.state.kinetic_energy / 60.0)
+    run = gp.Simulation(scene, seed=0)
+    run.advance(duration=gas.simulation.time)
+    tally = run.tally
+    assert gas.collisions == tally.collisions
+    exact = tally.wall_impulse / (19.4 * tally.time)
+    for (name, value, error, known), each in zip(pressures, exact, strict=True):
+        assert name.startswith("pressure, ") and abs(value - each) < 1.5 * error  # by another estimator
+        assert 0.0 < error < 0.3 * value and abs(value - known) < 5.0 * error
+    edges, density, expected = gas.speeds()
+    middles, widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+    for values in (density, expected):
+        assert (values * widths).sum() == pytest.approx(1.0, abs=0.01)
+        assert (middles**2 * values * widths).sum() == pytest.approx(2.0 * temperature[1], rel=0.02)
+
+
+def test_the_tracer_is_a_line_where_its_particle_has_been():
+    scene = gp.Scene(gp.Container((20.0, 20.0)), [gp.Species(20, 0.3, temperature=1.0)])
+    gas = LiveGas(scene, size=(160, 120))
+    for _ in range(40):
+        gas.advance()
+    plain = np.array(gas.picture)
+    gas.traced = True
+    assert 20 < (np.array(gas.picture) != plain).any(axis=2).sum() < 4000
 
 
 def test_a_missing_package_is_named_with_its_extra(scene, monkeypatch):
@@ -101,7 +227,7 @@ def test_a_missing_package_is_named_with_its_extra(scene, monkeypatch):
 def test_it_runs_in_a_notebook_between_its_cells():
     scene = "gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(9, 0.5, speed=1.0)])"
     make = f"import gaspart as gp; film = gp.live({scene})"
-    begin = "image, button = film.children[0], film.children[1].children[0]\n"
+    begin = "image, button = film.children[0].children[0], film.children[1].children[0]\n"
     begin += "first = image.value; button.value = True; film"
     wait = "import asyncio\nwhile image.value == first:\n    await asyncio.sleep(0.1)"
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(one) for one in (make, begin, wait)])

@@ -161,6 +161,57 @@ return {{ prints: [first, later, coloured, dragged, zoomed], again: again === fi
         assert found["label"] == "pause" and found["buttons"] and not found["over"]
 
 
+@pytest.fixture(scope="module")
+def faces(tmp_path_factory):
+    """The view of a shock: a piston that moves in, before a hot face."""
+    folder = tmp_path_factory.mktemp("faces")
+    moving = {"x_low": gp.Piston(speed=0.5), "x_high": gp.Thermal(2.0, accommodation=0.5)}
+    scene = gp.Scene(gp.Container((14.0, 10.0)), [gp.Species(20, 0.3, temperature=1.0)], faces=moving)
+    simulation = gp.Simulation(scene, seed=1)
+    simulation.advance(duration=8.0)
+    gp.view(simulation, frames=5).save(folder / "faces.html")
+    return folder
+
+
+def test_faces_have_the_looks_of_pictures_where_they_are(faces):
+    data = content((faces / "faces.html").read_text())
+    assert [one["text"] for one in data["surfaces"]] == [
+        "x low: piston, speed 0.5",
+        "x high: T = 2, accommodation 0.5",
+    ]
+    assert data["surfaces"][0]["hatched"] and data["surfaces"][1]["dashed"]
+    for time, (piston, hot) in zip(data["time"], data["surface_ends"], strict=True):
+        assert piston["depth"] == pytest.approx(0.5 * time, abs=1e-5)
+        assert {corner[0] for corner in hot["corners"]} == {14.0}
+
+
+@needs_chromium
+@pytest.mark.parametrize("width", [1400, 390])
+def test_the_page_draws_faces_and_names_them(faces, pages, width):
+    script = """
+const paper = document.getElementById("looks"), { width, height } = paper;
+const count = colour => {
+  const pixels = paper.getContext("2d").getImageData(0, 0, width, height).data;
+  let found = 0;
+  for (let n = 0; n < pixels.length; n += 4)
+    if (pixels[n + 3] === 255 && colour.every((value, k) => Math.abs(pixels[n + k] - value) < 3)) found++;
+  return found / width / height;
+};
+const slider = document.getElementById("frame"), shades = [];
+for (const frame of [0, slider.max]) {
+  slider.value = frame; slider.dispatchEvent(new window.Event("input")); shades.push(count([224, 224, 224]));
+}
+return { shades, hot: count([242, 140, 26]), legend: document.getElementById("faces").innerText,
+  over: document.documentElement.scrollWidth > window.innerWidth };
+"""
+    found = found_on(["faces.html"], script, faces, width)["faces.html"]
+    assert found["shades"][0] == 0.0 and found["shades"][1] > 0.05
+    assert found["hot"] > 0.0002 and not found["over"]
+    assert "piston, speed 0.5" in found["legend"] and "T = 2, accommodation 0.5" in found["legend"]
+    plain = found_on(["discs.html"], script.replace("slider.max", "0"), pages, width)["discs.html"]
+    assert plain["legend"] == "" and plain["hot"] == 0.0
+
+
 @needs_chromium
 def test_it_colours_by_order_where_the_page_has_it(pages):
     scene = gp.Scene(gp.Container((6.0, 6.0), "periodic"), [gp.Species(14, 0.4, temperature=1.0)])

@@ -7,6 +7,8 @@ from importlib import import_module
 import pytest
 from style.public import public_names
 
+import gaspart as gp
+
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.IGNORE_EXCEPTION_DETAIL
 
 
@@ -50,3 +52,10 @@ def test_an_example_gives_what_it_states(name, tmp_path, monkeypatch):
 def test_a_wrong_example_is_noticed():
     test = doctest.DocTestParser().get_doctest(">>> 1 + 1\n3\n", {}, "wrong", "wrong", 0)
     assert "Expected:\n    3\nGot:\n    2" in failures(test)
+
+
+def test_every_function_and_class_of_the_public_names_has_an_example():
+    items = [getattr(package, name) for package in (gp, gp.analysis, gp.theory) for name in package.__all__]
+    called = [item for item in items if callable(item)]
+    assert len(called) > 200
+    assert not [item for item in called if ">>>" not in (inspect.getdoc(item) or "")]

@@ -39,10 +39,20 @@ def test_the_remainder_covers_the_table(dimension):
     excess = theory.compressibility_factor(eta, dimension) - 1.0
     shifts = [theory.finite_size_correction(x, dimension, int(n)) for x, n in zip(eta, count, strict=True)]
     expansion = (excess + shifts) / (2.0 ** (dimension - 1) * eta)
-    known = theory.compressibility_uncertainty(eta, dimension) / excess
+    known = np.hypot(theory.compressibility_uncertainty(eta, dimension) / excess, (shifts / excess) ** 2)
     left = theory.finite_size_remainder(eta, dimension, side)
     z = (rows.value / expansion - 1.0) / np.sqrt(left**2 + known**2 + (rows.error / expansion) ** 2)
     assert len(rows) > 30 and np.abs(z).max() < 4.0 and 0.5 < np.sqrt(np.mean(z**2)) < 1.3
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_table_is_known_to_two_in_a_thousand(dimension):
+    rows = theory.small_systems("contact_value", dimension)
+    relative = rows.error / rows.value
+    assert len(rows) > 90 and np.median(relative) < 1.5e-3 and np.mean(relative < 2.5e-3) > 0.9
+    several = {(5, 0.475), (6, 0.5), (32, 0.49), (32, 0.5), (48, 0.5), (64, 0.5)} if dimension == 3 else set()
+    uncertain = rows[relative > 0.02]
+    assert set(zip(uncertain["count"].tolist(), uncertain.packing_fraction.tolist(), strict=True)) == several
 
 
 def test_the_remainder_grows_with_the_density_and_falls_with_the_side():

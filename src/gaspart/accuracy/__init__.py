@@ -1,4 +1,4 @@
-"""Accuracy and its cost: errors of engines, noise of run lengths, processor time, and the cheapest run.
+"""Accuracy and its cost: errors of engines, noise of runs, CPU time, and the cheapest run.
 
 `plan` chooses among an `Option` for each engine. Where `data/accuracy.csv` holds measurements (written by
 `gaspart.accuracy.fit`, read by `table`), `tabulated` makes them, scaled to this machine by `speed`; of

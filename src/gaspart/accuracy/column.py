@@ -1,7 +1,7 @@
-"""A gas in equilibrium under gravity, by theory: hydrostatics at one temperature, that of its energy.
+"""Gas in equilibrium under gravity, by theory: hydrostatics at the temperature of its energy.
 
-Heights are those of centres above the lowest place that they reach. Hard spheres and discs follow the
-reference equation of state; with `ideal` the gas is that of the Boltzmann model, which has no virial.
+Heights are those that centres reach above the lowest one. Hard spheres and discs follow the reference
+equation of state; with `ideal` the gas follows the Boltzmann model, which has no virial.
 """
 
 from __future__ import annotations

@@ -33,7 +33,10 @@ _HELD = 0.02
 
 @dataclass(frozen=True)
 class Conditions(Layers):
-    """Layers, with what theory knows of them. columns: under gravity, of the real gas and of an ideal one."""
+    """Layers of a scene, with the columns that theory knows.
+
+    columns : under gravity, the columns of the real gas and of an ideal gas.
+    """
 
     columns: tuple[Column, Column] | None = None
 

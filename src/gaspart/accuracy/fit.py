@@ -22,7 +22,7 @@ from gaspart.trajectory import provenance
 
 
 def rows(folder: Path) -> list[dict]:
-    """All rows of the table; see `gaspart.accuracy.table` for what they mean."""
+    """Return all rows of the table; their meaning is in `gaspart.accuracy.table`."""
     accuracy = xr.load_dataset(folder / "speed_accuracy.nc")
     found = [
         *_events(accuracy),

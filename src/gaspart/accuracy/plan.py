@@ -34,7 +34,6 @@ ACCURACIES = 1e-8, 1.0
 """The best relative accuracy that float64 sums and the table support, and the worst."""
 _FRAMES = 384
 """Number of frames of a run: 288 independent intervals give an error 17 degrees of freedom, of 15 required.
-
 """
 _LONGEST = 4.0
 """The longest duration of a run with `--until` over the predicted one: two examinations, and an error that

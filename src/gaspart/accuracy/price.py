@@ -1,4 +1,4 @@
-"""What the features of a scene cost with an engine."""
+"""Cost of the features of a scene with an engine."""
 
 from __future__ import annotations
 

@@ -1,26 +1,30 @@
-"""What a run that ends when it is accurate has reached, and the rule that ends it.
+"""Accuracy that a run until accurate has reached, and the rule that ends the run.
 
-A run is examined when it has 64, 96, 128, 192 ... frames, whatever the time of day or the number of kills, on
-its frames so far without their first quarter. Each examination gives a value and its standard error e with f
-degrees of freedom. A run that ended at the first e that is small enough would end when e happens to be too
-small: its 95 % intervals would cover the true value in 88 to 94 % of runs. Two rules prevent this:
+A run is examined when it has 64, 96, 128, 192 ... frames, at any time of day and after any number of kills,
+on its frames so far without their first quarter. Each examination gives a value and its standard error e with
+f degrees of freedom. A run that ended at the first e that is small enough would end when e happens to be too
+small. Its 95 % intervals would cover the true value in 88 to 94 % of runs. Two rules prevent this:
 
-- The error that counts is the larger one of two successive examinations, that of the earlier one times the
+- The error that counts is the larger one of two successive examinations, the earlier one multiplied by the
   root of the ratio of their lengths. An error that fell by chance alone does not end the run, and intervals
   from this one, with Student's t for f degrees of freedom, cover the true value in 95 % of runs.
 - An upper bound of this error must be as small as required: e sqrt(f / chi2), chi2 the lower 10 % quantile of
-  chi-square for f, which is 1.32 e for f = 15 and 1.10 e for 100. f must be 15 or more, as of 16 independent
+  chi-square for f, which is 1.32 e for f = 15 and 1.10 e for 100. f must be 15 or more, from 16 independent
   blocks. So the true standard error is as small as required in 98 % of runs.
 
-Of replicas, which are independent, the value is the mean, and the error follows from those of each, by which
-degrees of freedom add up. They are examined when all have so many frames.
+Samples that are all the same so far have the error 0, which says nothing: the next one may differ. Such a run
+goes on, and is given up after 16384 frames unless a longest duration ends it. A series that changed k times
+has at most k degrees of freedom, so that one jump, or a few, end no run either.
 
-Where a run keeps the energy of its start, which its seed draws, the run shows only the error for this
-energy: other seeds scatter by more (`gaspart.accuracy.scatter`). The mean of replicas is of no single energy,
-so that its error has the scatter of the starts in it. No longer run reduces this part. Noise has to be as
-small as what the part leaves of the required accuracy, or as the accuracy itself if nothing is left.
+For replicas, which are independent, the value is the mean, and the error follows from the errors of the
+replicas; their degrees of freedom add up. They are examined when all have the same number of frames.
 
-Both were measured with autoregressive series (`tests/accuracy/test_until.py`); for fixed widths and
+If a run keeps the energy of its start, which its seed draws, the run shows only the error for this energy;
+other seeds scatter by more (`gaspart.accuracy.scatter`). The mean of replicas is of no single energy, so that
+its error has the scatter of the starts in it. No longer run reduces this part. Noise has to be as small as
+what the part leaves of the required accuracy, or as the accuracy itself if nothing is left.
+
+Both rules were measured with autoregressive series (`tests/accuracy/test_until.py`); for fixed widths and
 independent samples the first is the problem of Chow and Robbins, Ann. Math. Stat. 36, 457 (1965).
 """
 
@@ -46,7 +50,8 @@ if TYPE_CHECKING:
 
 _CONFIDENCE = 0.95
 IDLE = 16384
-"""Frames without any contact after which a run ends that has no longest duration."""
+"""Frames without any contact, or any change, after which a run ends that has no longest duration."""
+_UNCHANGED = "frames: all are the same so far, which tells no error"
 
 
 @dataclass(frozen=True)
@@ -251,6 +256,9 @@ class Examiner:
                 ratio = max(first, 0.0) / last
             parts, starts = [], (self._scatter(runs[0], asked), len(runs))
             for name, estimate in now.items():
+                if estimate.error == 0.0:
+                    parts.append(AccuracyStatus(asked, name, estimate.value, rule=_UNCHANGED))
+                    continue
                 other = None if isinstance(earlier, str) else earlier.get(name)
                 made = confirmed(estimate, other, ratio)
                 known = made.value, made.error, made.freedom, other is not None
@@ -290,9 +298,10 @@ def _contacts(frame: xr.Dataset) -> float:
 
 
 def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
-    """Return True if an observable is made of contacts and there was no contact."""
+    """Return True if an observable never changed, or is made of contacts and there was no contact."""
     return any(
-        one.value == 0.0 if "face" in OBSERVABLES[one.asked.observable].along else collisions == 0.0
+        one.rule == _UNCHANGED
+        or (one.value == 0.0 if "face" in OBSERVABLES[one.asked.observable].along else collisions == 0.0)
         for one in reached
     )
 

@@ -1,7 +1,7 @@
-"""The scales of a scene: a speed, a length and two times, from which a duration and an interval follow.
+"""Characteristic scales of a scene, which suggest a duration and an interval.
 
-They are those of the start: of a gas that fills its container evenly, with the speeds of its initial
-velocities or of its faces, whatever is hotter.
+They are a speed, a length and two times, at the start: of a gas that fills its container uniformly, with the
+speeds of its initial velocities or of its faces, whichever is hotter.
 """
 
 from __future__ import annotations

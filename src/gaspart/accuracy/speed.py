@@ -1,4 +1,4 @@
-"""Speed of this machine relative to that of the table, measured by a run of a tenth of a second."""
+"""Speed of this machine relative to the table's, measured in a tenth of a second."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The energy of a scene: what gives and what takes it, and whether there is a steady state."""
+"""Energy of a scene: its sources and sinks, and the existence of a steady state."""
 
 from __future__ import annotations
 

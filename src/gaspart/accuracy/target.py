@@ -39,7 +39,6 @@ _HELD = 20_000_000
 """Numbers that the frames of a pilot hold, at most, unless there are only few frames."""
 _PLACED = 100_000
 """Maximum number of particles in all frames of which pairs are measured, which takes longer than their run.
-
 """
 _LONGEST_LAG = 10.0
 """Longest lag of correlations, in collisions of a particle."""

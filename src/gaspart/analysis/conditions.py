@@ -22,7 +22,10 @@ Selection = Mapping[str, Any]
 GROUPS = 16
 """Groups of particles whose scatter is an uncertainty."""
 SLIDING = "this observable is not defined where images of the particles slide"
-VARYING = "changes the particles: this observable is that of particles that stay"
+VARYING = (
+    "lets particles enter and leave, and this observable follows particles that stay; defined here are "
+    "flux, pressure, density and temperature"
+)
 DISCS = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
 _NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and those around it in a crystal
 
@@ -59,7 +62,7 @@ def open_across(scene: Scene, selection: Selection) -> None:
 
 def periodic(scene: Scene, selection: Selection) -> None:
     """No walls of the container."""
-    _periodic(scene, "this observable needs a periodic container")
+    _periodic(scene, "this observable needs a periodic container; set boundary: periodic")
 
 
 def periodic_virial(scene: Scene, selection: Selection) -> None:
@@ -129,7 +132,7 @@ def elastic(scene: Scene, selection: Selection) -> None:
 
 def homogeneous(scene: Scene, selection: Selection) -> None:
     """Neither walls, nor interior walls and fixed particles, around which places are not alike."""
-    _periodic(scene, "this observable needs a periodic container")
+    _periodic(scene, "this observable needs a periodic container; set boundary: periodic")
     _without_obstacles(
         scene,
         "make places unlike each other: g(r), contact values, S(k) and order are those of a homogeneous gas",

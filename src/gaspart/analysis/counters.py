@@ -270,7 +270,6 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
 
         change of the momentum = its gain by gravity + impulses of the lower face - impulses of the upper one.
 
-
     On a ceiling it is 0; on side walls 0, or NaN if the momentum on a floor is more than a millionth of the
     weight. Raises SceneError if particles rest where something other than faces may carry them.
     """

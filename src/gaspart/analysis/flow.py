@@ -13,7 +13,6 @@ of freedom is spent on u. The group depends on how the gas can move:
 - before faces that move along their normal, and between open ones: the particles of a cell in one frame,
   since the flow changes.
 
-
 A flow that is known, between sheared faces (`LeesEdwards`), is subtracted before.
 
 A displacement about a steady flow is the displacement of the particle less the time integral of the flow at

@@ -356,6 +356,11 @@ def particle_number(source: Source, start: float | None = None) -> Observable:
     SceneError
         If the scene has no open faces, or there are too few frames.
 
+    Notes
+    -----
+    Without collisions, correlations fall as slowly as 1/t: the error is that of
+    `gaspart.analysis.statistics.slow_mean`.
+
     Examples
     --------
     >>> import gaspart as gp
@@ -371,4 +376,5 @@ def particle_number(source: Source, start: float | None = None) -> Observable:
     with open_run(source, start, varying=True) as run:
         require_defined("number", run.scene)
         counts = particle_numbers(run.scene, run.data)
-        return scalar("particle_number", counts[1:].astype(float), run.time, **described("number", run))
+        series = counts[1:].astype(float)
+        return scalar("particle_number", series, run.time, slow=True, **described("number", run))

@@ -1,4 +1,4 @@
-"""An observable of a trajectory, by its name, and the part of a run until a time."""
+"""Observables of a trajectory, by name, and the part of a run until a time."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def measure(
     source : path, xarray.Dataset or Simulation
         A trajectory, by its path or open, or a simulation.
     observable : str or sequence of str
-        Names as of `gaspart measure`, such as "pressure"; aliases are accepted, such as "viscosity".
+        Names as in `gaspart measure`, such as "pressure"; aliases are accepted, such as "viscosity".
     start : float, [time], optional
         Frames before this time are discarded. Default: the first quarter of the frames.
     end : float, [time], optional
@@ -95,8 +95,13 @@ def measure(
 
 @contextmanager
 def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
-    """The frames of a source until a time, whatever it is; itself if the time is None. pairs: whether those
-    of a simulation count the collisions of each pair of species. Raises SceneError for fewer than two."""
+    """Return the frames of a source until a time, which may be None.
+
+    For None it is the source itself.
+
+    If `pairs`, the frames of a simulation count the collisions of each pair of species. Raises SceneError for
+    fewer than two frames.
+    """
     if end is None:
         yield source
         return

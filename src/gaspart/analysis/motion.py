@@ -31,13 +31,13 @@ from gaspart.trajectory.correlator import SUMS
 
 
 _PARTS = 16, 32
-"""Of a run, whose scatter gives an uncertainty: the least and the largest number."""
+"""Minimum and maximum number of parts of a run, whose scatter gives an uncertainty."""
 _PART = 4.0
 """The length of one in longest lags, so that few pairs of samples are on both sides of an edge."""
 
 
 def accumulated(trajectory: xr.Dataset) -> Curves:
-    """The averages of a run with correlations, as it has accumulated them to its last frame.
+    """Return the averages that a run with correlations has accumulated to its last frame.
 
     At lags in the scene's time, with velocities as they are; msd and running are NaN without displacements.
     """
@@ -51,12 +51,15 @@ def accumulated(trajectory: xr.Dataset) -> Curves:
 
 
 def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The lags of a run's correlations, the mean of one of `SUMS` and its standard error at each, (lags,).
+    """Compute the mean of one of `SUMS` of a run's correlations, and its error, by lag.
 
-    Over pairs of samples of which the later one is in the measured part; the error is the scatter of 16 to 32
-    consecutive parts of it, of four times the longest lag if it is long enough. As of freely moving
-    particles: where the velocity of the centre of mass, which is taken off, is conserved, times N / (N - 1).
-    Raises SceneError for fewer frames, and a single particle that keeps its velocity.
+    Returned are the lags, the mean and its standard error, (lags,).
+
+    The mean is over pairs of samples of which the later one is in the measured part; the error is the scatter
+    of 16 to 32 consecutive parts of it, of four times the longest lag if it is long enough. It holds for
+    freely moving particles: where the velocity of the centre of mass, which is subtracted, is conserved, it
+    is multiplied by N / (N - 1). Raises SceneError for fewer frames, and a single particle that keeps its
+    velocity.
     """
     samples, lags = run.data["correlated_samples"].values, np.arange(run.data.sizes["lag"])
     pairs = np.maximum(samples[:, None] - lags, 0.0)
@@ -76,7 +79,10 @@ def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.nd
 
 
 def _of_free_particles(run: Run) -> float:
-    """A square of velocities of freely moving particles over that about the centre of mass."""
+    """Return the square of velocities of free particles relative to the centre of mass's frame.
+
+    It is the ratio of both squares.
+    """
     if not run.conserved.any():
         return 1.0
     count = int(np.isfinite(run.masses).sum())
@@ -91,12 +97,12 @@ def between(time: np.ndarray, start: float, stop: float) -> np.ndarray:
 
 
 def line(x: np.ndarray, y: np.ndarray) -> float:
-    """Slope of the least-squares line; NaN through fewer than four points."""
+    """Fit the slope of a line by least squares; NaN through fewer than four points."""
     return float(np.polyfit(x, y, 1)[0]) if len(x) >= 4 else math.nan
 
 
 MOST_FRAMES = 1000
-"""That are correlated of each group; of a longer run, every second or third ..."""
+"""Maximum number of frames that are correlated of each group; a longer run has every second or third ..."""
 _SQUARES, _PRODUCTS = "squared_displacement_sum", "velocity_product_sum"
 _FARTHEST = 0.45  # of a side: the longest way between frames by which a particle is followed
 
@@ -262,8 +268,10 @@ def velocity_autocorrelation(
 def _accumulates(
     run: Run, name: str, lags: int | None, species: int | None, particles: Sequence[int] | None
 ) -> bool:
-    """Return True if a run has accumulated what is asked for, under a name of `SUMS`: of a gas that does not
-    flow."""
+    """Return True if a run has accumulated the requested curve, under a name of `SUMS`.
+
+    The gas must not flow.
+    """
     whole = lags is None and species is None and particles is None
     if not (name in run.data and whole and run.about == FLOW):
         return False
@@ -271,14 +279,14 @@ def _accumulates(
 
 
 def _displacement(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:
-    """The mean-squared displacement (lag,) or (axis, lag), with theory."""
+    """Return the mean-squared displacement (lag,) or (axis, lag), with theory."""
     attributes = described("msd", run, time, axes=values.ndim > 1)
     along = {**(axes_of(run) if values.ndim > 1 else {}), **_lag(time)}
     return observable("mean_squared_displacement", along, values, errors, **attributes)
 
 
 def _autocorrelation(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:
-    """The velocity autocorrelation (lag,), with theory."""
+    """Return the velocity autocorrelation (lag,), with theory."""
     about = described("vacf", run, time)
     return observable("velocity_autocorrelation", _lag(time), values, errors, **about)
 
@@ -400,8 +408,11 @@ def _values(run: Run, paths: bool, stride: int) -> np.ndarray:
 
 
 def _alike(species: np.ndarray) -> list[np.ndarray]:
-    """Which particles, of these species (M,), are in each group. Groups of a mixture have the same
-    composition: else the difference between species, which no longer run reduces, would be their scatter."""
+    """Return the indices of particles of these species (M,) in each group.
+
+    Groups of a mixture have the same composition: else the difference between species, which no longer run
+    reduces, would be their scatter.
+    """
     if np.ptp(species) == 0:
         return np.array_split(np.arange(len(species)), GROUPS)
     order = np.argsort(species, kind="stable")

@@ -12,7 +12,7 @@ import xarray as xr
 
 from gaspart.analysis.estimate import concise
 from gaspart.analysis.observables import name_of
-from gaspart.analysis.statistics import correlated_mean
+from gaspart.analysis.statistics import correlated_mean, slow_mean
 from gaspart.errors import SceneError
 from gaspart.scene.faces import wall_of
 
@@ -346,18 +346,22 @@ def label_of(values: xr.DataArray) -> str:
     return str(text) if units == "1" else f"{text}{between}({units})"
 
 
-def scalar(name: str, series: np.ndarray, edges: np.ndarray, **about: Any) -> Observable:
+def scalar(
+    name: str, series: np.ndarray, edges: np.ndarray, *, slow: bool = False, **about: Any
+) -> Observable:
     """Return the mean of a correlated series over the intervals between frames, with its error.
 
     series : (M,).
     edges : (M + 1,), the times of the frames.
+    slow : True if correlations may fall as slowly as 1 / t.
     about : `units`, `long_name`, and perhaps `theory`, a value and its uncertainty, and its `source`.
 
     Raises SceneError for fewer values than `LEAST_INTERVALS`.
     """
     if len(series) < LEAST_INTERVALS:
         raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_INTERVALS + 1} or more")
-    found = correlated_mean(series, LEAST_INTERVALS).estimate
+    plain = correlated_mean(series, LEAST_INTERVALS).estimate
+    found = slow_mean(series, LEAST_INTERVALS) if slow else plain
     error = found.error if np.ptp(series) > _ROUNDING * abs(found.value) else 0.0
     stretches = [part.mean() for part in np.array_split(series, min(STRETCHES, len(series)))]
     ends = [part[[0, -1]].mean() for part in np.array_split(0.5 * (edges[1:] + edges[:-1]), len(stretches))]

@@ -152,20 +152,25 @@ _ALIKE = 1e-9
 
 
 def kept(run: Run) -> PairImpulseTally | None:
-    """What a run has kept of impulses of pairs; None if that is nothing, or not all particles are in the
-    file, from which the temperature follows."""
+    """Return the stored impulses of pairs of a run, or None.
+
+    It is None without them, and if not all particles are in the file, from which the temperature follows.
+    """
     return None if run.is_subset else stored_tally(run.data.attrs, PairImpulseTally)
 
 
 def shell_volumes(bins: int, dimension: int) -> np.ndarray:
-    """(bins,) of shells of equal thickness, in that of the first one."""
+    """Compute the volumes (bins,) of shells of equal thickness, in units of the first one."""
     return np.diff(np.arange(bins + 1.0) ** dimension)
 
 
 def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> np.ndarray | None:
-    """(2, S, bins) what the pairs that collide and all others give to g(r), in S stretches of a run that
-    begin at the frames `starts` (S,). None if the run has not kept it, or not in parts of these shells, if a
-    stretch takes no time, and if no pair has collided: then impulses say nothing of g(r), which is not 0."""
+    """Compute the parts (2, S, bins) of g(r) due to colliding pairs and to all others.
+
+    They are in S blocks of a run that begin at the frames `starts` (S,). None if the run has not stored them,
+    or not in parts of these shells, if a block takes no time, and if no pair has collided: then impulses do
+    not determine g(r), which is not 0.
+    """
     has = kept(run)
     if has is None or starts[-1] == len(run.time) - 1 or furthest > has.furthest * (1.0 + _ALIKE):
         return None
@@ -184,8 +189,10 @@ def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> n
 
 
 def mixed_g(counted: np.ndarray, parts: np.ndarray, volumes: np.ndarray) -> np.ndarray:
-    """(S, bins) g(r) in S stretches from counts (S, bins) and impulses (2, S, bins), in shells of these
-    volumes (bins,)."""
+    """Compute g(r) (S, bins) in S blocks from counts (S, bins) and impulses (2, S, bins).
+
+    The shells have these volumes (bins,).
+    """
     contacts, found = parts[0].mean(axis=0), parts.sum(axis=0)
     missing = ((counted - found) @ volumes) / (contacts @ volumes)
     impulses = found + missing[:, None] * contacts
@@ -507,7 +514,7 @@ def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
 
 
 def _of_pairs(observed: str, name: str, run: Run, found: list[Estimate]) -> Observable:
-    """The result of an observable of pairs, `observed`, whose variable has a name."""
+    """Return the result of an observable of pairs, `observed`, whose variable has a name."""
     along = {"pair": (np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"})}
     values, errors = np.array([[one.value, one.error] for one in found]).T
     return observable(name, along, values, errors, **described(observed, run))

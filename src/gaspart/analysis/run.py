@@ -8,7 +8,7 @@ from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -130,8 +130,9 @@ class Run:
             If the file does not have them.
         """
         if name not in self.data:
-            rule = f"of each particle the file has nothing else, and {name} are needed"
-            raise SceneError("keep", self.data.attrs.get("keep"), rule)
+            kept = self.data.attrs.get("keep")
+            rule = f"the file holds only {kept} of the particles, and {name} are needed; run without keep"
+            raise SceneError("keep", kept, rule)
         return self.data[name]
 
     def blocks(self, name: str, frames: slice) -> Iterator[np.ndarray]:
@@ -441,7 +442,7 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
     """
     scene, engine = simulation.scene, simulation.engine
     if simulation.time <= 0.0:
-        raise SceneError("simulation", "at time 0", "has not advanced")
+        raise SceneError("simulation", "at time 0", "has not advanced; call advance(duration=...) first")
     frames = int(np.clip(_MOST // (3 * max(1, scene.count) * scene.dimension), 33, REPEATED))
     times = np.linspace(0.0, simulation.time, frames)
     if step := engine.quantum:  # half a step more, so that rounding does not cost one
@@ -452,17 +453,29 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
     counter = PairCounter(again) if pairs else None
     for time in times:
         again.advance(until=time)
-        state, tally = again.state, again.tally
-        places = {"coordinates": state.positions, "velocities": state.velocities}
-        places["displacements"] = state.unwrapped
-        places = {name: by_number(state, values, scene.capacity) for name, values in places.items()}
-        extra = {} if state.piston is None else {"piston_position": state.piston[0]}
+        row = frame_of(again)
         if counter:
             counter.take()
-            extra["pair_collisions"] = counter.counts.copy()
-        row = {**vars(tally), **places, **extra, "time": again.time}
-        row["kinetic_energy"] = state.kinetic_energy
-        rows.append({name: value for name, value in row.items() if value is not None})
+            row["pair_collisions"] = counter.counts.copy()
+        rows.append(row)
+    return with_frames(simulation, rows)
+
+
+def frame_of(simulation: Simulation) -> dict[str, Any]:
+    """Return the variables of a frame: those of a simulation now."""
+    state, scene = simulation.state, simulation.scene
+    places = {"coordinates": state.positions, "velocities": state.velocities}
+    places["displacements"] = state.unwrapped
+    row = {name: by_number(state, values, scene.capacity) for name, values in places.items()}
+    if state.piston is not None:
+        row["piston_position"] = state.piston[0]
+    row = {**vars(simulation.tally), **row, "time": simulation.time, "kinetic_energy": state.kinetic_energy}
+    return {name: value for name, value in row.items() if value is not None}
+
+
+def with_frames(simulation: Simulation, rows: Sequence[dict[str, Any]]) -> xr.Dataset:
+    """Return frames of a simulation as a trajectory has them."""
+    scene, engine = simulation.scene, simulation.engine
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]
     if scene.is_open:

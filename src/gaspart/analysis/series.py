@@ -24,7 +24,6 @@ def compressibility(run: Run) -> np.ndarray:
 
         Z = P V / (N k_B T) = 1 + sum |dr . dp| / (d N k_B T t).
 
-
     The temperature is defined by the motion about the centre of mass, k_B T = 2 E' / (d (N - 1)). A pair at
     contact gives |dp| proportional to |v_n| at a rate proportional to it, so the sum grows with <v_n^2>, v_n
     one component of v_1 - v_2. That is linear in the energy (fixing the energy changes nothing), and with

@@ -41,7 +41,7 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
         - `count`, number of moving particles;
         - `temperature` [energy], twice the mean kinetic energy of flight per degree of freedom;
         - `mean_speed` [length/time];
-        - `D` [length^2/time], and the curves `msd` and `vacf` (species, lag), as of `gaspart measure` with a
+        - `D` [length^2/time], and the curves `msd` and `vacf` (species, lag), as by `gaspart measure` with a
           species. NaN where a species cannot have one, such as a D between walls, for the reason in the
           attribute `not_measured`, and where it has fewer lags than others.
 
@@ -91,12 +91,12 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
 
 
 def _of_motion() -> tuple[str, ...]:
-    """The observables of the motion of particles that are of a species too."""
+    """Return the observables of the motion of particles that can be measured by species."""
     return tuple(name for name in selecting("species") if name in having(scatter="particles"))
 
 
 def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
-    """The temperature and the mean speed of the moving particles of a species."""
+    """Measure the temperature and the mean speed of the moving particles of a species."""
     chosen, masses = selected(run, kind, None), run.masses[run.moving]
     shape = run.motion.velocities.shape
     velocities = run.motion.velocities[:, chosen]
@@ -119,7 +119,10 @@ def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
 
 
 def _column(name: str, found: list[Observable | None]) -> xr.Dataset:
-    """One observable of all species with its uncertainty; nothing if it was measured of none."""
+    """Join one observable of all species with its uncertainty.
+
+    The result is empty if it was measured for no species.
+    """
     known = [one for one in found if one is not None]
     if not known:
         return xr.Dataset()

@@ -310,8 +310,11 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
 
 
 def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
-    """Of the moving particles, or one species, NaN where fixed ones leave no room. Raises SceneError for
-    a file that holds the first particles of several kinds only."""
+    """Compute the density of the moving particles, or one species.
+
+    It is NaN where fixed ones exclude centres. Raises SceneError for a file that holds the first particles of
+    several kinds only.
+    """
     if len(run.scene.kinds) > 1:
         run.require_all()
     chosen = np.isfinite(run.masses) & (run.species == (run.species if species is None else species))

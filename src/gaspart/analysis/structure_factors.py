@@ -30,9 +30,10 @@ every second one along each axis, and so on."""
 
 
 def admitted(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Wave vectors k = 2 pi n / L with 0 < |k| <= highest, one of each pair k, -k, which have one S.
+    """Return the wave vectors k = 2 pi n / L with 0 < |k| <= highest, one of each pair k, -k.
 
-    lengths (d,). Returns the integers n (M, d) and |k| (M,), by ascending |k|.
+    Both vectors of a pair have one S. The lengths have the shape (d,). Returns the integers n (M, d) and |k|
+    (M,), by ascending |k|.
     """
     unit = 2.0 * np.pi / np.asarray(lengths, dtype=float)
     most = (highest / unit).astype(int)
@@ -49,9 +50,9 @@ def admitted(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.
 def shells_of(
     lengths: Sequence[float] | np.ndarray, highest: float, bins: int, most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Up to `most` of the `admitted` wave vectors of each of `bins` equal intervals of |k|, evenly chosen,
-    where these are many from those of every second (fourth, ...) wave along each axis.
+    """Select up to `most` of the `admitted` wave vectors of each of `bins` equal intervals of |k|.
 
+    They are evenly chosen; where there are many, from every second (fourth, ...) wave along each axis.
     Returns n (M, d), the number of the shell of each (M,), and the mean |k| of each of the S shells that are
     not empty (S,).
     """
@@ -73,7 +74,7 @@ def shells_of(
 
 
 def in_shells(values: np.ndarray, shell: np.ndarray) -> np.ndarray:
-    """(S,) means of the values (M,) of each shell."""
+    """Average the values (M,) of each shell, shape (S,)."""
     return np.bincount(shell, values) / np.bincount(shell)
 
 

@@ -7,7 +7,6 @@ times of
 
     <(G(t) - G(0))^2> / (2 V t x)  and of its derivative  h [C(0)/2 + C(h) + C(2h) + ... ] / (V x),
 
-
 with C the correlation of V J, and x = k_B T for the viscosities, k_B T^2 for the conductivity of a gas of one
 species, the forms of Helfand and of Green and Kubo. With the means over intervals in place of instantaneous
 values the second form holds exactly, with the impulses at collisions, at the times between two lags.

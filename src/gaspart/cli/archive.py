@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from gaspart.cli.arguments import (
     CheckFailed,
@@ -15,6 +16,7 @@ from gaspart.cli.arguments import (
     set_command,
 )
 from gaspart.cli.progress import waiting
+from gaspart.errors import SceneError
 
 _EXAMPLES = """examples:
   gaspart archive results -o archive.zip       # the full reproduction
@@ -108,4 +110,7 @@ def add_budget(parser: Parser) -> None:
 
 
 def _budget(given: argparse.Namespace) -> None:
+    if Path(given.config).suffix not in (".yaml", ".yml"):
+        rule = "must be a config of the workflow (.yaml); gaspart info reports on a run"
+        raise SceneError("config", given.config, rule)
     print_lines(config_command("budget")(given.config, given.output))

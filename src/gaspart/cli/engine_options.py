@@ -1,4 +1,4 @@
-"""Options of the command line for declared settings: of engines, and of what the file of a run holds."""
+"""Options of the command line for declared settings of engines and of files of runs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ def engine_settings() -> dict[str, Kind]:
 
 
 def add_setting(group: argparse._ArgumentGroup, name: str, kind: Kind) -> None:
-    """Add the option of a setting: a number, a word, a text, or a flag that changes its default."""
+    """Add the option of a setting: a number, a word, a text, or a flag.
+
+    A flag changes the default.
+    """
     option, meaning, default = name.replace("_", "-"), kind["description"], kind.get("default")
     usual = "" if default is None else f"; default: {default}"
     types = kind.get("type", ())
@@ -65,7 +68,10 @@ def as_option(error: SceneError, engine: str) -> str:
 
 
 def stated(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> list[str]:
-    """The options for settings of these kinds that differ from their defaults, or have none."""
+    """Return the options for settings of these kinds that differ from their defaults.
+
+    Settings without a default have options too.
+    """
     options: list[str] = []
     for name, kind in kinds.items():
         value, option = settings.get(name), name.replace("_", "-")

@@ -196,7 +196,7 @@ def _requests(text: str) -> list[tuple[str, float]]:
         try:
             requests.append((name, float(accuracy)))
         except ValueError:
-            rule = "must be the name of an observable, = and its accuracy, as Z=1e-3"
+            rule = "must be the name of an observable, = and its relative accuracy, as Z=1e-3 for 0.1 %"
             raise argparse.ArgumentTypeError(f"{part!r} {rule}") from None
     return requests
 

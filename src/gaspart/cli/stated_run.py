@@ -1,4 +1,4 @@
-"""A run in words: what it was to reach and has reached, and the options with which it is made."""
+"""Description of a run: its accuracies, required and reached, and its options."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def accuracy_lines(path: Path) -> list[str]:
-    """What a run with --until was to reach, and what it has reached."""
+    """Describe the required accuracies of a run with --until, and the accuracies reached."""
     from gaspart.accuracy.reached import reached_accuracy
     from gaspart.trajectory.opening import PARTIAL
 
@@ -37,7 +37,7 @@ def accuracy_lines(path: Path) -> list[str]:
 
 
 def other_seeds(scatter: float) -> str:
-    """Return the remark beside the interval of a single run that keeps the energy of its start."""
+    """Return the remark on the interval of a single run that keeps its initial energy."""
     return f"for the energy of this run; other seeds scatter by {100.0 * scatter:.2g} %"
 
 
@@ -64,7 +64,7 @@ def _why_ended(path: Path, reached: list[AccuracyStatus]) -> str:
 
 
 def run_options(path: Path, recipe: Recipe) -> list[str]:
-    """The options with which `gaspart run` has a recipe; of one of several replicas, all of them."""
+    """Return the options of `gaspart run` for a recipe; for a replica, options of all replicas."""
     from gaspart.trajectory.replicas import of_all, path_of_all
 
     path, (recipe, replicas) = path_of_all(path, recipe), of_all(recipe)

@@ -1,4 +1,7 @@
-"""Local density and temperature of a steady scene, from which bounds on the errors of engines follow."""
+"""Local density and temperature of a steady scene.
+
+Bounds on the errors of engines follow from them.
+"""
 
 from __future__ import annotations
 
@@ -13,14 +16,23 @@ from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
 
 _FREE = 0.02
-"""The least part of the volume that is free of a pair, where its contact value is evaluated."""
+"""Minimum fraction of the volume that is free of a pair, where its contact value is evaluated."""
 
 
 @dataclass(frozen=True)
 class Layers:
-    """Layers across an axis, from wall to wall: share (S,) of all particles in each; crowding (S,), the
-    density over that of a gas that fills evenly what centres can reach; temperature (S,). axis: None of an
-    even gas; scale: the shortest length along it over which density or temperature change by the factor e."""
+    """Layers of a steady scene across an axis, from wall to wall.
+
+    Attributes
+    ----------
+    scene : scene
+    share : (S,), fraction of all particles in each layer
+    crowding : (S,), density divided by the density of a gas that fills evenly the volume that centres can
+        reach
+    temperature : (S,), k_B T
+    axis : axis of the layers, None for a homogeneous gas
+    scale : shortest length along the axis over which density or temperature change by the factor e
+    """
 
     scene: Scene
     share: np.ndarray
@@ -37,7 +49,7 @@ class Layers:
 
     @cached_property
     def _kinds(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """(K,) radii, masses and mean number densities of the kinds of particles that move."""
+        """Radii, masses and mean number densities (K,) of the kinds of particles that move."""
         kinds = self.scene.moving_kinds
         radii = np.array([kind.radius for kind in kinds])
         masses = np.array([kind.mass for kind in kinds])
@@ -45,25 +57,26 @@ class Layers:
 
     @cached_property
     def filled(self) -> np.ndarray:
-        """(S,) packing fraction, of what centres can reach."""
+        """Packing fraction in the volume that centres can reach, shape (S,)."""
         radii, _, numbers = self._kinds
         d = self.scene.dimension
         return self.crowding * ball_volume(d) * float((numbers * radii**d).sum())
 
     @cached_property
     def contact(self) -> np.ndarray:
-        """(S,) contact value of an infinite gas, the largest one of all pairs of kinds."""
+        """Contact value of an infinite gas, the largest of all pairs of kinds, shape (S,)."""
         radii, _, numbers = self._kinds
         d = self.scene.dimension
         return np.array([float(contact_values(numbers * ratio, radii, d).max()) for ratio in self.crowding])
 
     @cached_property
     def contact_of_few(self) -> np.ndarray:
-        """(S,) that of so many particles, inf where a pair has no room.
+        """Contact value for the scene's number of particles, inf without space for a pair; shape (S,).
 
-        A pair at contact has not to avoid itself: 1 / (1 - v / V), v the volume from which one of the pair
-        keeps the centre of the other, which is exact of two particles, times the contact value of the rest.
-        To first order in the packing fraction of spheres 1 + (5/2 + 3/N) eta: 4 eta of two, 5/2 eta of many.
+        A pair at contact need not avoid itself: 1 / (1 - v / V), v the volume from which one of the pair
+        excludes the centre of the other, which is exact for two particles, is multiplied by the contact value
+        of the rest. To first order in the packing fraction of spheres it is 1 + (5/2 + 3/N) eta: 4 eta for
+        two, 5/2 eta for many.
         """
         radii, _, numbers = self._kinds
         d, count = self.scene.dimension, self.scene.count
@@ -80,7 +93,7 @@ class Layers:
 
     @cached_property
     def path(self) -> np.ndarray:
-        """(S,) mean free path of the kind that has the shortest one."""
+        """Mean free path of the kind that has the shortest one, shape (S,)."""
         radii, _, numbers = self._kinds
         d = self.scene.dimension
         sigma = radii[:, None] + radii
@@ -90,7 +103,7 @@ class Layers:
 
     @cached_property
     def speed(self) -> np.ndarray:
-        """(S,) mean speed of the lightest particles."""
+        """Mean speed of the lightest particles, shape (S,)."""
         _, masses, _ = self._kinds
         mean = 8.0 / math.pi if self.scene.dimension == 3 else math.pi / 2.0
         return np.sqrt(mean * self.temperature / masses.min())
@@ -104,8 +117,11 @@ class Layers:
 
     @cached_property
     def surfaces(self) -> float:
-        """What part of all contacts lack a neighbour beyond a wall, to first order: the sum over axes with
-        walls of the largest diameter over the length in which the particles are."""
+        """Fraction of all contacts that lack a neighbour beyond a wall, to first order.
+
+        It is the sum over axes with walls of the largest diameter divided by the length in which the
+        particles are.
+        """
         sides = np.where(self.scene.container.periodic, math.inf, self.free)
         if self.axis is not None and math.isfinite(sides[self.axis]):
             sides[self.axis] = min(sides[self.axis], self.scale)

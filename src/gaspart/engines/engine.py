@@ -29,12 +29,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Asked:
-    """An observable of a steady scene, and its relative accuracy: a standard error with the bias.
+    """Observable of a steady scene, and its requested relative accuracy.
 
-    conditions: of the scene; face: of the pressure, the wall; transported: whether transport coefficients
-    govern the observable; initial: the state at time 0, None where only the errors of models are asked for;
-    memory: by how much correlated collisions change transport; points: by how much the observable of points
-    differs, None where theory does not know it.
+    The accuracy is a standard error with the bias.
+
+    Attributes
+    ----------
+    conditions : local conditions of the scene
+    face : wall of a pressure
+    transported : whether transport coefficients govern the observable
+    initial : state at time 0, None if only the errors of models are requested
+    memory : relative change of transport by correlated collisions
+    points : relative deviation of the observable of points, None if theory does not know it
     """
 
     observable: str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-SYNONYMS: dict[str, str] = {
+SYNONYMS: dict[str, str | tuple[str, ...]] = {
     "N": "count",
     "n": "count",
     "num": "count",
@@ -53,7 +53,17 @@ SYNONYMS: dict[str, str] = {
     "friction": "restitution, whose tangential one is without friction at -1",
     "phi": "packing_fraction",
     "eta": "packing_fraction",
-    "density": "packing_fraction, or count and lengths",
+    "density": (
+        "packing_fraction, or count and lengths",
+        "activity, which gaspart.theory.activity computes from a packing fraction",
+    ),
+    "velocity": "speed",
+    "left": "x_low",
+    "right": "x_high",
+    "bottom": ("z_low", "y_low"),
+    "floor": ("z_low", "y_low"),
+    "top": ("z_high", "y_high"),
+    "ceiling": ("z_high", "y_high"),
     "time": "duration",
     "t": "duration",
     "t_end": "duration",
@@ -62,6 +72,7 @@ SYNONYMS: dict[str, str] = {
     "steps": "duration",
     "n_steps": "duration",
     "interval": "sample_interval",
+    "sample_interval": "samples, the number of frames",
     "every": "sample_interval",
     "frames": "sample_interval, the time between frames",
     "output": "path",
@@ -85,16 +96,17 @@ SYNONYMS: dict[str, str] = {
     "parameters": "over",
     "grid": "over",
 }
-"""Name by the other word, with a remark behind a comma; several names have a comma or "or" between."""
+"""Name by the other word, with a remark behind a comma; several names have a comma or "or" between. Of
+several meanings the first that is known applies."""
 
 
 def meant(word: str, known: list[str]) -> str | None:
     """Return the meaning of another word if its names are known, or None."""
-    meaning = SYNONYMS.get(word)
-    if meaning is None:
-        return None
-    names = meaning.replace(",", " ").split()
-    return meaning if any(name in known for name in names) else None
+    meanings = SYNONYMS.get(word, ())
+    for meaning in (meanings,) if isinstance(meanings, str) else meanings:
+        if any(name in known for name in meaning.replace(",", " ").split()):
+            return meaning
+    return None
 
 
 ELSEWHERE: dict[str, dict[str, str]] = {
@@ -139,6 +151,8 @@ ELSEWHERE: dict[str, dict[str, str]] = {
     "State": {
         "x": "it is positions",
         "r": "it is positions",
+        "pos": "it is positions",
+        "vel": "it is velocities",
         "v": "it is velocities",
         "N": "it is count",
         "T": "it is temperature",

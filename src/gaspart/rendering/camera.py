@@ -16,9 +16,14 @@ MARGIN = 1.04
 
 @dataclass(frozen=True)
 class Camera:
-    """eye (3,); forward, right, up (3,) unit vectors; half_width, half_height: tangents of half the angles of
-    view; near, far: distances along `forward` between which the container is; light (3,), the unit vector
-    to the lamp, at the upper left behind the camera."""
+    """Camera of the ray tracer.
+
+    eye : (3,), position.
+    forward, right, up : (3,), unit vectors.
+    half_width, half_height : tangents of half the angles of view.
+    near, far : distances along `forward` between which the container is.
+    light : (3,), unit vector to the lamp, at the upper left behind the camera.
+    """
 
     eye: np.ndarray
     forward: np.ndarray
@@ -31,11 +36,17 @@ class Camera:
     light: np.ndarray
 
     def pixels_per_length(self, point: np.ndarray, width: int) -> float:
-        """Pixels per length across the view at a point (3,), in a picture `width` pixels wide."""
+        """Return the pixels per length at a point (3,), in a picture `width` pixels wide.
+
+        The length is measured across the view.
+        """
         return 0.5 * width / (self.half_width * float((point - self.eye) @ self.forward))
 
     def pixels(self, points: np.ndarray, size: tuple[int, int]) -> np.ndarray:
-        """Return the columns and rows (M, 2) of points (M, 3) in a picture of a size (W, H)."""
+        """Return the columns and rows (M, 2) of points (M, 3) in a picture.
+
+        The picture has the size (W, H).
+        """
         away = points - self.eye
         slopes = np.column_stack([away @ self.right, -(away @ self.up)]) / (away @ self.forward)[:, None]
         return 0.5 * np.array(size) * (1.0 + slopes / np.array([self.half_width, self.half_height]))
@@ -48,8 +59,11 @@ def camera_for(
     direction: tuple[float, float] = CAMERA,
     reach: float = 0.0,
 ) -> Camera:
-    """The camera for which a container of `lengths` (3,), and what is within `reach` around it, just fills a
-    picture of so many pixels, seen from a direction (azimuth, elevation)."""
+    """Return the camera for which a container just fills a picture.
+
+    The container has `lengths` (3,); objects within `reach` around it are included. The direction is
+    (azimuth, elevation).
+    """
     azimuth, elevation = np.radians(direction)
     outward = np.array(
         [np.cos(azimuth) * np.cos(elevation), np.sin(azimuth) * np.cos(elevation), np.sin(elevation)]
@@ -61,7 +75,7 @@ def camera_for(
     depth = corners @ forward
 
     def seen(distance: float) -> np.ndarray:
-        """(2, 2) the lowest and highest slope, to the right and upwards, at which a corner is seen."""
+        """Return the lowest and highest slope of the corners, to the right and upwards."""
         slopes = np.array([corners @ right, corners @ up]) / (distance + depth)
         return np.array([slopes.min(axis=1), slopes.max(axis=1)])
 
@@ -86,7 +100,7 @@ def camera_for(
 
 
 def edges_of(lengths: np.ndarray) -> np.ndarray:
-    """(12, 7) the container's edges: a corner, the unit vector along, the length."""
+    """Return the edges (12, 7) of the container: a corner, the unit vector along, the length."""
     return np.array(
         [
             [*np.insert(ends, axis, 0.0) * lengths, *np.eye(3)[axis], lengths[axis]]
@@ -97,7 +111,7 @@ def edges_of(lengths: np.ndarray) -> np.ndarray:
 
 
 def segments(lines: np.ndarray) -> np.ndarray:
-    """(M, 7) lines (M, 2, 3), from end to end, in the same form."""
+    """Convert lines (M, 2, 3), from end to end, to the form (M, 7) of edges."""
     along = lines[:, 1] - lines[:, 0]
     lengths = np.linalg.norm(along, axis=1, keepdims=True)
     return np.hstack([lines[:, 0], along / lengths, lengths])

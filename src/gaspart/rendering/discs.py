@@ -1,4 +1,4 @@
-"""Discs, walls and paths in the plane, drawn by the fraction of each pixel that they cover."""
+"""Pictures of discs, walls and paths in the plane, by area coverage of pixels."""
 
 from __future__ import annotations
 
@@ -16,8 +16,10 @@ _SHADE = (0.88, 0.88, 0.88)
 
 
 def scale_of(lengths: np.ndarray, size: tuple[int, int]) -> tuple[float, np.ndarray]:
-    """Pixels per length of a container of `lengths` (2,) in the middle of a picture of `size` (W, H), and
-    where its corner is (2,)."""
+    """Return the pixels per length of a container, and the pixel (2,) of its corner.
+
+    The container of `lengths` (2,) is in the middle of a picture of `size` (W, H).
+    """
     width, height = size
     margin = max(2.0, _MARGIN * min(size))
     scale = float(min((width - 2 * margin) / lengths[0], (height - 2 * margin) / lengths[1]))
@@ -25,7 +27,7 @@ def scale_of(lengths: np.ndarray, size: tuple[int, int]) -> tuple[float, np.ndar
 
 
 class Canvas:
-    """A white picture of `size` (W, H) pixels, with a container of `lengths` (2,) in the middle."""
+    """White picture of `size` (W, H) pixels, with a container of `lengths` (2,) in the middle."""
 
     def __init__(self, lengths: np.ndarray, size: tuple[int, int]) -> None:
         width, height = size
@@ -34,16 +36,16 @@ class Canvas:
         self._height = height
 
     def _pixels(self, points: np.ndarray) -> np.ndarray:
-        """Points (N, 2) of the container as columns and rows of pixels."""
+        """Convert points (N, 2) of the container to columns and rows of pixels."""
         places = self.corner + self.scale * np.asarray(points, dtype=float)
         return np.column_stack([places[:, 0], self._height - places[:, 1]])
 
     def discs(self, positions: np.ndarray, radii: np.ndarray, colours: np.ndarray) -> None:
-        """Discs, later ones over earlier ones; none smaller than half a pixel in radius."""
+        """Draw discs, later ones over earlier ones; none smaller than half a pixel in radius."""
         draw_discs(self.image, self._pixels(positions), np.maximum(self.scale * radii, 0.5), colours)
 
     def cut(self, periodic: Sequence[bool]) -> None:
-        """Leave white what lies beyond the container along the axes that are periodic."""
+        """Clear the pixels beyond the container along the axes that are periodic."""
         width, height = self.lengths
         low, high = np.rint(self._pixels(np.array([[0.0, height], [width, 0.0]]))).astype(int)
         if periodic[0]:
@@ -52,7 +54,7 @@ class Canvas:
             self.image[: low[1]] = self.image[high[1] :] = 1.0
 
     def line(self, points: np.ndarray, colour: tuple[float, ...] = INK, width: int = 1) -> None:
-        """A line through points (N, 2), `width` pixels wide (odd)."""
+        """Draw a line through points (N, 2), `width` pixels wide (odd)."""
         half = width // 2
         for shift in product(range(-half, half + 1), repeat=2):
             places = self._pixels(points) + np.array(shift)
@@ -77,7 +79,7 @@ class Canvas:
             self.image[max(top, 0) : bottom, max(left, 0) : right] = _SHADE
 
     def surface(self, surface: DrawnSurface) -> None:
-        """Draw a surface in its look: its line, dashes, hatching, arrows and the edge of its well."""
+        """Draw a surface: its line, dashes, hatching, arrows and the edge of its well."""
         start, end = surface.ends
         along = (end - start) / np.linalg.norm(end - start)
         unit = self._thickness / self.scale  # the thickness of the line as a length
@@ -116,7 +118,7 @@ class Canvas:
             self.line(marks[n : n + 2], colour, self._thickness)
 
     def _arrow(self, tail: np.ndarray, head: np.ndarray, colour: tuple[float, ...]) -> None:
-        """Draw an arrow with a bright border, so that it is seen on discs of any colour."""
+        """Draw an arrow with a bright border, which is visible on discs of any colour."""
         back = 0.25 * (tail - head)
         barbs = [head + back + sign * 0.6 * np.array([-back[1], back[0]]) for sign in (-1.0, 1.0)]
         lines = [np.array([tail, head]), *(np.array([barb, head]) for barb in barbs)]
@@ -125,6 +127,9 @@ class Canvas:
                 self.line(line, shade, width)
 
     def path(self, points: np.ndarray) -> None:
-        """A line through points (N, 2) that is seen on discs of any colour: dark, with a bright border."""
+        """Draw a dark line with a bright border through points (N, 2).
+
+        It is visible on discs of any colour.
+        """
         self.line(points, PAPER, 5)
         self.line(points, INK, 3)

@@ -118,7 +118,10 @@ def film(
             raise no_run(source)
         if isinstance(source, Simulation | State):
             raise SceneError(
-                "trajectory", source, "must be a path or an open trajectory: a film needs frames"
+                "trajectory",
+                source,
+                "must be a path or an open trajectory: a film needs frames; gaspart.run(scene, path=...) "
+                "writes them",
             )
         source = _part(source, start, stop, every)
         direction = _checked(source, colour, trail, camera)
@@ -220,12 +223,12 @@ def _pictures(
         particles = particles_of(trajectory, n)
         if trail is not None:
             path.append(particles.positions[trail])
-        paths = _pieces(path, particles.lengths)
+        paths = pieces(path, particles.lengths)
         image = picture(particles, inner, colours_of(particles, colour, fastest), paths, direction)
         yield labels.around(image, f"{time:{decimals}}", scale) if labels else image
 
 
-def _pieces(path: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:
+def pieces(path: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:
     """Cut a path into lines (M, 2) where it crosses a periodic face."""
     if len(path) < 2:
         return []

@@ -1,135 +1,41 @@
-"""A gas that runs in a notebook, while sliders change its packing fraction and gravity."""
+"""Gas to play with in a notebook: sliders change it, gauges measure it."""
 
 from __future__ import annotations
 
 import asyncio
+import html
+import time
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
-from gaspart.accuracy.scales import scales
+import numpy as np
+
 from gaspart.engines import Engine
 from gaspart.errors import SceneError, SimulationError, optional
-from gaspart.rendering.frames import Picture, render
-from gaspart.scene.open_faces import refuse_open
-from gaspart.scene.scene import Scene, require_scene
-from gaspart.simulation import Simulation
+from gaspart.rendering.live_gas import LEAST_FRAMES, LIVE_SIZE, LiveGas
+from gaspart.scene.scene import Scene
 
-_PICTURES = 100
-"""In the time in which a particle crosses the container."""
 _SECONDS = 0.04
-"""Between two pictures, at least: in these the notebook hears what its user does."""
-_DENSEST = {2: 0.45, 3: 0.28}
-"""Packing fraction up to which particles are placed at random."""
-_WEIGHTS = 8.0
-"""The strongest gravity of the slider: of a fall through the container, in units of m v^2 of a particle."""
-_SIZE = (600, 450)
-
-
-class LiveGas:
-    """Simulation that goes on from picture to picture, of a scene that may change.
-
-    `interval` is the time between two pictures, `size` is (W, H) in pixels; other arguments are those for
-    `Simulation`. Raises SceneError as `Simulation`, for open faces, and for a scene in which nothing moves or
-    falls.
-    """
-
-    def __init__(
-        self,
-        scene: Scene,
-        engine: Engine | str | None = None,
-        seed: int | tuple[int, ...] = 0,
-        size: tuple[int, int] = _SIZE,
-    ) -> None:
-        require_scene(scene)
-        refuse_open(scene, "changes the particles, whose packing fraction a slider would state")
-        self.interval = scales(scene).crossing_time / _PICTURES
-        if self.interval == float("inf"):
-            raise SceneError("scene", scene, "nothing moves at the start, and nothing falls")
-        self.size, self._engine, self._seed, self._first = size, engine, seed, scene
-        self.simulation = Simulation(scene, engine, seed)
-
-    @property
-    def picture(self) -> Picture:
-        """Picture of the particles now, with the parameters of the scene."""
-        return render(self.simulation, size=self.size, clock=True)
-
-    def advance(self) -> Picture:
-        """Advance by an interval and return the picture then."""
-        self.simulation.advance(duration=self.interval)
-        return self.picture
-
-    def fill(self, packing_fraction: float) -> None:
-        """Start again with another number of particles, for about this packing fraction.
-
-        The species that move keep the proportions of the first scene.
-
-        Parameters
-        ----------
-        packing_fraction : float, [1]
-            Packing fraction.
-
-        Raises
-        ------
-        SceneError
-            If the particles do not fit.
-        """
-        factor = (packing_fraction - self.emptiest) / (self._first.packing_fraction - self.emptiest)
-        species = [
-            one if one.fixed else replace(one, count=max(1, round(factor * one.count)))
-            for one in self._first.species
-        ]
-        scene = replace(self.simulation.scene, species=species)
-        self.simulation = Simulation(scene, self._engine, self._seed)
-
-    def pull(self, acceleration: float) -> None:
-        """Continue from the present positions under another gravity, down the last axis.
-
-        Parameters
-        ----------
-        acceleration : float, [length/time^2]
-            Acceleration.
-        """
-        down = (*[0.0] * (self._first.dimension - 1), -acceleration)
-        scene = replace(self.simulation.scene, gravity=down)
-        self.simulation = Simulation(scene, self._engine, self._seed, initial=self.simulation.state)
-
-    @property
-    def emptiest(self) -> float:
-        """Packing fraction of all particles except species that move."""
-        fixed = [one for one in self._first.species if one.fixed]
-        return replace(self._first, species=fixed).packing_fraction
-
-    @property
-    def densest(self) -> float:
-        """Highest packing fraction to choose."""
-        return max(_DENSEST[self._first.dimension], self._first.packing_fraction)
-
-    @property
-    def strongest(self) -> float | None:
-        """Strongest gravity to choose; None without a floor."""
-        if self._first.container.periodic[-1]:
-            return None
-        height = self._first.container.lengths[-1]
-        return max(_WEIGHTS * scales(self._first).thermal_speed ** 2 / height, 2.0 * self.gravity)
-
-    @property
-    def gravity(self) -> float:
-        """Acceleration down the last axis."""
-        pull = self.simulation.scene.gravity
-        return -pull[-1] if pull else 0.0
+"""Between the starts of two pictures, at least."""
+_PAUSE = 0.005
+"""Seconds after each picture, at least, in which the notebook hears what its user does."""
+_METERS = 1.0
+"""Seconds between two readings of the gauges."""
 
 
 def live(
     scene: Scene,
     engine: Engine | str | None = None,
     seed: int | tuple[int, ...] = 0,
-    size: tuple[int, int] = _SIZE,
+    size: tuple[int, int] = LIVE_SIZE,
+    colour: str = "speed",
 ) -> Any:
     """Show a scene that runs while it is watched, in a widget of a notebook.
 
-    A slider changes the packing fraction, and the gas starts again. If there is a floor, another slider
-    changes gravity, under which the gas goes on.
+    Sliders change the packing fraction, for which the gas starts again, and gravity, the temperature of the
+    walls, restitution and the side x high, with which the gas goes on. The side is pushed in as a piston and
+    pulled out into a vacuum. A button removes interior walls. Gauges show temperature and pressure since the
+    last change, with their errors and theory, and the histogram of speeds with Maxwell's distribution.
 
     Parameters
     ----------
@@ -141,6 +47,8 @@ def live(
         Seed of the initial state and of all random numbers.
     size : tuple of int
         Width and height of the picture in pixels.
+    colour : str, default "speed"
+        Colours of particles, as for `render`.
 
     Returns
     -------
@@ -155,7 +63,7 @@ def live(
 
     Notes
     -----
-    The first change of gravity compiles kernels.
+    The first change of each kind compiles kernels.
 
     Examples
     --------
@@ -166,15 +74,20 @@ def live(
     'VBox'
     """
     widgets = optional("ipywidgets", "live", "gases that run in a notebook")
-    gas = LiveGas(scene, engine, seed, size)
+    gas = LiveGas(scene, engine, seed, size, colour)
     image = widgets.Image(value=gas.picture._repr_png_(), format="png", width=size[0], height=size[1])
     running, note = widgets.ToggleButton(description="run"), widgets.Label()
+    meters = widgets.HTML(meters_of(gas))
 
     async def play() -> None:
+        shown = 0.0
         try:
             while running.value:
+                start = time.perf_counter()
                 image.value = gas.advance()._repr_png_()
-                await asyncio.sleep(_SECONDS)
+                if start - shown > _METERS:
+                    meters.value, shown = meters_of(gas), start
+                await asyncio.sleep(max(_PAUSE, _SECONDS - (time.perf_counter() - start)))
         except SimulationError as error:
             running.value, note.value = False, str(error)
 
@@ -182,27 +95,98 @@ def live(
         if change.new:
             running.task = asyncio.get_running_loop().create_task(play())  # which must be referred to
 
-    def slider(name: str, range_: tuple[float, float, float], change: Callable[[float], None]) -> Any:
-        def changed(event: Any) -> None:
-            note.value = "one moment: kernels of a new kind of scene are compiled"
-            try:
-                change(event.new)
-                image.value, note.value = gas.picture._repr_png_(), ""
-            except SceneError as error:
-                note.value = str(error)
+    def changing(change: Callable[..., None], *values: float) -> None:
+        note.value = "one moment: kernels of a new kind of scene are compiled"
+        try:
+            change(*values)
+            image.value, note.value, meters.value = gas.picture._repr_png_(), "", meters_of(gas)
+        except SceneError as error:
+            note.value = str(error)
 
-        least, value, most = range_
-        step = (most - least) / 50.0
-        found = widgets.FloatSlider(value, min=least, max=most, step=step, description=name)
-        found.continuous_update, found.style.description_width = False, "initial"
-        found.observe(changed, "value")
-        return found
+    def trace(event: Any) -> None:
+        gas.traced = event.new
+        image.value = gas.picture._repr_png_()
+
+    def remove_walls(button: Any) -> None:
+        changing(gas.open_walls)
+        button.disabled = True
 
     running.observe(start, "value")
-    sliders = []
+    tracer = widgets.ToggleButton(description="tracer")
+    tracer.observe(trace, "value")
+    buttons = [running, tracer] if scene.dimension == 2 else [running]
+    if scene.walls:
+        opening = widgets.Button(description="remove walls")
+        opening.on_click(remove_walls)
+        buttons.append(opening)
+    sliders = [_slider(widgets, *of, changing) for of in _ranges(gas)]
+    controls = widgets.HBox([*buttons, *sliders], layout=widgets.Layout(flex_flow="row wrap"))
+    top = widgets.HBox([image, meters], layout=widgets.Layout(flex_flow="row wrap"))
+    return widgets.VBox([top, controls, note])
+
+
+def _slider(
+    widgets: Any,
+    name: str,
+    range_: tuple[float, float, float],
+    change: Callable[[float], None],
+    changing: Callable[..., None],
+) -> Any:
+    """Return a slider of a name and a range (least, value, most) that changes a gas."""
+    least, value, most = range_
+    made = widgets.FloatSlider(value, min=least, max=most, step=(most - least) / 50.0, description=name)
+    made.continuous_update, made.style.description_width = False, "initial"
+    made.observe(lambda event: changing(change, event.new), "value")
+    return made
+
+
+def _ranges(gas: LiveGas) -> list[tuple[str, tuple[float, float, float], Callable[[float], None]]]:
+    """Return the name, the range and the effect of each slider that suits a gas."""
+    scene = gas.simulation.scene
+    found: list[tuple[str, tuple[float, float, float], Callable[[float], None]]] = []
     if gas.emptiest < scene.packing_fraction:
-        filled = gas.emptiest, scene.packing_fraction, gas.densest
-        sliders.append(slider("packing fraction", filled, gas.fill))
+        found.append(("packing fraction", (gas.emptiest, scene.packing_fraction, gas.densest), gas.fill))
     if gas.strongest:
-        sliders.append(slider("gravity", (0.0, gas.gravity, gas.strongest), gas.pull))
-    return widgets.VBox([image, widgets.HBox([running, *sliders]), note])
+        found.append(("gravity", (0.0, gas.gravity, gas.strongest), gas.pull))
+    if gas.hottest:
+        found.append(("temperature of walls", (0.0, gas.temperature, gas.hottest), gas.heat))
+    normal = scene.restitution.normal if scene.restitution else 1.0
+    if scene.count > 1:
+        found.append(("restitution", (min(0.5, normal), normal, 1.0), gas.damp))
+    if gas.shortest:
+        length = scene.container.lengths[0]
+        found.append(("piston", (gas.shortest, length, length), gas.push))
+    return found
+
+
+def meters_of(gas: LiveGas) -> str:
+    """Return the gauges and the histogram of speeds as HTML."""
+    rows = []
+    for name, value, error, known in gas.gauges():
+        expected = "" if known is None or not np.isfinite(known) else f"{known:.4g}"
+        rows.append((name, f"{value:.4g} &plusmn; {error:.1g}", expected))
+    lines = "".join(f"<tr><td>{html.escape(name)}</td><td>{a}</td><td>{b}</td></tr>" for name, a, b in rows)
+    waiting = "" if rows else f"<tr><td>measuring: {LEAST_FRAMES} pictures</td></tr>"
+    head = "<tr><th></th><th>measured</th><th>theory</th></tr>"
+    edges, density, expected = gas.speeds()
+    width, height = 260.0, 110.0
+    most = max(density.max(), expected.max() if expected is not None else 0.0) or 1.0
+    across, up = width / edges[-1], height / (1.1 * most)
+    bars = "".join(
+        f'<rect x="{across * low:.1f}" y="{height - up * value:.1f}" '
+        f'width="{across * (high - low) - 1.0:.1f}" height="{up * value:.1f}" fill="#7aa"/>'
+        for low, high, value in zip(edges[:-1], edges[1:], density, strict=True)
+    )
+    curve = ""
+    if expected is not None:
+        middles = 0.5 * (edges[1:] + edges[:-1])
+        points = " ".join(
+            f"{across * x:.1f},{height - up * y:.1f}" for x, y in zip(middles, expected, strict=True)
+        )
+        curve = f'<polyline points="{points}" fill="none" stroke="#222" stroke-width="2"/>'
+    text = "speeds" if expected is None else "speeds, and Maxwell's distribution"
+    picture = f'<svg width="{width:g}" height="{height:g}" role="img" aria-label="{text}">{bars}{curve}</svg>'
+    return (
+        f"<p>collisions: {gas.collisions}</p><table>{head}{lines}{waiting}</table>{picture}"
+        f"<p>{text}, 0 to {edges[-1]:.3g}</p>"
+    )

@@ -1,8 +1,10 @@
-"""A small ray tracer for spheres on the floor of a container: one lamp, its shadows, and ambient light.
+"""Small ray tracer for spheres on the floor of a container, with one lamp and shadows.
+
+Ambient light is added.
 
 Rays find spheres through a grid of cells. Ambient light is dimmed by each near sphere by the part of the sky
-that it covers, in closed form, without random rays and without noise. One ray goes through
-the middle of each pixel; where neighbours show different objects, SUBRAYS x SUBRAYS take its place.
+that it covers, in closed form, without random rays and without noise. One ray goes through the middle of each
+pixel; where neighbours show different objects, SUBRAYS x SUBRAYS take its place.
 """
 
 from __future__ import annotations
@@ -34,10 +36,14 @@ def trace(
     size: tuple[int, int],
     lines: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The picture (H, W, 3), from 0 to 1, and the kind of object in the middle of each pixel (H, W).
+    """Trace a picture (H, W, 3), from 0 to 1, and the objects in its pixels.
 
-    positions (N, 3), radii (N,), colours (N, 3); lengths (3,) of the container, whose lower face is the
-    floor; size: (W, H) pixels; lines (M, 2, 3), drawn like the container's edges.
+    positions, radii, colours : (N, 3), (N,), (N, 3).
+    lengths : (3,), sides of the container, whose lower face is the floor.
+    size : (W, H) in pixels.
+    lines : (M, 2, 3), drawn like the edges of the container.
+
+    Returned are the picture and the kind of object in the middle of each pixel (H, W).
     """
     spheres = np.column_stack([positions, radii]).astype(float)
     grid = cells(spheres, np.asarray(lengths, dtype=float))
@@ -57,8 +63,11 @@ def trace(
 
 
 def cells(spheres: np.ndarray, lengths: np.ndarray) -> tuple:
-    """Cubic cells over container and spheres: lowest corner (3,), side, numbers (3,), the lists of the
-    spheres that reach into each (listed[first[c] : first[c + 1]]), and each sphere's lowest cell (N, 3)."""
+    """Divide container and spheres into cubic cells, and list the spheres in each cell.
+
+    Returned are the lowest corner (3,), the side, the numbers (3,), the lists of the spheres that reach into
+    each cell (listed[first[c] : first[c + 1]]), and each sphere's lowest cell (N, 3).
+    """
     low, high = np.zeros(3), lengths.copy()
     side = float(lengths.max())
     if len(spheres):

@@ -20,6 +20,7 @@ from gaspart.rendering.camera import edges_of
 from gaspart.rendering.frames import opened, particles_of, scene_of
 from gaspart.rendering.particles import FASTEST, FIXED, DrawnParticles
 from gaspart.rendering.style import COLOURS
+from gaspart.rendering.surfaces import DrawnSurface
 from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
@@ -94,7 +95,8 @@ class View:
 def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order: bool = False) -> View:
     """Return an interactive view of a trajectory, or of a simulation, which is run again.
 
-    The page can play, turn, move and zoom; it shows colours by speed or species, the time and a scale.
+    The page can play, turn, move and zoom; it shows colours by speed or species, the faces
+    in the looks that they have in pictures, with a legend, the time and a scale.
 
     Parameters
     ----------
@@ -195,6 +197,7 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
         "order": _order(shown) if order else None,
         "radii": _text(first.radii.astype("<f4")),
         "species": _text((first.species % 256).astype(np.uint8)),
+        **_looks([one.surfaces for one in shown]),
         "lines": _text(lines.astype("<f4")),
         "ends": lines.shape[1],
         "map": _text(np.rint(255.0 * np.vstack([colours, [FIXED]])).astype(np.uint8)),
@@ -217,6 +220,41 @@ def _order(shown: list[DrawnParticles]) -> dict:
     values = np.array([np.abs(measure(one.positions, one.lengths)) for one in shown])
     parts = np.rint(_HIGHEST * np.clip(values / highest, 0.0, 1.0)).astype(np.uint8)
     return {"values": _text(parts), "name": name, "highest": highest}
+
+
+def _looks(shown: list[tuple[DrawnSurface, ...]]) -> dict:
+    """Return the looks of faces and walls, and their corners in each frame.
+
+    If nothing moves, the corners are returned once.
+    """
+    frames = [
+        [
+            {"corners": np.pad(one.ends, ((0, 0), (0, 3 - one.ends.shape[1]))).tolist(), "depth": one.depth}
+            for one in row
+        ]
+        for row in shown
+    ]
+    if all(row == frames[0] for row in frames):
+        frames = frames[:1]
+    looks = [
+        {
+            "text": one.text,
+            "colours": one.colours.round(3).tolist(),
+            "inward": _in_space(one.inward),
+            "dashed": one.dashed,
+            "hatched": one.hatched,
+            "motion": None if one.motion is None else _in_space(one.motion),
+            "through": one.through,
+            "band": one.band,
+        }
+        for one in shown[0]
+    ]
+    return {"surfaces": looks, "surface_ends": frames}
+
+
+def _in_space(vector: np.ndarray) -> list[float]:
+    """Return a vector with three components."""
+    return [*vector.tolist(), *[0.0] * (3 - len(vector))]
 
 
 def _lines(lengths: np.ndarray, walls: list[np.ndarray]) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Lengths of the runs of each point: the least CPU time with which all claims stay decided.
+"""Lengths of the runs of each point: the least CPU time that decides all claims.
 
     python -m gaspart.reproduction.allocation config/config.yaml PAGE
 
@@ -138,10 +138,10 @@ def allocated(
 
 
 def _least_cost(shares: np.ndarray, times: np.ndarray, least: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Minimise sum t x under shares @ (1 / x) <= 1 and least <= x <= LONGEST.
+    """Minimise sum t x with shares @ (1 / x) <= 1 in given bounds.
 
-    Returns x and the multipliers of the first conditions, which are found by multiplication with the excess
-    or the deficit.
+    The bounds are least <= x <= LONGEST. Returns x and the multipliers of the first conditions, which are
+    found by multiplication with the excess or the deficit.
     """
     lengths = np.maximum(least, SHORTEST)
     multipliers = np.where(shares.any(axis=1), times.mean(), 0.0)

@@ -1,4 +1,7 @@
-"""Validation of a config before any job; an error is one line with file, key, value and rule."""
+"""Validation of a config before any job, with errors of one line.
+
+An error has file, key, value and rule.
+"""
 
 from __future__ import annotations
 
@@ -284,9 +287,9 @@ def checked_points(config: dict, experiment: str) -> dict[str, Point]:
 
 
 def gridded_points(config: dict, experiment: str) -> dict[str, Point]:
-    """Return the points of an experiment, by name, after a check of each value of the grid.
+    """Return the points of an experiment, by name, after a check of its grid.
 
-    Values are checked by themselves. Raises SceneError.
+    Each value of the grid is checked by itself. Raises SceneError.
     """
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):

@@ -26,9 +26,10 @@ if TYPE_CHECKING:
 
 
 def predict(path: str) -> list[str]:
-    """Predict the core-hours of each experiment of a config, and of all, on this machine, in lines.
+    """Predict the core-hours of each experiment of a config on this machine, in lines.
 
-    A config next to `config.yaml` is merged over that, as in the workflow. Raises SceneError.
+    The last line is the sum. A config next to `config.yaml` is merged over it, as in the workflow. Raises
+    SceneError.
     """
     lines, total, unknown = [], 0.0, []
     with checked(path) as (_, planned):
@@ -75,7 +76,10 @@ def _seconds(point: Point) -> float | None:
 
 
 def _speed(gas: Gas, engine: str, precision: str) -> float:
-    """Return the relative speed at the nearest power of ten of particles; so few sizes are timed."""
+    """Return the relative speed at the nearest power of ten of particles.
+
+    So few sizes are timed.
+    """
     return speed.factor(gas.dimension, engine, precision, 10 ** round(math.log10(max(gas.count, 10))))
 
 

@@ -1,4 +1,4 @@
-"""Process that has loaded the modules of all jobs, and makes each job as a copy by fork.
+"""Process that has loaded the modules of all jobs, and makes each by fork.
 
 A job of the workflow needs 0.5 to 3 s of CPU time to load its modules, a copy 0.1 s. On one machine the
 workflow starts the server. On a cluster, and where processes cannot be copied, jobs start by themselves.
@@ -49,7 +49,7 @@ _MOST = 1 << 16
 
 
 def start(python: str, client: Path) -> str:
-    """Start the server, and return the shell command that runs a script in a copy of it.
+    """Start the server, and return the shell command that runs a script in it.
 
     `python` is the command of the interpreter, as a shell reads it; it runs scripts where there is no server.
     """

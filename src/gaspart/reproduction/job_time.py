@@ -1,4 +1,4 @@
-"""CPU time and memory of a job of the workflow, as the last line of its log.
+"""CPU time and memory of a job, as the last line of its log.
 
 Snakemake samples the CPU time of a job now and then, and not at its end: of 736 s it recorded 607 s. A job
 that a server runs it does not see at all. So each job asks the operating system when its work is done.
@@ -17,7 +17,10 @@ _LINE = re.compile(r"^processor time: (\d+\.\d+) s, memory: (\d+\.\d+|nan) MB$",
 
 
 class Used(NamedTuple):
-    """CPU time of a job with its children, in s, and its largest memory, in MB; nan if unknown."""
+    """CPU time of a job with its children, in s, and its largest memory, in MB.
+
+    An unknown number is nan.
+    """
 
     seconds: float
     memory: float

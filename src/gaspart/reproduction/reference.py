@@ -185,7 +185,10 @@ def _default(value: Any) -> str:
 
 
 def in_words(kind: Kind) -> str:
-    """Describe the kind of a value in words: `number > 0 and ≤ 0.1, or list of 2 to 3`."""
+    """Describe the kind of a value in words.
+
+    An example is `number > 0 and ≤ 0.1, or list of 2 to 3`.
+    """
     if "title" in kind:
         return kind["title"]
     if "const" in kind:

@@ -77,7 +77,7 @@ def sweep(
         others of a gas; a setting of the engine, such as "time_step"; or the position of a value in a scene
         file, such as "gravity" or "species.0.mass".
     observables : iterable of str
-        Names of observables as of `gaspart measure`.
+        Names of observables as in `gaspart measure`.
     folder : str or Path
         Folder of the trajectories, ``points/<name>/replica-<k>.nc``. Several sweeps may use it, also at the
         same time.
@@ -159,7 +159,7 @@ def sweep(
 
 @dataclass(frozen=True)
 class _Plan:
-    """Points of a sweep, and reasons why some cannot be run, by the names of the points."""
+    """Points of a sweep, and reasons why some cannot be run, by names."""
 
     points: list[Point]
     failures: dict[str, str]

@@ -274,7 +274,10 @@ def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
 
 
 def _stacked(each: Sequence[Any], axes: Mapping[str, list]) -> np.ndarray:
-    """Join the arrays of all points, some shorter or missing (None), to one; the rest is nan."""
+    """Join the arrays of all points, some shorter or missing (None), to one.
+
+    The rest is nan.
+    """
     known = [np.asarray(one) for one in each if one is not None]
     inner = tuple(np.max([one.shape for one in known], axis=0).astype(int)) if known else ()
     numbers = all(one.dtype.kind in "fiu" for one in known)

@@ -1,4 +1,6 @@
-"""Table of a figure's numbers: a row for each point, with numbers, words or estimates as columns.
+"""Table of a figure's numbers: a row for each point, with named columns.
+
+Columns are numbers, words or estimates.
 
 `table` makes the data set of a measurement from the columns of each point, `Table` reads it, for claims and
 pictures, and `each` states one claim about every row.

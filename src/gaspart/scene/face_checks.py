@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, unknown_word
 from gaspart.keys.values import finite_vector, size
 from gaspart.scene.faces import (
     FACE_KINDS,
@@ -32,7 +32,8 @@ def check_faces(scene: Scene) -> None:
     known = FACES[: 2 * scene.dimension]
     for name, surface in scene.faces.items():
         if name not in known:
-            raise SceneError(f"faces.{name}", surface, f"unknown face; known are {', '.join(known)}")
+            value = getattr(surface, "kind", surface)
+            raise SceneError(f"faces.{name}", value, unknown_word(name, known, "face"))
         if type(surface) not in FACE_KINDS.values():
             *others, last = (kind.__name__ for kind in FACE_KINDS.values())
             raise SceneError(f"faces.{name}", surface, f"must be {', '.join(others)} or {last}")

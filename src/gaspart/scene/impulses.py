@@ -54,7 +54,7 @@ def require_impulses(scene: Scene) -> None:
 def require_pair_impulses(scene: Scene, furthest: float) -> None:
     """Raise SceneError, with the reason, if the impulses give no g(r) up to a distance."""
     if not scene.is_periodic:
-        raise SceneError("pair_impulses", furthest, "g(r) needs a periodic container")
+        raise SceneError("pair_impulses", furthest, "g(r) needs a periodic container; set boundary: periodic")
     diameter, half = 2.0 * scene.largest_radius, FURTHEST * min(scene.container.lengths)
     if not diameter < furthest <= half:
         rule = f"must be from the largest diameter, {diameter:g}, to half of the shortest side, {half:.4g}"

@@ -18,6 +18,7 @@ _ALLOWED = frozenset(
 def require_tallied(scene: Scene) -> None:
     """Raise SceneError if the stress tensor of a scene cannot be tallied by any engine."""
     if not scene.is_periodic:
-        raise SceneError("stress", True, "needs a periodic container")
+        rule = "the stress, viscosity and conductivity need a periodic container; set boundary: periodic"
+        raise SceneError("container.boundary", scene.container.boundary, rule)
     for name in sorted(scene.features - _ALLOWED):
         raise SceneError("stress", True, f"cannot be tallied in a scene with {FEATURES[name].meaning}")

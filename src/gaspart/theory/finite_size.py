@@ -47,10 +47,10 @@ from gaspart.theory.tables import (
 _PAIR_HIGHEST = {2: math.pi / 4.0, 3: math.pi / (6.0 * math.sqrt(2.0))}
 """Packing fraction of two particles in a container of side sqrt(2) diameters, where the spheres about the
 images of a particle begin to overlap three at a time."""
-_REMAINDER = {2: (19.649, -54.152, 39.606, 2.449, -4.035), 3: (15.999, -60.593, 61.817, 2.127, -4.214)}
+_REMAINDER = {2: (14.665, -39.404, 28.652, 2.17, -3.62), 3: (13.094, -46.965, 46.633, 1.953, -3.727)}
 """Coefficients a0, a1, a2, b0, b1 of `finite_size_remainder`, by maximum likelihood from the rows of
 `data/small_systems.csv` with 4 and more particles in 2.2 and more diameters (`benchmarks/small_systems.py
-fit`): 95 rows of discs, none further away than 3.3 standard deviations, and 66 rows of spheres, 3.3."""
+fit`): 95 rows of discs, none further away than 3.9 standard deviations, and 66 rows of spheres, 3.2."""
 _SHORTEST = 2.2
 """Side in diameters below which the expansion in 1/N states nothing: a particle feels its own images."""
 _NODES = 32  # of the integral over packing fractions
@@ -143,7 +143,7 @@ def finite_size_remainder(packing_fraction: Numbers, dimension: int, side: Numbe
     --------
     >>> from gaspart import theory
     >>> float(theory.finite_size_remainder(0.45, 3, side=5.0).round(4))
-    0.0064
+    0.0056
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     a0, a1, a2, b0, b1 = _REMAINDER[dimension]

@@ -134,7 +134,9 @@ def small_systems(quantity: str, dimension: int) -> np.recarray:
     divided by N (N - 1) / V^2. "Z" and "collision_rate" follow from it exactly (`finite_contact_value`): Z is
     the canonical one, which `gaspart.analysis.compressibility_factor` measures, the rate is 2 N_coll / (N t).
     "diffusion": slope of the mean-squared displacement about the centre of mass divided by 2 d. Errors are
-    standard deviations by independent runs. Recipe and seeds are in `data/README.md`.
+    standard deviations by independent runs. Six rows of dense spheres have several states, between which no
+    run passes: their errors, 4 to 86 %, are standard deviations of single runs. Recipe and seeds are in
+    `data/README.md`.
 
     Examples
     --------

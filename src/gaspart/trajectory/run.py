@@ -11,12 +11,12 @@ import os
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
-from gaspart.errors import SceneError
+from gaspart.errors import SceneError, shown
 from gaspart.files import OVERWRITE, may_replace, open_regular, output_path, place
 from gaspart.keys.values import number
 from gaspart.simulation import Simulation
@@ -172,9 +172,31 @@ def is_finished(wanted: Recipe, path: Path, examiner: Examiner | None, overwrite
     if isinstance(action, dict):
         action = action[_partial_content(partial, wanted)]
     if action is Action.REPLACE and not overwrite:
-        rule = f"exists, of another run or version, or damaged; move it away, or {OVERWRITE}"
-        raise SceneError("path", str(partial if content is Content.NOTHING else path), rule)
+        there = partial if content is Content.NOTHING else path
+        rule = f"exists{_difference(there, wanted, content)}; move it away, or {OVERWRITE}"
+        raise SceneError("path", str(there), rule)
     return action is Action.NONE
+
+
+def _difference(path: Path, wanted: Recipe, content: Content) -> str:
+    """Return the text that tells the file of a run from the wanted run."""
+    try:
+        stored = read_recipe(path)
+    except SceneError:
+        return " and is damaged"
+    if content is Content.SHORTER:
+        return f", with a shorter duration; continue it: gaspart resume {path} --duration {wanted.duration:g}"
+    keys = [item.name for item in fields(Recipe) if item.compare]
+    changed = [key for key in keys if getattr(stored, key) != getattr(wanted, key)]
+    texts = [
+        f"{key} {shown(getattr(stored, key))}, not {shown(getattr(wanted, key))}"
+        if isinstance(getattr(wanted, key), int | float | str | tuple)
+        else key
+        for key in changed
+    ]
+    if not changed:
+        return ", of another version of gaspart or with another initial state, or is damaged"
+    return f", of another run, which differs in {'; '.join(texts)}"
 
 
 def _content(path: Path, wanted: Recipe, examiner: Examiner | None) -> Content:

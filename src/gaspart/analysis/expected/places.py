@@ -7,10 +7,15 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.bulk import BOLTZMANN, ENSKOG
+from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.analysis.expected.equilibrium import Expected, contact_of_number, equation_of, scale_of_number
 from gaspart.analysis.run import Run
 from gaspart.trajectory.pairs import pairs_of
+
+_LEAST_UNIFORM = 16
+"""Number of hard particles from which their density is uniform in a run that conserves momentum. About the
+fixed centre of mass it has waves of N periods in the container: of amplitude 95 % for two discs at a packing
+fraction of 0.3, 16 % for three and 3 % for four, and below 1 % for 16 at 0.65, and 16 spheres at 0.48."""
 
 
 def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expected | None:
@@ -139,7 +144,8 @@ def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expe
     if field and (run.dissipates or run.is_subset or not run.temperature > 0.0):
         return None  # in no equilibrium, or of unknown temperature
     if not field:
-        return scene.number_density, 0.0, "uniform"
+        bound = equation_of(run) == EXACT and scene.conserved_axes[axis] and run.count < _LEAST_UNIFORM
+        return None if bound else (scene.number_density, 0.0, "uniform")
     return _stratified(run, axis, edges, field)
 
 

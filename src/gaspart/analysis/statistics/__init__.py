@@ -2,7 +2,7 @@
 
 Everywhere: `error` is one standard deviation of the estimate; errors given to a fit are standard deviations
 of independent Gaussian scatter, exact unless their degrees of freedom are given; arrays are one-dimensional
-and of equal length unless stated. Probabilities `p_value` are those of a chi-square at least as large if the
+and of equal length unless stated. A `p_value` is the probability of a chi-square at least as large if the
 model holds. Inputs that are too short, of unequal length or not finite raise ValueError.
 """
 
@@ -12,6 +12,7 @@ from gaspart.analysis.statistics.blocks import (
     autocorrelation_time,
     correlated_mean,
     histogram_chi_square,
+    slow_mean,
 )
 from gaspart.analysis.statistics.fits import (
     Combination,
@@ -55,5 +56,6 @@ __all__ = [
     "mean_of",
     "means_of",
     "optimum",
+    "slow_mean",
     "steady_mean",
 ]

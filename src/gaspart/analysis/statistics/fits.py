@@ -42,13 +42,16 @@ class Fit:
         return Estimate(self.values, self.errors, self.freedoms)
 
     def estimate(self, number: int) -> Estimate:
-        """One of the parameters, with its uncertainty."""
+        """Return a parameter with its uncertainty."""
         return self.estimates[number]
 
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """y = amplitude x^exponent; exponent_freedom: degrees of freedom of the exponent's error."""
+    """Power law y = amplitude x^exponent.
+
+    `exponent_freedom` are the degrees of freedom of the exponent's error.
+    """
 
     exponent: float
     exponent_error: float
@@ -72,13 +75,15 @@ Values = ArrayLike | Estimate
 def fit_linear(
     design: ArrayLike, y: Values, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf
 ) -> Fit:
-    """Least-squares fit of y = design @ values (design: (points, parameters)), weighted by 1 / errors^2.
+    """Fit y = design @ values by least squares, weighted by 1 / errors^2.
+
+    The design has the shape (points, parameters).
 
     With errors: covariance from them, and a chi-square test of the model. Without: all points count alike,
-    and the covariance is scaled by the residuals' scatter (so there is no test). freedoms: degrees of freedom
-    of the errors, those of all points or of each, if they come from the scatter of a few samples; see
-    `_of_estimated_errors`. An Estimate as y brings both. Raises ValueError if there are fewer points than
-    parameters (or as many, without errors), or the columns are dependent.
+    and the covariance is scaled by the residuals' scatter (so there is no test). `freedoms` are the degrees
+    of freedom of the errors, one for all points or one for each, if they come from the scatter of a few
+    samples; see `_of_estimated_errors`. An Estimate as y brings both. Raises ValueError if there are fewer
+    points than parameters (or as many, without errors), or the columns are dependent.
     """
     y, errors, freedoms = _with_errors(y, errors, freedoms)
     y = series_of("y", y, 1)
@@ -116,7 +121,7 @@ def fit_linear(
 
 
 def _with_errors(y: Values, errors: ArrayLike | None, freedoms: ArrayLike) -> tuple:
-    """Values, their errors and degrees of freedom."""
+    """Return values, their errors and degrees of freedom."""
     return (y.value, y.error, y.freedom) if isinstance(y, Estimate) else (y, errors, freedoms)
 
 
@@ -172,9 +177,10 @@ def fit_polynomial(
 def fit_power_law(
     x: ArrayLike, y: Values, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf
 ) -> PowerLaw:
-    """Fit y = amplitude x^exponent as a line of ln y against ln x (x, y > 0; errors: of y); see `fit_linear`.
+    """Fit y = amplitude x^exponent as a line of ln y against ln x; see `fit_linear`.
 
-    The errors become errors / y of the logarithm, good while they are below some 20 %.
+    x and y are positive, `errors` are errors of y. They become errors / y of the logarithm, good while they
+    are below some 20 %.
     """
     x = series_of("x", x, 2)
     y, errors, freedoms = _with_errors(y, errors, freedoms)
@@ -244,24 +250,29 @@ class Combination:
 
 
 def mean_of(values: ArrayLike) -> Estimate:
-    """Mean of N independent numbers, at least two, and its standard error from their scatter, which has N - 1
-    degrees of freedom."""
+    """Compute the mean of N independent numbers, at least two, and its standard error.
+
+    The error follows from their scatter, which has N - 1 degrees of freedom.
+    """
     values = series_of("values", values, 2)
     error = float(values.std(ddof=1) / math.sqrt(values.size))
     return Estimate(float(values.mean()), error, values.size - 1)
 
 
 def average(estimates: Estimate | Sequence[Estimate]) -> Estimate:
-    """Mean of independent estimates, or of those of one array along its first axis, that count alike, with
-    their own uncertainties."""
+    """Average independent estimates with equal weights, and propagate their uncertainties.
+
+    The elements of an array of estimates are averaged along its first axis.
+    """
     return sum(estimates, Estimate(0.0)) / len(estimates)
 
 
 def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Means over axis 0 of N independent samples (N, ...), and their standard errors from the scatter.
+    """Compute means over axis 0 of N independent samples (N, ...), and standard errors.
 
-    sizes (N,): how many alike things each sample is the mean of. The means are then those over all of them,
-    however they are divided, and the variance of a sample is in inverse proportion to its size.
+    The errors follow from the scatter. `sizes` (N,) are the numbers of equal items in each sample's mean. The
+    means are then taken over all items, however they are divided, and the variance of a sample is in inverse
+    proportion to its size.
     """
     values = np.asarray(samples)
     if sizes is None or np.ptp(sizes) == 0.0:
@@ -273,13 +284,13 @@ def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.nda
 
 
 def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
-    """Mean of a current into and out of a store, from its averages in K blocks of time.
+    """Compute the mean of a current into and out of a store, from averages in K blocks of time.
 
-    changes: (K,) each, by how much a bounded quantity, such as the energy stored, has changed during each
-    block. What a block stores, another one gives back: blocks anticorrelate, and their scatter exceeds that
-    of the long-time mean. So the blocks are regressed on the changes (least squares), which leaves the
-    current of blocks without a change; it differs from the plain mean by a bounded amount over the length of
-    the run. Degrees of freedom: K - 1 - len(changes). Raises ValueError as `fit_linear`.
+    Each of `changes` (K,) is the change of a bounded quantity, such as the energy stored, during each block.
+    Energy that a block stores, another one gives back: blocks anticorrelate, and their scatter exceeds the
+    scatter of the long-time mean. So the blocks are regressed on the changes (least squares), which leaves
+    the current of blocks without a change; it differs from the plain mean by a bounded amount over the length
+    of the run. The degrees of freedom are K - 1 - len(changes). Raises ValueError as `fit_linear`.
     """
     series = series_of("series", series, 2)
     design = [np.ones(series.size)]
@@ -292,7 +303,7 @@ def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
 
 
 def combine(values: Values, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf) -> Combination:
-    """Mean weighted by 1 / error^2, with the chi-square of the values about it; see `fit_linear`."""
+    """Compute the mean weighted by 1 / error^2, with chi-square about it; see `fit_linear`."""
     number = len(values) if isinstance(values, Estimate) else np.size(values)
     fit = fit_linear(np.ones((number, 1)), values, errors, freedoms)
     mean = fit.estimate(0)
@@ -308,18 +319,22 @@ def combine(values: Values, errors: ArrayLike | None = None, freedoms: ArrayLike
 
 
 def combine_estimates(estimates: Estimate | Sequence[Estimate]) -> Estimate:
-    """Mean of independent estimates, or of the elements of one, weighted by 1 / error^2; NaN of none."""
+    """Average independent estimates, weighted by 1 / error^2; NaN without any.
+
+    The estimates may be the elements of one.
+    """
     one = estimates if isinstance(estimates, Estimate) else Estimate.stack(estimates)
     return combine(one).estimate if one else Estimate(math.nan, math.nan)
 
 
 def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int = 1000) -> Estimate:
-    """function(samples) with its standard error from resampled data (with replacement, along axis 0).
+    """Compute function(samples) with its standard error from resampled data.
 
-    The same samples give the same error. `function` returns one number. Resampled
-    means of n samples scatter by the fraction sqrt(1 - 1/n) of the standard error, which is divided by it;
-    the error has n - 1 degrees of freedom (Efron and Tibshirani, An introduction to the bootstrap (1993),
-    section 5.3).
+    Data are resampled with replacement, along axis 0.
+
+    The same samples give the same error. `function` returns one number. Resampled means of n samples scatter
+    by the fraction sqrt(1 - 1/n) of the standard error, which is divided by it; the error has n - 1 degrees
+    of freedom (Efron and Tibshirani, An introduction to the bootstrap (1993), section 5.3).
     """
     samples = np.asarray(samples)
     if samples.shape[0] < 2:
@@ -332,11 +347,12 @@ def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int =
 
 
 def jackknife(function: Callable[..., Any], *samples: ArrayLike) -> tuple[Any, Any]:
-    """function(means of the samples) with its standard error, each block left out in turn.
+    """Compute function(means of the samples) with its standard error by the jackknife.
 
-    samples: arrays whose axis 0 runs over the same n independent blocks (at least two); `function` takes
-    their means over blocks and returns a number or an array. For smooth functions the error is right to first
-    order, correlations between the samples included (Tukey 1958). Returns (value, error), arrays.
+    Each block is left out once. The samples are arrays whose axis 0 runs over the same n independent blocks
+    (at least two); `function` takes their means over blocks and returns a number or an array. For smooth
+    functions the error is right to first order, correlations between the samples included (Tukey 1958).
+    Returns (value, error), arrays.
     """
     series = [np.asarray(sample, dtype=float) for sample in samples]
     blocks = series[0].shape[0]
@@ -359,13 +375,16 @@ def jackknife(function: Callable[..., Any], *samples: ArrayLike) -> tuple[Any, A
 
 
 FLAT = 0.05
-"""Part of the least cost by which that of a flat minimum may be exceeded."""
+"""Relative excess of a cost over the least one within a flat minimum."""
 
 
 @dataclass(frozen=True)
 class Optimum:
-    """Place of a minimum with its 95 % interval, the cost there, whether it lies between the points; and from
-    where to where the cost exceeds the least by less than FLAT."""
+    """Minimum of a cost: its position with its 95 % interval, and the cost there.
+
+    It states if it lies between the points, and the interval in which the cost exceeds the least by less than
+    FLAT.
+    """
 
     location: float
     low: float
@@ -377,13 +396,13 @@ class Optimum:
 
 
 def optimum(x: ArrayLike, cost: ArrayLike, within: float = 3.0) -> Optimum:
-    """Where the cost a + b / x + c x is least, which falls steeply and rises slowly: at sqrt(b / c).
+    """Find the minimum of a cost a + b / x + c x, at sqrt(b / c).
 
-    The three parts are fitted to the points near the minimum: those whose cost is below `within` times the
-    least one (at least four, the cheapest first). The interval is that of the logarithm, by propagation, from
-    the relative scatter about the curve. `interior`: b and c are positive and the
-    minimum lies between the points. If it does not, the location is the cheapest point's, the intervals are
-    from 0 to inf: no minimum was measured.
+    The cost falls steeply and rises slowly. The three parts are fitted to the points near the minimum, whose
+    cost is below `within` times the least one (at least four, the cheapest first). The interval follows from
+    the interval of the logarithm, by propagation, from the relative scatter about the curve. `interior` is
+    True if b and c are positive and the minimum lies between the points. If it does not, the location is the
+    cheapest point's, the intervals are from 0 to inf: no minimum was measured.
     """
     x = series_of("x", x, 4)
     cost = series_of("cost", cost, 4)

@@ -1,4 +1,4 @@
-"""The compiled part of the ray tracer (see `rendering.tracer`): rays, shadows and the light of the sky."""
+"""Compiled part of the ray tracer (see `rendering.tracer`): rays, shadows and the skylight."""
 
 from __future__ import annotations
 

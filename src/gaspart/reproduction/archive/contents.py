@@ -192,7 +192,7 @@ def _config_of(root: Path, name: str | None) -> Path:
 
 
 def _is_config_of(file: Path, name: str | None) -> bool:
-    """Return True if a file is a config with this key `run`, or a whole config without it."""
+    """Return True if a file is a config with this key `run`, or whole without it."""
     try:
         content = read_yaml(file)
     except SceneError:
@@ -262,8 +262,8 @@ def sources(run: Finished) -> Iterator[str]:
     """Yield the files of the project with which the run can be repeated.
 
     They are the workflow, its config and scenes, the library, the locked environment. A workflow that uses
-    this one as a module has those of these files that it has, and CITATION.cff. Raises SceneError if a
-    necessary file is missing.
+    this one as a module has some of these files, and CITATION.cff. Raises SceneError if a necessary file is
+    missing.
     """
     needed = (run.workflow, CITATION, *(_NEEDED if run.is_copy else ()))
     for name in needed:
@@ -288,7 +288,10 @@ def folders(run: Finished) -> list[str]:
 
 
 def _files(root: Path, folder: str) -> Iterator[str]:
-    """Yield the files in a folder and below, without hidden ones and those of Python and pip."""
+    """Yield the files in a folder and below, without hidden files and caches.
+
+    Caches are left there by Python and pip.
+    """
     for place, folders, names in os.walk(root / folder):
         folders[:] = sorted(name for name in folders if name != "__pycache__" and _is_kept(name))
         for name in sorted(filter(_is_kept, names)):
@@ -321,7 +324,7 @@ def captions(run: Finished) -> dict[str, str]:
 def _caption(run: Finished, figure: str) -> str | None:
     """Return the caption of a figure, with places for its measured numbers.
 
-    It is None if only the report has it: the caption of a module, whose files are elsewhere.
+    The caption of a module, whose files are elsewhere, is only in the report; None is returned.
     """
     block = run.config["figures"][figure]
     if "kind" in block:

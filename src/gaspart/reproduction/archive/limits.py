@@ -38,7 +38,7 @@ _END_BYTES, _COMMENT = 22, (1 << 16) - 1
 
 
 def name_fault(name: str) -> str:
-    """Return the reason why a file of an archive cannot have this name; "" if it can."""
+    """Return the reason why a file of an archive cannot have this name, or ""."""
     parts = name.split("/")
     if not name.isprintable() or not name.strip():
         return "cannot be shown: it holds control characters, or bytes that are not UTF-8"
@@ -165,7 +165,9 @@ def digest_of_numbers(path: Path) -> str:
 
 
 def joint_digest(paths: Iterable[str], known: Mapping[str, str]) -> str:
-    """Compute the digest of a set of files, from the lines "<digest>  <path>" in order of paths.
+    """Compute the digest of a set of files, from the lines "<digest>  <path>".
+
+    The lines are in the order of the paths.
 
     paths : files, or folders, which stand for all `known` files in them.
     known : digest of each file.

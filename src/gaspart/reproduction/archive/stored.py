@@ -219,7 +219,10 @@ def _check_entry(path: Path, entry: zipfile.ZipInfo) -> None:
 
 
 def _folder(path: Path) -> Stored:
-    """Return an unpacked archive; without a manifest nothing else in the folder is read."""
+    """Return an unpacked archive.
+
+    A folder without a manifest is rejected before any other file is read.
+    """
     if not (path / MANIFEST).is_file():
         raise SceneError("archive", str(path), f"is no archive of gaspart: it has no {MANIFEST}")
     names, stated, there = [], 0, 0

@@ -64,7 +64,7 @@ class ClaimData(NamedTuple):
 
 
 class JobTime(NamedTuple):
-    """Row of `jobs.csv`: the time, memory and end of a job of the workflow, in s, MB and UTC.
+    """Row of `jobs.csv`: the time, memory and end of a job, in s, MB and UTC.
 
     cpu_seconds, largest_memory : as the job states them; "" for a job of an older version.
     """
@@ -148,10 +148,10 @@ def text_of(rows: Iterable[tuple], columns: tuple[str, ...]) -> str:
 
 
 def rows_of(text: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
-    """Return the rows of a text made by `text_of`, for a table with at least these columns.
+    """Return the rows of a text made by `text_of`.
 
-    Raises ValueError for another text, for a field of more than 131072 characters, and for more than
-    `MOST_ROWS` rows.
+    The table must have at least these columns. Raises ValueError for another text, for a field of more than
+    131072 characters, and for more than `MOST_ROWS` rows.
     """
     lines = csv.reader(io.StringIO(text, newline=""), strict=True)
     rows: list[dict[str, str]] = []

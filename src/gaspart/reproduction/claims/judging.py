@@ -1,4 +1,4 @@
-"""Verdicts of the claims of one figure, with a correction for their number, and a joint test."""
+"""Verdicts of the claims of one figure, corrected for their number, and a joint test."""
 
 from __future__ import annotations
 

@@ -123,7 +123,10 @@ def read(path: str | Path) -> list[dict[str, Any]]:
 
 
 def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
-    """Join the claims of several tables to one pandas DataFrame with COLUMNS, in the order of `paths`."""
+    """Join the claims of several tables to one pandas DataFrame with COLUMNS.
+
+    The order is that in `paths`.
+    """
     import pandas
 
     return pandas.DataFrame([row for path in paths for row in read(path)], columns=list(COLUMNS))

@@ -77,7 +77,7 @@ def files(family: str) -> list[Path]:
 
 
 def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
-    """Apply the function `validate` of a kind's package, if it exists, to a figure of a config.
+    """Apply the function `validate` of a kind's package, if any, to a figure of a config.
 
     Raises the SceneError of the function, or one which blames the package.
     """
@@ -102,7 +102,9 @@ def caption(settings: Mapping[str, Any]) -> str:
 
 @contextmanager
 def blamed(kind: str, where: str = "") -> Iterator[None]:
-    """Convert any error of a package within this context to a SceneError that names it in one line.
+    """Convert any error of a package within this context to a SceneError that names it.
+
+    The message has one line.
 
     `where` is the position of the figure in the config, unless the caller adds it.
     """

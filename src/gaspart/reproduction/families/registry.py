@@ -96,7 +96,7 @@ def files(family: str) -> tuple[Path, ...]:
 
 
 def package_of(entry: Mapping[str, Any]) -> str:
-    """Return name and version of the other installed package that brings a kind; "" for this one."""
+    """Return name and version of the other package that brings a kind; "" for this one."""
     kind = entry.get("kind")
     return "" if kind is None or kind in _kinds() else installed.source(kind)
 
@@ -112,7 +112,7 @@ def caption(settings: Mapping[str, Any]) -> str:
 
 
 def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
-    """Apply the rules of a figure to which a config gives a name, beyond the kinds of its settings.
+    """Apply the rules of a figure with a name of its own, beyond the kinds of settings.
 
     `points` are the points that it shows. Raises SceneError.
     """
@@ -165,7 +165,7 @@ def settings_of_kind(kind: str) -> dict[str, Kind]:
 
 
 def stated_claims(entry: Mapping[str, Any]) -> list[Any]:
-    """Return [the claims of the config] if the kind of a figure has a setting for them, else [].
+    """Return [the claims of the config] if a figure's kind has such a setting, else [].
 
     The function of the claims of the figure takes them in addition to its numbers.
     """

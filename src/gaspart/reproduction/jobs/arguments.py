@@ -29,16 +29,19 @@ _FORMS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     "until": (asdict, Until.from_dict),
     "rival": (lambda rival: to_plain(rival), lambda values: from_plain(values)),
 }
-"""By the name of an argument: into plain values, and back. All other arguments are plain."""
+"""Conversions to plain values, and back, by the name of an argument; other arguments are plain."""
 
 
 def to_plain(arguments: dict[str, Any]) -> dict[str, Any]:
-    """Numbers, text, lists and mappings in place of scenes, engines, tuples and what ends a run."""
+    """Convert scenes, engines, tuples and endings to numbers, text, lists and mappings."""
     return _converted(arguments, 0)
 
 
 def from_plain(values: dict[str, Any]) -> dict[str, Any]:
-    """The inverse of `to_plain`. Raises SceneError for a scene or an engine that another version made."""
+    """Convert the result of `to_plain` back.
+
+    Raises SceneError for a scene or an engine that another version made.
+    """
     return _converted(values, 1)
 
 

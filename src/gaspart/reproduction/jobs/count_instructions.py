@@ -38,9 +38,9 @@ _PACKAGE = Path(__file__).parents[2]
 
 
 class Strip(ast.NodeTransformer):
-    """Transformer that removes the branches of features that are None.
+    """Transformer that removes the branches of absent features.
 
-    Every test of such a feature is resolved, and code after a return is removed.
+    Every test of such a feature for None is resolved, and code after a return is removed.
     """
 
     def _known(self, test: ast.expr) -> bool | None:

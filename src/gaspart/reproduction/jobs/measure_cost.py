@@ -1,4 +1,6 @@
-"""Cost of a run: work that is counted, the same on every machine, and time that is measured.
+"""Cost of a run: work that is counted, and time that is measured.
+
+The work is the same on every machine.
 
 Every timing starts from one and the same state, so the repeated timings of an engine are of exactly the same
 work, and differ by disturbances of the clock alone; and engines that differ in their partition are timed

@@ -131,8 +131,10 @@ def record(recipe: Recipe, path: Path, overwrite: bool) -> None:
 def recipes(
     seeds: Sequence[tuple[int, ...]], correlations: dict | None = None, **settings: Any
 ) -> list[Recipe]:
-    """The recipe of each replica; settings: as `recipe_fields` takes them. Raises SceneError for settings
-    that cannot be run."""
+    """Return the recipe of each replica.
+
+    The settings are arguments of `recipe_fields`. Raises SceneError for settings that cannot be run.
+    """
     from gaspart.trajectory.correlator import Correlations
     from gaspart.trajectory.recipe import Recipe
 

@@ -3,8 +3,8 @@
 A digest of these modules is a parameter of the stage's rules: editing one reruns the stages that use it, and
 no others. As inputs they would be half a million files for ten thousand points. Imports are found by a search
 of the text, since parsing the whole package would take most of the time of a plan; a test compares the result
-with that of a parser. A name that a package loads when it is used stands for the module that defines it, and
-such a package, where it is imported as a whole, stands for all of these modules (see `gaspart.public`).
+with a parser's. A name that a package loads when it is used stands for the module that defines it, and such a
+package, where it is imported as a whole, stands for all of these modules (see `gaspart.public`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Point of a grid: its name, paths and seeds, and objects described by its settings, each made once."""
+"""Point of a grid: its name, paths and seeds, and objects described by its settings.
+
+Each object is made once.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Keys of a point that describe its scene, its engine and its length: kind, default and meaning.
+"""Keys of a point that describe its scene, its engine and its length.
+
+Each has its kind, default and meaning.
 
 The keys of a job are declared in its module in `reproduction.jobs`; `config_keys` has the keys of a whole
 config.

@@ -1,4 +1,6 @@
-"""Scene of a point: made of its settings, or read from a scene file with replaced values.
+"""Scene of a point, made of its settings, or read from a scene file.
+
+In the latter some values are replaced.
 
 Planning a workflow makes the scene of every point, so slow imports are made inside functions.
 """
@@ -94,7 +96,7 @@ def _small_count(point: Point) -> int:
 
 
 def _mean_volume(point: Point) -> float:
-    """Compute the mean of the radii's power d, over the power of the radius in the settings."""
+    """Compute the mean of the radii's power d, relative to the radius in the settings."""
     from gaspart.scene.sizes import relative_radii
 
     settings = point.settings
@@ -149,7 +151,10 @@ def _made(point: Point) -> Scene:
 
 
 def _read(point: Point) -> Scene:
-    """Read the scene of the scene file, or of its content, with the values that settings replace."""
+    """Read the scene of the scene file, or of its content.
+
+    Settings replace values.
+    """
     from gaspart.scene.scene import Scene
 
     settings = point.settings
@@ -181,7 +186,10 @@ def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
 
 @cache
 def _file(path: str, changed: int) -> tuple[Any, Scene]:
-    """Return the content of a scene file, and its scene, and read it again if it has changed."""
+    """Return the content of a scene file, and its scene.
+
+    The file is read again if it has changed.
+    """
     from gaspart.scene.scene import Scene
 
     content = read_yaml(path)
@@ -204,7 +212,10 @@ def _replace(content: dict, key: str, point: Point) -> None:
 
 
 def _place(block: object, part: str, key: str, point: Point) -> str | int:
-    """Return the key or index to which `part` of a dotted key leads in a mapping or a list."""
+    """Return the key or index to which `part` of a dotted key leads.
+
+    It leads into a mapping or a list.
+    """
     if isinstance(block, dict):
         block.setdefault(part, None)
         return part

@@ -158,7 +158,10 @@ class Reference:
 
     @property
     def is_source(self) -> bool:
-        """True if its key is a name, such as "source A", not an author and a year."""
+        """True if its key is a name, such as "source A".
+
+        Other keys have an author and a year.
+        """
         return str(self.year) not in self.key
 
     @property

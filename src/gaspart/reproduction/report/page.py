@@ -308,7 +308,10 @@ def _size(path: Path) -> tuple[int, int]:
 
 
 def address(path: Path, one_file: bool = False) -> str:
-    """Return the address of a file of results/, relative to the page, or one that holds the file."""
+    """Return the address of a file of results/, relative to the page.
+
+    If `one_file`, the address holds the file.
+    """
     if one_file:
         return _data(mimetypes.guess_type(path.name)[0] or "", path.read_bytes())
     return f"{path.parent.name}/{path.name}"

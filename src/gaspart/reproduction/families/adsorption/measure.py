@@ -84,8 +84,8 @@ class Holder:
     def held(self, height: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Return True for particles in the well, or stuck.
 
-        Only stuck particles have no velocity along x. The heights are those of centres above the lowest
-        position, of any shape, and the velocities along x have the same shape.
+        Only stuck particles have no velocity along x. The heights are of centres above the lowest position,
+        in any shape, and the velocities along x have the same shape.
         """
         return height < self.width if self.kind != "sticky" else velocity == 0.0
 

@@ -91,7 +91,7 @@ def _displacement(axis: Axes, residual: Axes, sphere: Row, label: str, look: dic
 
 
 def _memory(axis: Axes, residual: Axes, sphere: Row, label: str, look: dict) -> None:
-    """Draw the velocity autocorrelation of one sphere, less that of the Langevin equation."""
+    """Draw the velocity autocorrelation of one sphere, and its deviation from Langevin's."""
     early = np.flatnonzero(sphere.time < LONGEST)
     if sphere.is_light:
         expected = sphere.expected_vacf[early] - np.exp(-sphere.time[early])

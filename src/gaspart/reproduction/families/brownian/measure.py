@@ -51,7 +51,7 @@ def _followed(point: Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray
 def brownian_paths(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the first `paths` paths of each point, and the final displacements of all replicas.
 
-    Lengths are the scene's. `end_chi_square` is that of the components of all ends, each divided by the
+    Lengths are the scene's. `end_chi_square` is computed from the components of all ends, each divided by the
     variance that is expected from rest. The variance of the Langevin equation has the share of the gas, as in
     `brownian_msd`, with its drift of mean square (1 - share) share k_B T / M along each axis (its momentum is
     drawn with the velocities). Dimensions point, path, frame, axis.
@@ -141,7 +141,10 @@ def _reduced(
     both = np.concatenate([vacf[:, : early.size + 1], msd[:, [late]]], axis=1)
 
     def decay(x: np.ndarray) -> float:
-        """Compute the slope of the line through -ln C / C(0), which is 0 at the first lag."""
+        """Compute the slope of the line through -ln C / C(0).
+
+        The line is 0 at the first lag.
+        """
         logarithm = np.log(x[:, 1:-1].mean(axis=0) / x[:, 0].mean())
         return -float(early @ logarithm / (early @ early))
 

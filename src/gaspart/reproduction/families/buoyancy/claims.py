@@ -120,7 +120,7 @@ def _source(discs: Table) -> list[Claim]:
 
 
 def _lying(distance: Estimate, which: str) -> Claim:
-    """Return the claim on the disc that is farthest from floor or ceiling, among discs held there."""
+    """Return the claim on the disc farthest from floor or ceiling, among discs held there."""
     farthest = distance[np.argmax(distance.value)]
     return Claim.at_most(
         claim=f"largest mean distance of {len(distance)} of the source's {which}",

@@ -1,4 +1,4 @@
-"""A large disc in a fluid of small ones under gravity: its force if fixed, its height if free.
+"""A large disc in a fluid of small ones under gravity: its force or its height.
 
 The force on a fixed disc is the missing term in the fluid's balance of momentum, and so is exact over any
 time, floor - ceiling - weight - gain of momentum. The large disc is the scene's first particle, and the small
@@ -32,7 +32,7 @@ from gaspart.theory.tables import excess_chemical_potential, packing_fraction_at
 
 
 def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure fixed and free discs in one fluid, and the source's free discs in its own fluid.
+    """Measure fixed and free discs in one fluid, and the source's free discs.
 
     The fixed discs are at several heights, the free ones of several masses.
 

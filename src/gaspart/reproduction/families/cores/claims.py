@@ -15,7 +15,7 @@ _IDLE = "the uncertainty has what other programs took of the cores, for which ru
 
 
 def cores(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims that threads give the bits of one thread, and that two cores are faster."""
+    """Return the claims that threads change no bit, and that two cores are faster."""
     runs = Table.prefixed(dataset, "run")
     two = runs[runs.cores == 2]
     threads = two[(two.copies == 1) & (two.count >= LARGE)]

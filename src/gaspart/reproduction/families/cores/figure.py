@@ -88,7 +88,10 @@ def _once(label: str, named: set[str]) -> str:
 
 
 def _modelled(models: Table, run: Row, cores: float | np.ndarray, count: float | np.ndarray) -> np.ndarray:
-    """Compute the speed of a run's gas and engine by the model, for numbers of cores and particles."""
+    """Compute the speed of a run's gas and engine by the model.
+
+    The numbers of cores and particles are given.
+    """
     same = (models.engine == run.engine) & (models.packing_fraction == run.packing_fraction)
     model = models[same][0]
     return speed_up(cores, count, model.serial.value, model.overhead.value)

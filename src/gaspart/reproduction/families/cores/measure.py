@@ -29,11 +29,11 @@ def cores(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure speed-ups, and fit a model of the speed-ups by threads.
 
     Over run: engine, packing_fraction, count of particles; copies, the number of runs at once, 1 for threads;
-    cores used; speed, the work in a time divided by that of one run on one core, NaN where the machine has
-    too few; same, 1 if all bits are those of one core. Over model, each gas and engine with threads: engine,
-    packing_fraction, and serial and overhead of `speed_up`. The attribute cores is the number of the machine,
-    for kernels; waiting is the fraction of their time for which runs at once waited for a core, NaN if no
-    such runs were timed.
+    cores used; speed, the work in a time divided by the work of one run on one core, NaN where the machine
+    has too few; same, 1 if all bits are those of one core. Over model, each gas and engine with threads:
+    engine, packing_fraction, and serial and overhead of `speed_up`. The attribute cores is the number of the
+    machine, for kernels; waiting is the fraction of their time for which runs at once waited for a core, NaN
+    if no such runs were timed.
     """
     jobs = [_job(point) for point in points]
     waits = [job.pop("waiting") for job in jobs]
@@ -76,10 +76,10 @@ def _job(point: Point) -> dict:
 
 
 def _model(gas: Table) -> dict:
-    """Fit 1 / speed - 1 / p = s (1 - 1 / p) + N_0 / N to all counts and cores (but see `SLABS`).
+    """Fit the speed-ups of all counts and cores (but see `SLABS`).
 
-    Neither parameter is negative, and one that would be has the uncertainty 0. NaN where fewer than two
-    speeds are known.
+    The model is 1 / speed - 1 / p = s (1 - 1 / p) + N_0 / N. Neither parameter is negative, and one that
+    would be has the uncertainty 0. NaN where fewer than two speeds are known.
     """
     engine = gas.engine[0]
     used = gas.speed.error < _KNOWN * gas.speed.value  # not where there is none, NaN

@@ -12,9 +12,11 @@ unevenly, which Amdahl's law does not know."""
 
 
 def speed_up(cores: ArrayLike, count: ArrayLike, serial: float, overhead: float) -> np.ndarray:
-    """Compute the speed-up by Amdahl's law, 1 / (s + (1 - s) / p + N_0 / N).
+    """Compute the speed-up of p cores for N particles by Amdahl's law.
 
-    There are p cores and N particles (AFIPS Conf. Proc. 30, 483 (1967)).
+    It is 1 / (s + (1 - s) / p + N_0 / N).
+
+    The law is from (AFIPS Conf. Proc. 30, 483 (1967)).
 
     serial : fraction s of the work that one core does alone.
     overhead : N_0, number of particles whose work on one core takes the time in which threads are begun and

@@ -71,7 +71,7 @@ def _temperature(axis: Axes, wide: Table) -> None:
 
 
 def _stress(axis: Axes, dilute: Table) -> None:
-    """Draw the shear stress, divided by that of free flight, against the Knudsen number."""
+    """Draw the shear stress, relative to free flight, against the Knudsen number."""
     for kind, engine in enumerate((DSMC, EVENT)):
         own = dilute[dilute.engine == engine]
         style.points(axis, own.knudsen, own.stress, kind=kind, hollow=kind == 1, label=engine)

@@ -260,6 +260,9 @@ def _numbers(setting: FlowBetweenPlates, stress: float, pressure: float, *averag
 
 
 def _slope(x: np.ndarray, y: np.ndarray, weight: np.ndarray) -> float:
-    """Compute the slope of y against x by weighted least squares; the weights have the sum 1."""
+    """Compute the slope of y against x by weighted least squares.
+
+    The weights have the sum 1.
+    """
     apart = x - weight @ x
     return float(weight @ (apart * y) / (weight @ apart**2))

@@ -21,11 +21,11 @@ _AXES = {"y": 0, "x": 1, "z": 2}  # of the container, by name as of walls across
 
 
 def uniform(point: Point, blocks: int) -> dict[str, Any]:
-    """Measure the numbers of a sheared gas, like those of a flow between walls.
+    """Measure the numbers of a sheared gas, as in a flow between walls.
 
-    viscosity : response divided by Enskog's viscosity at the temperature of the time.
-    reduced_rate : stress over pressure.
-    normal_x, _y, _z : pressure along gradient, flow and vorticity over their mean, minus 1.
+    viscosity : response divided by Enskog's viscosity at the temperature of the time. reduced_rate : stress
+        over pressure. normal_x, _y, _z : pressure along gradient, flow and vorticity over their mean, minus
+        1.
 
     Errors are by leaving out each block of time, of which each run has `blocks`.
     """
@@ -39,7 +39,10 @@ def uniform(point: Point, blocks: int) -> dict[str, Any]:
 
 
 def _blocks(run: Run, blocks: int) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the pressure tensor (K, d, d) in blocks of a run, and the stress (K,) by Enskog."""
+    """Compute the pressure tensor in blocks of a run, and the stress by Enskog.
+
+    The shapes are (K, d, d) and (K,).
+    """
     parts, scene = Blocks(run, blocks), run.scene
     pressures = parts.growth("stress_sum") / scene.container.volume
     root = np.sqrt(run.temperatures)

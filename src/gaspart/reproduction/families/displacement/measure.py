@@ -55,7 +55,9 @@ UNITS = {
 
 
 def replicas(point: Point, longest: float) -> list[Curves]:
-    """Return the curves of each replica, to the lag `longest` (reduced time) or to their last lag.
+    """Return the curves of each replica, to the lag `longest` or to their last lag.
+
+    `longest` is in reduced time.
 
     Raises SceneError for a point without displacements or lags, or a single replica.
     """

@@ -108,7 +108,10 @@ def _resolution(point: Point) -> dict[str, float]:
 
 
 def _runs(point: Point) -> Iterator[Run]:
-    """Yield each replica from its start, which is in equilibrium, to its end; some keep few frames."""
+    """Yield each replica from its start, which is in equilibrium, to its end.
+
+    Some replicas have few frames.
+    """
     for path in point.replica_paths:
         with open_trajectory(path) as trajectory:
             yield Run(point.scene, trajectory["time"].values, trajectory)

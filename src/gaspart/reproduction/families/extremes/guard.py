@@ -13,9 +13,9 @@ from gaspart.errors import SceneError
 def guarded(work: Callable, items: Sequence, limit: float) -> list:
     """Return `work(item)` for each item, in order, or None.
 
-    It is None for an item that takes more than `limit` seconds, or ends its process. Compiled code cannot be
-    interrupted, so it is run in a child process, which can be killed. Raises SceneError where the system
-    cannot fork processes, such as Windows.
+    An item that takes more than `limit` seconds, or ends its process, has the result None. Compiled code
+    cannot be interrupted, so it is run in a child process, which can be killed. Raises SceneError where the
+    system cannot fork processes, such as Windows.
     """
     if not hasattr(os, "fork"):
         raise SceneError("system", os.name, "this figure needs one that forks processes: Linux or macOS")

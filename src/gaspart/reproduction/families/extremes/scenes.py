@@ -40,12 +40,12 @@ def fast_gas(speed: float) -> Scene:
 
 
 def slow_beside_fast() -> Scene:
-    """Return a gas in which half of the discs are 1e24 times as fast as the others."""
+    """Return a gas in which half of the discs are 1e24 times faster than the others."""
     return gas(Species(6, 0.5, speed=1e-12), Species(6, 0.5, speed=1e12))
 
 
 def unequal_masses() -> Scene:
-    """Return a gas of equal numbers of discs of mass 1 and of mass 1e16, at one temperature."""
+    """Return equal numbers of discs of mass 1 and of mass 1e16, at one temperature."""
     return gas(Species(10, 0.5, mass=1.0, temperature=1.0), Species(10, 0.5, mass=1e16, temperature=1.0))
 
 

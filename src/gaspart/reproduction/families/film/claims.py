@@ -26,7 +26,7 @@ def thin_film(dataset: xr.Dataset) -> list[Claim]:
 
 
 def contact_ratio(slits: Table) -> Estimate:
-    """Compute k_B T times the density at the wall over the pressure on it, for each slit.
+    """Compute k_B T times the density at the wall over the pressure, for each slit.
 
     The error of the extrapolation to the wall counts.
     """

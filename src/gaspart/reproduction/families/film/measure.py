@@ -28,13 +28,11 @@ _BINS, _BLOCKS = 20, 16
 
 @dataclass(frozen=True)
 class Slit:
-    """Run between walls at z = 0 and z = H, reduced by the diameter and k_B T.
+    """Run between walls at z = 0 and H, reduced by the diameter and k_B T.
 
-    pressure : (samples,), from the momentum given to both walls in each interval.
-    heights : (samples, N), heights of centres above the contact plane of the nearer wall.
-    width : H.
-    area : area of one wall.
-    positions, sides : (samples, N, 3) and (3,).
+    pressure : (samples,), from the momentum given to both walls in each interval. heights : (samples, N),
+        heights of centres above the contact plane of the nearer wall. width : H. area : area of one wall.
+        positions, sides : (samples, N, 3) and (3,).
     """
 
     pressure: np.ndarray
@@ -137,7 +135,7 @@ def _responses(bulk: float, widths: np.ndarray) -> np.ndarray:
 def _truncation(place: np.ndarray, density: np.ndarray) -> float:
     """Compute the relative error of the extrapolation of a profile (B,) by a cubic.
 
-    The profile is that of the density functional,
+    The profile follows from the density functional.
     """
     near = place <= NEAR
     cubic = fit_polynomial(place[near], density[near], powers=range(4)).values[0]
@@ -201,7 +199,7 @@ def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> Estimate
 
 
 def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr.Dataset:
-    """Compute the density above the nearer wall of the widest slit, to its middle, and around it.
+    """Compute the density above the nearer wall of the widest slit, to its middle.
 
     The mean around the middle is a number.
     """

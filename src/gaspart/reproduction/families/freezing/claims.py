@@ -170,7 +170,7 @@ def _liquid_of_discs(states: Table) -> list[Claim]:
 
 
 def _crystal_of_discs(states: Table) -> list[Claim]:
-    """Return the claims on the pressure of the crystal of as many discs as in the literature.
+    """Return the claims on the pressure of the crystal, for the literature's number of discs.
 
     The uncertainty of the literature is the required one.
     """

@@ -40,7 +40,10 @@ def _temperatures(axis: Axes, gases: Table) -> None:
 
 
 def _differences(axis: Axes, gases: Table) -> None:
-    """Draw 100 (T_tr - T_rot - exp(-3 q s / (1 + q)^2)), in per cent of the initial temperature."""
+    """Draw 100 (T_tr - T_rot - exp(-3 q s / (1 + q)^2)).
+
+    It is in per cent of the initial temperature.
+    """
     style.level(axis, 0.0)
     for kind, gas in enumerate(gases):
         q, s = gas.inertia, gas.collisions
@@ -102,7 +105,10 @@ def cooling(dataset: xr.Dataset) -> Figure:
 
 
 def _haff(axis: Axes, gases: Table) -> None:
-    """Draw T over Haff's T_0 / (1 + t / t_H)^2, against 1 + t / t_H."""
+    """Draw T over Haff's T_0 / (1 + t / t_H)^2.
+
+    The axis is 1 + t / t_H.
+    """
     style.level(axis, 1.0)
     for dimension in (2, 3):
         own = gases[gases.dimension == dimension].sorted_by("restitution")[::-1]
@@ -133,9 +139,9 @@ def _rates(axis: Axes, gases: Table) -> None:
 
 
 def _leaving(axis: Axes, gases: Table) -> None:
-    """Draw T over Haff's, and the relative variance of the number in a cell, against (1 - e^2) s.
+    """Draw T over Haff's, and the relative variance of the number in a cell.
 
-    The variance is relative to the elastic gas.
+    They are against (1 - e^2) s; the variance is relative to the elastic gas.
     """
     style.level(axis, 1.0)
     inelastic = gases[gases.cluster_restitution < 1.0].sorted_by("cluster_restitution")[::-1]

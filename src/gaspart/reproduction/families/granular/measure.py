@@ -76,9 +76,9 @@ def _start(point: Point) -> dict[str, Any]:
 
 
 def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np.ndarray) -> float:
-    """Fit - d ln (T_tr - T_rot) / ds at s = 0 by a parabola in s.
+    """Fit the initial decay of ln (T_tr - T_rot) with s, by a parabola.
 
-    The parabola extends down to a fifth of the difference, whose noise is much the same at all s.
+    The parabola is in s, from 0 down to a fifth of the difference, whose noise is much the same at all s.
     """
     difference = translation - rotation
     used = (difference > 0.2) & (collisions > 0.0)

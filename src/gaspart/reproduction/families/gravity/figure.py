@@ -131,7 +131,7 @@ def _named(ds: xr.Dataset, *names: str) -> list[Row]:
 def _density(axis: Axes, row: Row, kind: int, theory: str | None, label: str) -> None:
     """Draw density over its mean against height, with theory.
 
-    If there are several species, it is that of number `kind`.
+    If there are several species, species number `kind` is drawn.
     """
     species = kind if len(row.density) > 1 else 0
     density, mean = row.density[species], row.mean_density

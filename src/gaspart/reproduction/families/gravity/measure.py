@@ -159,7 +159,10 @@ class Bins:
         return -slope * temperature / ((self.masses[-1] - self.masses[0]) * self.place.strength)
 
     def temperature_gradient(self, energy: np.ndarray, density: np.ndarray) -> float:
-        """Compute dT/dz over the mean weight of a particle: d ln T / dz in scale heights."""
+        """Compute dT/dz over the mean weight of a particle.
+
+        It is d ln T / dz in scale heights.
+        """
         total = density.sum(axis=0)
         return self._slope(energy / total, total) / (self.place.weight / len(self.place.masses))
 
@@ -251,7 +254,9 @@ def _column(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def heat_capacity(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure the heat capacity of a dilute gas in a box of finite height, in two ways.
+    """Measure the heat capacity of a dilute gas in a box, in two ways.
+
+    The box has a finite height.
 
     It is against x = m g H / (k_B T).
 

@@ -26,7 +26,9 @@ def collisions(point: Point) -> float:
 
 
 def ringing(point: Point) -> dict[str, Estimate]:
-    """Fit the amplitude of the oscillation of the kinetic energy at the start of the sample, over its mean.
+    """Fit the amplitude of the oscillation of the kinetic energy at the start of the sample.
+
+    It is relative to the mean.
 
     The fit is mean + e^{-t / decay} (a cos w t + b sin w t) to all frames after the fall, with t from the
     start of the sample. The error is from the scatter of the frames.

@@ -1,4 +1,7 @@
-"""Approach of a gas between a hot and a cold wall to its steady state, from one temperature."""
+"""Approach of a gas between a hot and a cold wall to its steady state.
+
+It starts at one temperature.
+"""
 
 from __future__ import annotations
 

@@ -38,7 +38,10 @@ def _at(row: Row) -> str:
 
 
 def _steady(row: Row, at: str) -> list[Claim]:
-    """Return the claims that the heat from the hot wall goes into the cold one, early and late."""
+    """Return the claims that the heat from the hot wall goes into the cold one.
+
+    It does so early and late.
+    """
     conserved = Claim.at_most(
         claim=f"|heat from the walls - energy of the particles| over the transferred heat, {at}",
         kind="identity",

@@ -1,4 +1,6 @@
-"""Gap between two thermal walls: its size, and averages of its particles and walls over blocks of time.
+"""Gap between two thermal walls: its size, and averages over blocks of time.
+
+The averages are of its particles and walls.
 
 The walls are the two faces of the first axis. Positions count from the hot one on, where centres can be.
 """

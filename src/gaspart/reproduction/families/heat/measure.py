@@ -113,7 +113,10 @@ def _against(slab: Slab, gap: Gap, found: Averages, used: np.ndarray, diameter: 
 
 
 def _jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarray, diameter: float) -> float:
-    """Compute the mean over the walls of |T_gas - T_wall| / (l dT/dx), from bins (B,) away from them."""
+    """Compute the mean over the walls of |T_gas - T_wall| / (l dT/dx).
+
+    The bins (B,) are away from the walls.
+    """
     slope, start = np.polyfit(position, (energy / density) ** 1.5, 1)
     power = start + slope * np.array([0.0, gap.length])
     gas = power ** (2.0 / 3.0)

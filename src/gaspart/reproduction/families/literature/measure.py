@@ -37,11 +37,11 @@ FLUXES = {"viscosity": "shear", "conductivity": "heat"}
 def literature(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure each value that others have measured too.
 
-    The settings are `judged`, experiments whose values have claims of their own; those of others are judged
-    by their figures. Over `value` are quantity (see `theory.literature`), packing_fraction, count, judged;
-    ours and theirs with their errors; source of theirs. Z of both holds for the infinite system, to first
-    order in 1/N; theirs is the mean of all runs at the packing fraction, weighted by their errors. Of the
-    other quantities both hold for `count` particles; D holds for particles whose total momentum is zero, and
+    The settings are `judged`, experiments whose values have claims of their own; other values are judged by
+    their figures. Over `value` are quantity (see `theory.literature`), packing_fraction, count, judged; ours
+    and theirs with their errors; source of theirs. Z of both holds for the infinite system, to first order in
+    1/N; theirs is the mean of all runs at the packing fraction, weighted by their errors. Of the other
+    quantities both hold for `count` particles; D holds for particles whose total momentum is zero, and
     viscosity and conductivity are means of the integral over `STRETCH`.
     """
     found = [(point, row) for point in points for row in _values(point)]

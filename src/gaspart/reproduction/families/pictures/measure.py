@@ -18,9 +18,9 @@ ROUNDING = 1e-5
 
 
 def gas_render(points: list[Point], settings: dict) -> xr.Dataset:
-    """Return the last frame of the first replica, and counts in the last frames of all replicas.
+    """Return the last frame of the first replica, and counts over all replicas.
 
-    See `_scene`.
+    The counts are in the last frames; see `_scene`.
     """
     return _scene(points[0])
 

@@ -25,7 +25,7 @@ def piston(points: list[Point], settings: dict) -> xr.Dataset:
     packing_fraction.
 
     With a piston and an equilibration, over (state, state_replica) are density, the packing fraction in the
-    middle half of the volume; factor, the external pressure over that density and the temperature;
+    middle half of the volume; factor, the external pressure over this density and the temperature;
     fluctuation, the number of particles times the variance of the volume over the square of the volume at
     this density; energy, twice the kinetic energy of the piston over the temperature; over `state` dimension
     and count.

@@ -11,7 +11,7 @@ from gaspart.reproduction.table import Table
 
 
 def radius_grid(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims that Z depends on the packing fraction alone, and that costs are as predicted."""
+    """Return the claims that Z depends on packing fraction alone, and on predicted costs."""
     table = Table(dataset, "point")
     event, step = (table[table.engine == name] for name in ("event", "step"))
     same, other = (event[event.series == name] for name in ("packing fraction", "count"))

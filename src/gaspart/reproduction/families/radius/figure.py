@@ -1,4 +1,4 @@
-"""Z and its cost at several radii, for one packing fraction and for one number of particles."""
+"""Z and its cost at several radii, for one packing fraction and one number of particles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-r"""One packing fraction at several radii, one number of particles at several radii: cost, and Z.
+r"""Cost and Z at several radii, for one packing fraction and one number of particles.
 
 Predicted counts (periodic container of side L, n boxes of width w = L/n a side, N particles):
 

@@ -196,7 +196,10 @@ def _log10(ratio: Estimate) -> Estimate:
 
 
 def _regime(part: Row, number: int) -> Claim:
-    """Return the claim on one of the source's figures 8 to 10: linear, but for the superlinear 9."""
+    """Return the claim on one of the source's figures 8 to 10.
+
+    They are linear, but for the superlinear 9.
+    """
     claim = f"exponent of the time per step in N, N = {part.part_low} to {part.part_high}"
     source = f"{SOURCE_A}, figure {number}"
     if number == 9:
@@ -223,7 +226,10 @@ def _regime(part: Row, number: int) -> Claim:
 
 
 def event_scaling(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on the growth of the cost of an event with N, by each search."""
+    """Return the claims on the growth of the cost of an event, by search.
+
+    The growth is with N.
+    """
     methods = Table(ds, "method")
     claims = [_all_pairs("all pairs, every event", methods.pairs_excess)]
     for method in methods:

@@ -169,7 +169,10 @@ def _ideal(axis: Axes, gases: Table, kind: int, label: str) -> None:
 
 
 def linear_scaling(ds: xr.Dataset) -> Figure:
-    """Draw time of a step with one box, the cheapest partition and a list; time, work per particle."""
+    """Draw time of a step by method, and time and work per particle.
+
+    Methods are one box, the cheapest partition and a neighbour list.
+    """
     figure, (top, middle, bottom) = style.new((3.0,), (1.9, 1.7))
     gases, naive, lists = Table(ds, "gas"), Table(ds, "naive"), Table(ds, "listed")
     _extrapolated(top, naive)

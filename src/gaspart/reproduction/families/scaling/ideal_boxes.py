@@ -48,14 +48,20 @@ def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _series(radius: float, gases: Table) -> dict[str, Any]:
-    """Fit the exponent of the ideal number of boxes of the gases of one radius with a minimum."""
+    """Fit the exponent of the ideal number of boxes of the gases of one radius.
+
+    Only gases with a minimum count.
+    """
     own = gases[gases.radius == radius]
     boxes = np.where(own.ideal_interior == 1, own.ideal * own.count, np.nan)
     return {"series_radius": radius, "exponent": trend(own.count, boxes)}
 
 
 def _gas(timed: tuple[xr.Dataset, xr.Dataset], rule: float) -> dict[str, Any]:
-    """Measure the ideal number of boxes of one gas, and the cost of the rule's, for `ideal_boxes`."""
+    """Measure the ideal number of boxes of one gas, and the cost of the rule's.
+
+    They serve `ideal_boxes`.
+    """
     run, costs = timed
     return {
         **ideal(costs, run.dimension),

@@ -1,4 +1,4 @@
-"""Gain of space partitioning: the cost of a step, or of an event, against particles and boxes.
+"""Gain of space partitioning: cost of a step or event against particles and boxes.
 
 Every point is a `measure_cost` job: one gas, timed with one or several partitions. Work, time and ideal
 numbers, and the origin of their errors, are defined in `families.shared.timings`.
@@ -240,7 +240,7 @@ def _expected(run: xr.Dataset) -> dict:
 
 
 def _advantages(fine: xr.Dataset, round_per_side: list[int]) -> list[Estimate]:
-    """Compute the advantage (ln of time) of partitions over those within an eighth of them.
+    """Compute the advantage (ln of time) of partitions over others within an eighth of them.
 
     It is in the container of the lower side (round widths), less the same in the other container.
 

@@ -1,4 +1,7 @@
-"""Source A's remarks on the cost of a step: jobs that time a gas with and without something, alternately."""
+"""Source A's remarks on the cost of a step, tested by alternate timings.
+
+Jobs time a gas with and without something.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ from gaspart.theory.dsmc import boxes_in_reach, share_of_contacts_in_a_box
 
 
 def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
-    """Compare the search of boxes within reach of a contact with that of all neighbouring boxes.
+    """Compare the search of boxes within reach of a contact with that over all neighbours.
 
     `runs` are jobs of one gas, each with the same partitions. Over ``near`` (the partitions):
     ``near_boxes_per_side``; with only the boxes within reach the ``near_seconds`` per particle and step, with
@@ -50,7 +53,9 @@ def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
 
 
 def huge_sphere(runs: list[xr.Dataset]) -> dict[str, Any]:
-    """Compute the cost of a sphere that is too large for the boxes, from jobs without and with it.
+    """Compute the cost of a sphere that is too large for the boxes.
+
+    It follows from jobs without and with the sphere.
 
     ``huge_ratio`` is the time of a step with it over the time without, with error and ``_freedom`` from the
     scatter of the jobs; ``huge_tests`` is the number of further pairs tested per particle and step, with

@@ -11,7 +11,10 @@ from gaspart.reproduction.table import Table
 
 
 def remarks(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on the source's remarks on the cost of a step, by work and by time."""
+    """Return the claims on the source's remarks on the cost of a step.
+
+    They are on work and time.
+    """
     near = Table(ds, "near")
     visits = near.near_box_visits / near.near_expected_visits
     return [

@@ -74,7 +74,9 @@ def _pile(run: Run, gap: float) -> dict:
 
 
 def _lasting(scene: Scene, positions: np.ndarray) -> float:
-    """Compute the mean kinetic energy of discs of a speed g h t_c, at depths h below the surface of a pile.
+    """Compute the mean kinetic energy of discs of speed g h t_c at depths h.
+
+    The depths are below the surface of a pile.
 
     Slower discs meet their neighbours within t_c, and lose no energy. A disc at this depth carries a weight
     of h discs. Neighbours with a gap s that move with v give it the force m v^2 / s, and meet after s / v = v

@@ -1,7 +1,7 @@
-"""Column of gas under gravity: heights, energies and forces of runs, averaged over blocks of time.
+"""Column of gas under gravity: heights, energies and forces, averaged over blocks.
 
-Gravity points down the last axis of a container of two dimensions. Heights are those of particles' centres
-above the lowest position that the centre of the smallest particle can reach.
+Gravity points down the last axis of a container of two dimensions. Heights are of particles' centres above
+the lowest position that the centre of the smallest particle can reach.
 """
 
 from __future__ import annotations

@@ -15,7 +15,9 @@ from gaspart.trajectory.reading import open_trajectory
 
 
 def reduced_curves(point: Point, path: str, longest: float) -> Curves:
-    """Return the curves of one replica, to the lag `longest` (reduced time) or to its last one.
+    """Return the curves of one replica, to the lag `longest` or to its last one.
+
+    `longest` is in reduced time.
 
     The particles' diameter, mass and temperature are 1: the temperature 2 E' / (d (N - 1)) is the replica's
     own, E' the energy about the centre of mass. One species. Raises SceneError for a point without `lags`.

@@ -10,7 +10,7 @@ from gaspart.trajectory.reading import open_trajectory
 
 
 def runs(point: Point, first: int | None = None) -> Iterator[Run]:
-    """Yield the frames of each replica, from the end of its equilibration or from frame `first` on.
+    """Yield the frames of each replica after its equilibration or from frame `first` on.
 
     Each run is open until the next one is requested. Raises OSError for a file that cannot be read and
     ValueError for one of another point.

@@ -146,7 +146,7 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
 
 
 def penalty(costs: xr.Dataset, boxes_per_particle: float) -> tuple[float, float]:
-    """Compute the time at a number of boxes per particle over the least time of the scan.
+    """Compute the time at a number of boxes per particle over the least time.
 
     The standard error is returned too; NaN beyond the partitions timed.
 

@@ -77,7 +77,7 @@ def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
     All runs have the same physics.
 
     The groups are assumed to have the same scatter, which is estimated from all of them about their own
-    means: a group of few runs has no good estimate of its own. Needs more runs than groups.
+    means. A group of few runs has no good estimate of its own. Needs more runs than groups.
     """
     freedom = sum(len(group) for group in samples) - len(samples)
     if freedom < 1:
@@ -211,9 +211,9 @@ def _density(speeds: np.ndarray, grid: Grid) -> np.ndarray:
 
 
 def _initial_slope(s: np.ndarray, values: np.ndarray) -> float:
-    """Fit dK/ds at s = 0 by a cubic through K(0) = 1 and the frames up to s = 1.5.
+    """Fit the initial slope dK/ds by a cubic through K(0) = 1.
 
-    The fit is by least squares.
+    The fit is by least squares, to the frames up to s = 1.5.
     """
     early = (s > 0.0) & (s <= 1.5)
     design = s[early, None] ** np.arange(1, 4)

@@ -6,7 +6,6 @@ r"""Structure of spheres and discs: g(r), S(k), and three numbers by two or thre
   is fitted by a polynomial in :math:`k^2` of order three, at every wave vector that the container admits.
 - The contact value of the N particles: g(r) extrapolated to the diameter, the collisional virial,
   :math:`(Z_N - 1) / (2^{d-1} \eta)`, and the rate of collisions over the rate of independent particles.
-
 """
 
 from __future__ import annotations

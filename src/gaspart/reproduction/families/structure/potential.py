@@ -112,7 +112,7 @@ def _chance(found: Insertions) -> Estimate:
 
 
 def _add_partition(rows: list[dict[str, Any]], state: MeasuredState) -> None:
-    """Add minus ln Q / N, by insertion and by the equation of state, to the rows.
+    """Add minus ln Q / N, by insertion and equation of state, to rows.
 
     The rows are of one dimension.
     """

@@ -1,4 +1,4 @@
-"""Choice of engine and settings: the parts of its error, and its cost for a required accuracy."""
+"""Choice of engine and settings: parts of its error, and cost of an accuracy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ QUANTILE = 1.96
 ENGINES = ("event", "step", "boltzmann", "enskog")
 """The engines that are compared; the last two are the models of the DSMC engine."""
 PARTS = ("model", "discretisation", "noise", "equilibration", "finite_size")
-"""What makes an error, in the order in which it is stacked: first what adds up to the required accuracy."""
+"""Parts of an error, in the order of the stack: first those that add up to the accuracy."""
 
 
 @dataclass(frozen=True)
@@ -48,9 +48,10 @@ class Choice:
         return self.model + self.discretisation
 
     def measured(self, accuracy: float) -> float:
-        """Compute the CPU time in s of the measurement alone, for an accuracy that 95 % of all runs have.
+        """Compute the CPU time in s of the measurement alone, for an accuracy.
 
-        It is infinite if the systematic error leaves nothing for noise.
+        95 % of all runs have the accuracy. The time is infinite if the systematic error leaves nothing for
+        noise.
         """
         return required(self.unit, accuracy, self.bias, self.least)
 

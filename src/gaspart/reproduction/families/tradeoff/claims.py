@@ -72,7 +72,10 @@ def _orders(errors: Table) -> list[Claim]:
 
 
 def _missed(errors: Table) -> list[Claim]:
-    """Return the claims on the rate of a dilute gas, at the longest step that loses at most 2 %."""
+    """Return the claims on the rate of a dilute gas, at a long step.
+
+    It is the longest step that loses 2 % at most.
+    """
     claims = []
     for row in errors[errors.packing_fraction <= 0.01]:
         setting = row.setting

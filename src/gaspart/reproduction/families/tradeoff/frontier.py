@@ -55,9 +55,9 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _built_up(steady: Table, row: Row) -> float:
-    """Return the largest error of Z that builds up over many steps, 0 if no such error is seen.
+    """Return the largest error of Z that builds up over many steps, or 0.
 
-    It is of a gas and a setting.
+    It is of a gas and a setting; 0 means that no such error is seen.
     """
     if not steady:
         return 0.0

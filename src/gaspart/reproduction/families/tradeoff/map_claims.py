@@ -31,7 +31,10 @@ def _by_engine(at: Row, name: str) -> dict[str, Estimate]:
 
 
 def _dilute(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims that DSMC is much cheaper in a dilute gas, the more so the more dilute."""
+    """Return the claims that DSMC is much cheaper in a dilute gas.
+
+    It is the cheaper the more dilute the gas.
+    """
     claims = []
     gases = Table(ds.sel(quantity="collision_rate"), "fraction")
     for at in gases[gases.fraction <= THIN]:

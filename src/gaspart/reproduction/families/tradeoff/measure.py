@@ -208,7 +208,7 @@ def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
 
 
 def _models(events: list[dict], timed: list[dict], cells: dict[float, Cells]) -> list[tuple[dict, dict]]:
-    """Pair the timings of the event-driven engine and of a model of the DSMC engine in one gas.
+    """Pair the timings of the event-driven engine and of a DSMC model in one gas.
 
     For the Enskog model the error by cells must have been measured, in spheres.
     """
@@ -260,9 +260,9 @@ def _timed(run: dict) -> dict[str, Any]:
 
 
 def _steady(point: Point, rows: list[dict]) -> dict[str, Any]:
-    """Return the error of Z in a long run of the time-stepped engine, minus the paired runs' error.
+    """Return the error of Z in a long run of the time-stepped engine.
 
-    The runs are of the same gas.
+    The error of the paired runs of its gas is subtracted.
     """
     own = point.settings
     long, fraction, dimension = pressure(point).z, own["packing_fraction"], own["dimension"]

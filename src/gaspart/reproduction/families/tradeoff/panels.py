@@ -1,4 +1,7 @@
-"""Panels of the map of the cheapest engine, for each observable, and of errors at two points."""
+"""Panels of the map of the cheapest engine, and of errors at two points.
+
+There is a panel for each observable.
+"""
 
 from __future__ import annotations
 
@@ -139,7 +142,10 @@ def breakdown(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _stack(axis: Axes, y: float, parts: list[float]) -> None:
-    """Draw one bar of parts, cut off at `HIGHEST`, with its length if it is cut off."""
+    """Draw one bar of parts, cut off at `HIGHEST`.
+
+    If it is cut off, its length is written.
+    """
     low = 0.0
     for kind, part in enumerate(parts):
         if math.isfinite(part) and low < HIGHEST:

@@ -79,7 +79,10 @@ def _row(point: Point, settings: dict) -> dict:
 
 
 def _tail(collisions: np.ndarray, values: np.ndarray, modes: np.ndarray) -> np.ndarray:
-    """Fit A and B of values = modes (A + B / s); the noise of C is the same at all lags."""
+    """Fit A and B of values = modes (A + B / s).
+
+    The noise of C is the same at all lags.
+    """
     return fit_linear(np.stack([modes, modes / collisions], axis=1), values).values
 
 

@@ -17,7 +17,7 @@ SERIES = (2, 3, 4, 6, 10)
 REQUIRED = {2: 1e-3, 3: 1e-2, 4: 1e-1}
 """Scale of the lowest panel: the required relative accuracy of each coefficient."""
 Lines = dict[str, tuple[np.ndarray, dict]]
-"""By name, Z on the grid of packing fractions, and the style of the line."""
+"""Z on the grid of packing fractions, and the style of the line, by name."""
 
 
 def virial_discs(dataset: xr.Dataset) -> Figure:

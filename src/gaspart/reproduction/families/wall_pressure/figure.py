@@ -45,9 +45,9 @@ def _temperatures(axis: Axes, table: Table) -> None:
 
 
 def _densities(axis: Axes, table: Table) -> None:
-    """Draw P / (n k T) by the force over the whole wall, and corrected to the infinite fluid.
+    """Draw P / (n k T) by the force over the whole wall, and corrected.
 
-    The former is hollow, the latter filled.
+    The correction is to the infinite fluid; the former is hollow, the latter filled.
     """
     for kind, (dimension, part) in enumerate(table.by("dimension")):
         eta, name = part.packing_fraction, PARTICLES[dimension]

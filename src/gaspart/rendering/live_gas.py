@@ -1,0 +1,382 @@
+"""A simulation that goes on in changed scenes, with gauges of what it does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from gaspart import theory
+from gaspart.accuracy.scales import scales
+from gaspart.analysis.measuring import measure
+from gaspart.analysis.run import frame_of, with_frames
+from gaspart.analysis.statistics.blocks import correlated_mean
+from gaspart.engines import Engine
+from gaspart.errors import SceneError
+from gaspart.rendering.films import pieces
+from gaspart.rendering.frames import Picture, labelled, particles_of
+from gaspart.rendering.particles import FASTEST
+from gaspart.scene.faces import Piston, Thermal
+from gaspart.scene.open_faces import refuse_open
+from gaspart.scene.restitution import Restitution
+from gaspart.scene.scene import Scene, require_scene
+from gaspart.simulation import Simulation
+
+_PICTURES = 100
+"""In the time in which a particle crosses the container."""
+_DENSEST = {2: 0.45, 3: 0.28}
+"""Packing fraction up to which particles are placed at random."""
+_WEIGHTS = 8.0
+"""The strongest gravity of the slider: of a fall through the container, in units of m v^2 of a particle."""
+_HOTTEST = 4.0
+"""Highest temperature of the walls, divided by the temperature of the gas at the start."""
+_SMALLEST = 0.4
+"""Least distance of the piston from the other side, as a fraction of the length."""
+_SPEED = 0.25
+"""Speed of the piston, divided by the thermal speed."""
+_KEPT, _TRAIL, _BINS = 256, 400, 24
+"""Most frames of the gauges, points of the tracer's path, bins of speeds."""
+LEAST_FRAMES = 33
+"""Frames from which on gauges state errors."""
+LIVE_SIZE = (600, 450)
+
+
+class LiveGas:
+    """Simulation that goes on from picture to picture, of a scene that may change.
+
+    interval : time between two pictures.
+    size : (W, H) in pixels.
+    collisions : number of collisions since the start.
+    traced : True if the path of the first moving particle is drawn.
+
+    Other arguments are those for `Simulation`, and `colour` is explained in `render`. Raises SceneError as
+    `Simulation`, for open faces, and for a scene in which nothing moves or falls.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        engine: Engine | str | None = None,
+        seed: int | tuple[int, ...] = 0,
+        size: tuple[int, int] = LIVE_SIZE,
+        colour: str = "speed",
+    ) -> None:
+        require_scene(scene)
+        refuse_open(scene, "changes the particles, whose packing fraction a slider would state")
+        self.interval = scales(scene).crossing_time / _PICTURES
+        if self.interval == float("inf"):
+            raise SceneError("scene", scene, "nothing moves at the start, and nothing falls")
+        self.size, self.colour, self._engine, self._seed, self._first = size, colour, engine, seed, scene
+        self.traced = False
+        self._thermal_speed = scales(scene).thermal_speed
+        self._begin(scene)
+
+    def _begin(self, scene: Scene) -> None:
+        """Start a scene anew."""
+        self.simulation = Simulation(scene, self._engine, self._seed)
+        self._before = self._clock = 0.0
+        self.collisions, self._counted = 0, 0
+        self._target: float | None = None
+        self._path: list[np.ndarray] = []
+        self._moving = int(np.argmax(np.isfinite(self.simulation.state.masses)))
+        self.observe()
+
+    def _go_on(self, scene: Scene, **state: Any) -> None:
+        """Continue in another scene from the present state, of which values may be replaced."""
+        simulation = Simulation(
+            scene, self._engine, self._seed, initial=replace(self.simulation.state, **state)
+        )
+        self._clock += self.simulation.time
+        self.simulation, self._counted = simulation, 0
+        self.observe()
+
+    def observe(self) -> None:
+        """Begin the measurements of the gauges, as after each change."""
+        self._rows, self._stride, self._skipped = [frame_of(self.simulation)], 1, 0
+
+    @property
+    def time(self) -> float:
+        """Time since the start."""
+        return self._clock + self.simulation.time
+
+    @property
+    def picture(self) -> Picture:
+        """Picture of the particles now, with the parameters of the scene."""
+        particles = particles_of(self.simulation)
+        paths = pieces(self._path, particles.lengths) if self.traced and len(particles.lengths) == 2 else ()
+        fastest = FASTEST * self._thermal_speed or None
+        return labelled(particles, self.time, self.size, self.colour, fastest, paths=paths)
+
+    def advance(self) -> Picture:
+        """Advance by an interval and return the picture then."""
+        self.step()
+        return self.picture
+
+    def step(self) -> None:
+        """Advance by an interval, or until the piston arrives."""
+        duration, piston = self.interval, self.simulation.state.piston
+        arrives = False
+        if self._target is not None and piston is not None:
+            rest = (piston[0] - self._target) / abs(piston[1])
+            arrives = rest <= duration
+            duration = max(min(rest, duration), 1e-9 * duration)
+        self.simulation.advance(duration=duration)
+        tally = self.simulation.tally
+        self.collisions += tally.collisions - self._counted
+        self._counted = tally.collisions
+        self._path = [*self._path[1 - _TRAIL :], self.simulation.state.positions[self._moving]]
+        self._record()
+        if arrives:
+            self._settle()
+
+    def _record(self) -> None:
+        """Store a frame for the gauges; of too many, every second one."""
+        self._skipped += 1
+        if self._skipped < self._stride:
+            return
+        self._rows.append(frame_of(self.simulation))
+        self._skipped = 0
+        if len(self._rows) > _KEPT:
+            self._rows, self._stride = self._rows[::2], 2 * self._stride
+
+    def fill(self, packing_fraction: float) -> None:
+        """Start again with another number of particles, for about this packing fraction.
+
+        The species that move keep the proportions of the first scene.
+
+        Parameters
+        ----------
+        packing_fraction : float, [1]
+            Packing fraction.
+
+        Raises
+        ------
+        SceneError
+            If the particles do not fit.
+        """
+        now = self.simulation.scene
+        smaller = np.prod(now.container.lengths) / np.prod(self._first.container.lengths)
+        factor = (packing_fraction - self.emptiest) / (self._first.packing_fraction - self.emptiest) * smaller
+        species = [
+            one if one.fixed else replace(one, count=max(1, round(factor * one.count)))
+            for one in self._first.species
+        ]
+        self._begin(replace(now, species=species))
+
+    def pull(self, acceleration: float) -> None:
+        """Continue from the present positions under another gravity, down the last axis.
+
+        Parameters
+        ----------
+        acceleration : float, [length/time^2]
+            Acceleration.
+        """
+        down = (*[0.0] * (self._first.dimension - 1), -acceleration)
+        self._go_on(replace(self.simulation.scene, gravity=down))
+
+    def heat(self, temperature: float) -> None:
+        """Continue between walls at another temperature.
+
+        Thermal faces of the first scene keep the ratios of their temperatures; if it has none, all faces that
+        reflect become thermal.
+
+        Parameters
+        ----------
+        temperature : float, [energy]
+            Temperature k_B T of the hottest wall; 0: the walls of the first scene.
+        """
+        first, faces = self._first.faces, dict(self.simulation.scene.faces)
+        warm = self._warm
+        for name in warm or self._hard:
+            if temperature <= 0.0:
+                faces.pop(name, None)
+                faces |= {name: first[name]} if name in first else {}
+            elif warm:
+                scale = temperature / self.temperature
+                faces[name] = replace(warm[name], temperature=scale * warm[name].temperatures[0])
+            elif not isinstance(faces.get(name), Piston):
+                faces[name] = Thermal(temperature)
+        self._go_on(replace(self.simulation.scene, faces=faces))
+
+    def damp(self, normal: float) -> None:
+        """Continue with another coefficient of restitution.
+
+        Parameters
+        ----------
+        normal : float, [1]
+            Normal restitution; 1 is elastic.
+        """
+        law = self._first.restitution
+        law = replace(law, normal=normal) if law else Restitution(normal=normal) if normal < 1.0 else None
+        self._go_on(replace(self.simulation.scene, restitution=law))
+
+    def push(self, place: float) -> None:
+        """Move the side x high to a place: inwards as a piston, outwards at once, into a vacuum.
+
+        Parameters
+        ----------
+        place : float, [length]
+            Coordinate of the side.
+        """
+        if self._target is not None:
+            self._settle()
+        scene = self.simulation.scene
+        length = scene.container.lengths[0]
+        if place < length:
+            self._target = place
+            speed = _SPEED * max(scales(scene).thermal_speed, self._thermal_speed)
+            faces = {**scene.faces, "x_high": Piston(speed=speed)}
+            self._go_on(replace(scene, faces=faces))
+        elif place > length:
+            self._resize(scene, place)
+
+    def _settle(self) -> None:
+        """Stop the piston where it is."""
+        scene, piston = self.simulation.scene, self.simulation.state.piston
+        assert piston is not None
+        faces = {name: face for name, face in scene.faces.items() if name != "x_high"}
+        faces |= {name: face for name, face in self._first.faces.items() if name == "x_high"}
+        self._target = None
+        self._resize(replace(scene, faces=faces), float(piston[0]))
+
+    def _resize(self, scene: Scene, length: float) -> None:
+        """Continue in a container of another length along x."""
+        lengths = (length, *scene.container.lengths[1:])
+        container = replace(scene.container, lengths=lengths)
+        self._go_on(replace(scene, container=container), lengths=np.array(lengths), piston=None)
+
+    def open_walls(self) -> None:
+        """Continue without interior walls: what they have separated mixes."""
+        self._go_on(replace(self.simulation.scene, walls=()))
+
+    def gauges(self) -> list[tuple[str, float, float, float | None]]:
+        """Name, mean since the last change, standard error and theory of temperature and pressures.
+
+        The pressure on each wall; of a gas without walls Z. Empty until there are enough frames. Where
+        no theory of this container is known, it is the equation of state of a gas without walls.
+        """
+        if len(self._rows) < LEAST_FRAMES:
+            return []
+        data, scene = with_frames(self.simulation, self._rows), self.simulation.scene
+        masses = self.simulation.state.masses
+        moving = np.isfinite(masses)
+        degrees = self._first.dimension * (int(moving.sum()) - scene.is_periodic)
+        flights = np.array([row["velocities"][moving] for row in self._rows])
+        temperatures = (masses[moving] * (flights**2).sum(axis=2)).sum(axis=1) / max(degrees, 1)
+        walls = {face.temperatures for face in scene.faces.values() if isinstance(face, Thermal)}
+        bath = walls.pop() if len(walls) == 1 and scene.restitution is None else ()
+        mean = correlated_mean(temperatures).estimate
+        found = [("temperature", mean.value, mean.error, bath[0] if len(set(bath)) == 1 else None)]
+        if self._target is not None:  # the volume changes
+            return found
+        try:
+            result = measure(data, "Z" if scene.is_periodic else "pressure")
+        except SceneError:  # not defined in this scene
+            return found
+        names = (
+            ["Z"] if scene.is_periodic else [f"pressure, {face}" for face in result.estimate["face"].values]
+        )
+        known = (
+            [self._bulk(mean.value)] * len(names)
+            if result.theory is None
+            else np.atleast_1d(result.theory.values)
+        )
+        values, errors = (np.atleast_1d(one.values) for one in (result.estimate, result.error))
+        return found + list(zip(names, values, errors, known, strict=True))
+
+    def _bulk(self, temperature: float) -> float | None:
+        """Return the pressure, or Z, of the gas without walls; None for other scenes."""
+        scene = self.simulation.scene
+        gas = replace(scene, faces={}).gas
+        try:
+            z = float(theory.compressibility_factor(gas.packing_fraction, gas.dimension)) if gas else None
+        except ValueError:  # denser than the fluid
+            return None
+        if z is None or scene.is_periodic:
+            return z
+        return z * self.simulation.state.count * temperature / float(np.prod(scene.container.lengths))
+
+    def speeds(self) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+        """Return edges and density of the histogram of speeds since the last change, and Maxwell's.
+
+        Maxwell's density holds for the mean energy, for particles of one mass; for others it has the value
+        None.
+        """
+        masses, d = self.simulation.state.masses, self._first.dimension
+        moving = np.isfinite(masses)
+        velocities = np.array([row["velocities"] for row in self._rows])[:, moving]
+        speeds = np.sqrt((velocities**2).sum(axis=2)).ravel()
+        edges = np.linspace(0.0, max(2.5 * float(np.sqrt((speeds**2).mean())), 1e-30), _BINS + 1)
+        density = np.histogram(speeds, edges)[0] / (speeds.size * np.diff(edges))
+        if np.ptp(masses[moving]) > 0.0 or not speeds.any():
+            return edges, density, None
+        mass = float(masses[moving][0])
+        temperature = mass * float((speeds**2).mean()) / d
+        middles = 0.5 * (edges[1:] + edges[:-1])
+        return edges, density, np.asarray(theory.maxwell_pdf(middles, d, temperature, mass))
+
+    @property
+    def emptiest(self) -> float:
+        """Packing fraction of all particles except species that move."""
+        fixed = [one for one in self._first.species if one.fixed]
+        return replace(self._first, species=fixed).packing_fraction
+
+    @property
+    def densest(self) -> float:
+        """Highest packing fraction to choose."""
+        return max(_DENSEST[self._first.dimension], self._first.packing_fraction)
+
+    @property
+    def strongest(self) -> float | None:
+        """Strongest gravity to choose; None without a floor."""
+        if self._first.container.periodic[-1]:
+            return None
+        height = self._first.container.lengths[-1]
+        return max(_WEIGHTS * scales(self._first).thermal_speed ** 2 / height, 2.0 * self.gravity)
+
+    @property
+    def gravity(self) -> float:
+        """Acceleration down the last axis."""
+        pull = self.simulation.scene.gravity
+        return -pull[-1] if pull else 0.0
+
+    @property
+    def temperature(self) -> float:
+        """Temperature of the hottest wall of the first scene; 0 without thermal walls."""
+        faces = self._first.faces.values()
+        return max((max(one.temperatures) for one in faces if isinstance(one, Thermal)), default=0.0)
+
+    @property
+    def hottest(self) -> float | None:
+        """Highest temperature of the walls to choose; None without walls that can be thermal."""
+        if not self._warm and not self._hard:
+            return None
+        gas = scales(self._first).thermal_speed ** 2 * float(np.min(self.simulation.state.masses))
+        return _HOTTEST * max(self.temperature, gas) or None
+
+    @property
+    def shortest(self) -> float | None:
+        """Least coordinate of the side x high to choose; None if it cannot be moved."""
+        first = self._first
+        fixed = bool(self.emptiest) or any(one.fixed for one in first.particles)
+        bound = first.walls or first.pistons or (first.gravity and first.gravity[0])
+        if bound or fixed or "x_high" not in (*self._hard, *self._warm):
+            return None
+        return first.container.lengths[0] * max(_SMALLEST, first.packing_fraction / self.densest)
+
+    @property
+    def _warm(self) -> dict[str, Thermal]:
+        """Thermal faces of the first scene, of one temperature each."""
+        faces = self._first.faces.items()
+        return {name: one for name, one in faces if isinstance(one, Thermal) and one.varies_along is None}
+
+    @property
+    def _hard(self) -> list[str]:
+        """Faces of the container that reflect."""
+        axes = range(self._first.dimension)
+        names = [f"{'xyz'[axis]}_{end}" for axis in axes for end in ("low", "high")]
+        walls = np.repeat([not one for one in self._first.container.periodic], 2)
+        return [
+            name for name, wall in zip(names, walls, strict=True) if wall and name not in self._first.faces
+        ]
