@@ -1,7 +1,7 @@
 """Time correlations of paths and velocities, averaged over particles and time origins.
 
-Sums over all pairs of frames are made by fast Fourier transforms [1]_, in blocks of particles: their memory
-is that of a block, and their time grows as T log T for T frames. A squared displacement at a short lag is a
+Sums over all pairs of frames are made by fast Fourier transforms [1]_, in blocks of particles: they take the
+memory of a block, and their time grows as T log T for T frames. A squared displacement at a short lag is a
 small difference of such sums where particles move far. It is summed directly where that would cost digits.
 
 References
@@ -57,7 +57,20 @@ def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float
 
 
 def squared_displacement(paths: np.ndarray, lags: int) -> np.ndarray:
-    """Return <|r(t) - r(0)|^2> of (T, N, d), mean over particles and time origins, shape (lags,)."""
+    """Return the mean of |r(t) - r(0)|^2 over particles and time origins.
+
+    Parameters
+    ----------
+    paths : ndarray, shape (T, N, d), [length]
+        Continued positions at even times.
+    lags : int
+        Number of lags, in frames, from 0 on.
+
+    Returns
+    -------
+    ndarray, shape (lags,), [length^2]
+        The mean-squared displacement.
+    """
     frames, count, _ = paths.shape
     r = _columns(paths)
     r = r - r.mean(axis=0)  # from the middle of each path: the digits of the differences are kept
@@ -74,7 +87,20 @@ def squared_displacement(paths: np.ndarray, lags: int) -> np.ndarray:
 
 
 def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:
-    """Return the mean of a(0) a(t) over particles, axes and origins, of (T, N, d), shape (lags,)."""
+    """Return the mean of a(0) a(t) over particles, axes and time origins.
+
+    Parameters
+    ----------
+    values : ndarray, shape (T, N, d)
+        Values at even times.
+    lags : int
+        Number of lags, in frames, from 0 on.
+
+    Returns
+    -------
+    ndarray, shape (lags,)
+        The autocorrelation.
+    """
     flat = _columns(values)
     return _products(flat)[:lags] / ((len(flat) - np.arange(lags)) * flat.shape[1])
 
@@ -85,8 +111,10 @@ def _columns(values: np.ndarray) -> np.ndarray:
 
 
 def _products(columns: np.ndarray, others: np.ndarray | None = None) -> np.ndarray:
-    """Return the sums over columns (T, C) and times s of a(s + t) a(s), or with `others` (T, C) of a(s + t)
-    b(s), at t = 0, 1 ... T - 1; negative t are counted from the end."""
+    """Return the sums over columns (T, C) and times s of a(s + t) a(s), or of a(s + t) b(s).
+
+    At t = 0, 1 ... T - 1; negative t are counted from the end.
+    """
     from scipy.fft import irfft, next_fast_len, rfft
 
     length = next_fast_len(2 * len(columns), True)

@@ -82,7 +82,7 @@ def measure(
     """
     if not isinstance(observable, str):
         names = [known(name) for name in observable]
-        with opened(source, any(OBSERVABLES[name].needs == "pairs" for name in names)) as data:
+        with open_frames(source, any(OBSERVABLES[name].needs == "pairs" for name in names)) as data:
             return {name: measure(data, name, start, end, **selection) for name in names}
     name = known(observable)
     one = OBSERVABLES[name]
@@ -107,7 +107,7 @@ def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterat
         return
     from gaspart.keys.values import number
 
-    with opened(source, pairs) as data:
+    with open_frames(source, pairs) as data:
         time = data["time"].values
         last = number("end", end, "must be a finite number")
         count = int((time <= last + 1e-9 * abs(last)).sum())
@@ -118,9 +118,21 @@ def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterat
 
 
 @contextmanager
-def opened(source: Source, pairs: bool = False) -> Iterator[xr.Dataset]:
-    """Yield the frames of a source, which are read or made once. A file is closed after the block. pairs: see
-    `until_time`."""
+def open_frames(source: Source, pairs: bool = False) -> Iterator[xr.Dataset]:
+    """Yield the frames of a source, which are read or made once.
+
+    Parameters
+    ----------
+    source : str, Path, Dataset or Simulation
+        A trajectory, by its path or open, or a simulation.
+    pairs : bool, default False
+        Count the collisions of each pair of species of a simulation.
+
+    Yields
+    ------
+    Dataset
+        The frames. A file is closed after the block.
+    """
     from gaspart.analysis.run import repeated
     from gaspart.simulation import Simulation
     from gaspart.trajectory.reading import open_trajectory

@@ -109,13 +109,18 @@ _FARTHEST = 0.45  # of a side: the longest way between frames by which a particl
 
 @dataclass(frozen=True)
 class Groups:
-    """Paths or velocities (T, n, d) of groups of moving particles, at even times, `interval` apart.
+    """Paths or velocities (T, n, d) of groups of moving particles, made one after another on iteration.
 
-    sizes : numbers of particles of the groups.
-    frames : T.
-    make : function that returns one of the groups, by its number.
-
-    The groups are made one after another as they are iterated over.
+    Parameters
+    ----------
+    sizes : list of int
+        Numbers of particles of the groups.
+    frames : int
+        Number of frames.
+    interval : float, [time]
+        Time between frames.
+    make : callable
+        Function that returns a group, by its number.
     """
 
     sizes: list[int]
@@ -386,7 +391,7 @@ def groups_of(
 def _values(run: Run, paths: bool, stride: int) -> np.ndarray:
     """Return paths or velocities (T, M, d) of the moving particles in every `stride`-th frame.
 
-    Where the gas flows they are about its local flow.
+    Where the gas flows they are about the local flow.
     """
     moving = run.moving
     if not run.flow_axes:

@@ -38,11 +38,32 @@ _MOST_BOXES = 4
 def pair_counts(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
 ) -> np.ndarray:
-    """Count the pairs of all frames in equal intervals of the distance up to `furthest`.
+    """Count the pairs of all frames in equal intervals of the distance.
 
-    The shape is (bins,). The frames are positions (T, N, d) in a periodic container of lengths (d,); the
-    nearest image counts, in double precision. The counts do not depend on the number of threads. Raises
-    ValueError for a distance beyond half of the shortest side, where a pair has several images.
+    Distances are to the nearest image, in double precision.
+
+    Parameters
+    ----------
+    frames : ndarray, shape (T, N, d), [length]
+        Positions in a periodic container.
+    lengths : sequence of float, [length]
+        Lengths of the container.
+    bins : int
+        Number of intervals.
+    furthest : float, [length]
+        Largest distance.
+    threads : int, default 1
+        Number of threads, each of which counts whole frames; the counts do not depend on it.
+
+    Returns
+    -------
+    ndarray of int, shape (bins,)
+        The counts.
+
+    Raises
+    ------
+    ValueError
+        If the distance exceeds half of the shortest side, where a pair has several images.
     """
     sides = np.asarray(lengths, dtype=float)
     if not 0.0 < furthest <= 0.5 * sides.min():
@@ -57,12 +78,13 @@ def pair_counts(
     spans[:first] = 0
 
     def of_frame(positions: np.ndarray) -> np.ndarray:
-        places, counts = np.zeros((3, count)), np.zeros(bins, dtype=np.int64)
-        places[first:] = np.asarray(positions).T
-        count_pairs(places, size, numbers, spans, float(furthest), counts)
+        coordinates, counts = np.zeros((3, count)), np.zeros(bins, dtype=np.int64)
+        coordinates[first:] = np.asarray(positions).T
+        count_pairs(coordinates, size, numbers, spans, float(furthest), counts)
         return counts
 
-    return np.sum(in_threads(of_frame, frames, threads), axis=0, initial=0, dtype=np.int64)
+    counts = in_threads(of_frame, frames, threads)
+    return np.asarray(np.sum(counts, axis=0, initial=0, dtype=np.int64))
 
 
 def _boxes(size: np.ndarray, count: int, furthest: float, first: int) -> np.ndarray:
@@ -82,9 +104,7 @@ def _boxes(size: np.ndarray, count: int, furthest: float, first: int) -> np.ndar
 def radial_distribution(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the centres (bins,) of shells up to `furthest`, and the mean of g(r) over frames.
-
-    The frames have the shape (T, N, d).
+    """Return the centres (bins,) of shells and g(r) there, the mean over frames (T, N, d).
 
     Pairs are compared with the N (N - 1) / 2 pairs of an ideal gas.
     """
@@ -95,7 +115,24 @@ def radial_distribution(
 
 
 def ideal_counts(count: int, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float) -> np.ndarray:
-    """Return the mean `pair_counts` of a frame of an ideal gas of N particles, shape (bins,)."""
+    """Return the mean `pair_counts` of a frame of an ideal gas.
+
+    Parameters
+    ----------
+    count : int
+        Number of particles.
+    lengths : sequence of float, [length]
+        Lengths of the container.
+    bins : int
+        Number of intervals.
+    furthest : float, [length]
+        Largest distance.
+
+    Returns
+    -------
+    ndarray, shape (bins,)
+        The counts.
+    """
     dimension = len(lengths)
     unit = unit_sphere_surface(dimension) / dimension * (furthest / bins) ** dimension
     pairs = 0.5 * count * (count - 1)
@@ -276,7 +313,23 @@ def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:
 
 
 def stretches_of(run: Run) -> list[slice]:
-    """Return the `chosen_frames` of 16 consecutive stretches of a run. Raises SceneError as that."""
+    """Return the `chosen_frames` of 16 consecutive stretches of a run.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    list of slice
+        The frames of each stretch.
+
+    Raises
+    ------
+    SceneError
+        If there are too few frames.
+    """
     numbers = chosen_frames(run, np.arange(len(run.time)))
     step = int(numbers[1] - numbers[0])
     return [slice(int(part[0]), int(part[-1]) + 1, step) for part in np.array_split(numbers, STRETCHES)]

@@ -112,7 +112,23 @@ class Run:
         return self.vectors("velocities").values.astype(float)
 
     def vectors(self, name: str) -> xr.DataArray:
-        """Return the vectors (T, N, d) of this name, read on use; raise SceneError if the file lacks them."""
+        """Return the vectors of all frames, which are read as they are used.
+
+        Parameters
+        ----------
+        name : {"coordinates", "velocities"}
+            Their name in the file.
+
+        Returns
+        -------
+        DataArray, shape (T, N, d)
+            The vectors.
+
+        Raises
+        ------
+        SceneError
+            If the file does not have them.
+        """
         if name not in self.data:
             kept = self.data.attrs.get("keep")
             rule = f"the file holds only {kept} of the particles, and {name} are needed; run without keep"
@@ -120,7 +136,20 @@ class Run:
         return self.data[name]
 
     def blocks(self, name: str, frames: slice) -> Iterator[np.ndarray]:
-        """Read vectors (T, N, d) of some frames in blocks, whose memory does not grow with their number."""
+        """Read vectors of some frames in blocks of limited memory.
+
+        Parameters
+        ----------
+        name : {"coordinates", "velocities"}
+            Their name in the file.
+        frames : slice
+            The frames.
+
+        Yields
+        ------
+        ndarray, shape (T, N, d)
+            The vectors of the next frames.
+        """
         values = self.vectors(name)[frames]
         length = max(1, _BLOCK // max(1, values[0].size))
         for first in range(0, len(values), length):

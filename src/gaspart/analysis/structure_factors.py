@@ -88,44 +88,57 @@ def factors(
 def amplitudes(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray, threads: int = 1
 ) -> np.ndarray:
-    """Compute sum exp(i k.r) of each frame, complex, at wave vectors k = 2 pi n / L.
+    """Return sum exp(i k.r) of each frame, at wave vectors k = 2 pi n / L.
 
-    The shape is (T, M). Frames are positions (T, N, d), `waves` the integers n (M, d). Each thread sums whole
-    frames.
+    Parameters
+    ----------
+    frames : ndarray, shape (T, N, d), [length]
+        Positions.
+    lengths : sequence of float, [length]
+        Lengths of the container.
+    waves : ndarray of int, shape (M, d)
+        The integers n.
+    threads : int, default 1
+        Number of threads, each of which sums whole frames.
+
+    Returns
+    -------
+    ndarray of complex, shape (T, M)
+        The sums.
     """
     base = 2.0 * np.pi / np.asarray(lengths, dtype=float)
-    made, rows = _factor_rows(waves)
+    products, rows = _factor_rows(waves)
 
     def of_frame(positions: np.ndarray) -> np.ndarray:
         phases = np.asarray(positions, dtype=float).T * base[:, None]
         sums = np.zeros((2, len(waves)))
-        sum_waves(np.cos(phases), np.sin(phases), made, rows, sums)
+        sum_waves(np.cos(phases), np.sin(phases), products, rows, sums)
         return sums[0] + 1j * sums[1]
 
     return np.array(in_threads(of_frame, frames, threads)).reshape(len(frames), len(waves))
 
 
 def _factor_rows(waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the products that make all factors exp(2 pi i n x / L) of the waves (M, d).
+    """Return the products that make all factors exp(2 pi i n x / L), and each wave's rows.
 
-    `sum_waves` takes them; the rows (M, d) of the factors of each wave are returned too.
+    As `sum_waves` takes them: (R, 2) and (M, d), for waves (M, d).
     """
     dimension = waves.shape[1]
-    made: list[tuple[int, int]] = []
+    products: list[tuple[int, int]] = []
     row_of = {(axis, 0): 0 for axis in range(dimension)} | {(axis, 1): 1 + axis for axis in range(dimension)}
 
     def row(axis: int, n: int) -> int:
         if (axis, n) not in row_of:
             pair = (row(axis, -n), CONJUGATE) if n < 0 else (row(axis, n // 2), row(axis, n - n // 2))
-            made.append(pair)
-            row_of[axis, n] = dimension + len(made)
+            products.append(pair)
+            row_of[axis, n] = dimension + len(products)
         return row_of[axis, n]
 
     rows = np.empty(waves.shape, dtype=np.int64)
     for axis in range(dimension):
         integers, position = np.unique(waves[:, axis], return_inverse=True)
         rows[:, axis] = np.array([row(axis, int(n)) for n in integers], dtype=np.int64)[position]
-    return np.array(made, dtype=np.int64).reshape(-1, 2), rows
+    return np.array(products, dtype=np.int64).reshape(-1, 2), rows
 
 
 _HIGHEST = 20.0
@@ -261,10 +274,10 @@ def _measured(
     highest: float | None,
     products: Callable[[np.ndarray, np.ndarray], np.ndarray],
 ) -> tuple[np.ndarray, dict[str, Any]]:
-    """Average `products` over 16 blocks of the run, in intervals of |k|.
+    """Return means of `products` over 16 stretches of the run, in intervals of |k|.
 
-    The products (T, ..., M) are of frames and M wave vectors; the means have the shape (16, ...,
-    wave_number), and the coordinate is returned too. Raises SceneError; see `structure_factor`.
+    products(frames, waves): (T, ..., M). Returns (16, ..., wave_number), and the coordinate. Raises
+    SceneError; see `structure_factor`.
     """
     bins = count_of("bins", bins, least=2)
     lengths = run.scene.container.lengths

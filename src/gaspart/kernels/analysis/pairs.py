@@ -17,17 +17,17 @@ WIDTH = 16
 """Number of particles whose distances are computed at once: a fixed number, for vector instructions."""
 MARGIN = 1.0 + 1e-9
 """Factor of the largest distance, so that no pair is missed by the rounding of a box's edge."""
-_ROOM = 4096  # bins of pairs that are found before they are counted
+_ROOM = 4096  # bins of pairs that wait to be counted
 _TABLES = 4  # of counts, so that one addition does not wait for another to the same bin
 
 
 @inner_allocating_kernel
-def sort_by_box(places, lengths, numbers, start, boxes):
+def sort_by_box(coordinates, lengths, numbers, start, boxes):
     """Sort particles by box, and fill the first particle of each box.
 
     Parameters
     ----------
-    places : (3, N), positions
+    coordinates : (3, N), positions
     lengths : (3,), sides of the container
     numbers : (3,), number of boxes along each axis
     start : (boxes + 1,), filled with the first particle of each box, and the end
@@ -37,13 +37,13 @@ def sort_by_box(places, lengths, numbers, start, boxes):
     -------
     (3, N + WIDTH), coordinates in [0, L), in the order of boxes
     """
-    count = places.shape[1]
+    count = coordinates.shape[1]
     wrapped, ordered = np.empty((3, count)), np.zeros((3, count + WIDTH))
     start[:] = 0
     for n in range(count):
         box = 0
         for k in range(3):
-            x = places[k, n] - lengths[k] * floor(places[k, n] / lengths[k])
+            x = coordinates[k, n] - lengths[k] * floor(coordinates[k, n] / lengths[k])
             if not 0.0 <= x < lengths[k]:  # by rounding; or no number
                 x = 0.0
             wrapped[k, n] = x
@@ -62,38 +62,38 @@ def sort_by_box(places, lengths, numbers, start, boxes):
 
 
 @inner_helper
-def add_to_tables(found, number, tables):
-    """Count the first `number` bins that were found.
+def add_to_tables(indices, number, tables):
+    """Count the first `number` of the bins.
 
     Parameters
     ----------
-    found : bins of pairs
+    indices : bins of pairs
     number : number of bins to count
     tables : (tables, bins + 1), counts
     """
     for n in range(number):
-        tables[n % _TABLES, found[n]] += 1
+        tables[n % _TABLES, indices[n]] += 1
 
 
 @inner_helper
-def find_bins(ordered, first, stop, place, scale, found):
+def find_bins(ordered, first, stop, origin, scale, indices):
     """Write the bins of the distances between a position and a range of particles.
 
     Parameters
     ----------
     ordered : (3, N + WIDTH), positions of the particles
     first, stop : range of particles, which is rounded up to vectors
-    place : (3,), position
+    origin : (3,), position
     scale : bins per distance, and the number of bins, which is the bin of all larger distances
-    found : bins of the distances
+    indices : bins of the distances
     """
     per_length, most = scale
-    x, y, z = place
+    x, y, z = origin
     for begin in range(0, stop - first, WIDTH):
         for n in range(begin, begin + WIDTH):
             u, v, w = ordered[0, first + n] - x, ordered[1, first + n] - y, ordered[2, first + n] - z
             distance = sqrt(u * u + v * v + w * w) * per_length
-            found[n] = np.int32(distance if distance < most else most)
+            indices[n] = np.int32(distance if distance < most else most)
 
 
 @inner_helper
@@ -127,7 +127,7 @@ def gap_to_column(x, column, width):
 
 
 @inner_helper
-def count_of_particle(n, ordered, reach, image, boxes, tables, found, filled):
+def count_of_particle(n, ordered, reach, image, boxes, tables, indices, filled):
     """Find the bins of a particle's pairs within a column.
 
     Parameters
@@ -139,7 +139,7 @@ def count_of_particle(n, ordered, reach, image, boxes, tables, found, filled):
         particle's own column
     boxes : length of all columns, their number of boxes, first particles of the boxes, and the scale
     tables : (tables, bins + 1), counts
-    found : bins that are not yet counted
+    indices : bins that are not yet counted
     filled : number of these bins
 
     Returns
@@ -158,33 +158,33 @@ def count_of_particle(n, ordered, reach, image, boxes, tables, found, filled):
         if is_own and turn == 0:
             first = n + 1
         if first < stop:
-            if filled + stop - first > len(found) - WIDTH:
-                add_to_tables(found, filled, tables)
+            if filled + stop - first > len(indices) - WIDTH:
+                add_to_tables(indices, filled, tables)
                 filled = 0
-            place = ordered[0, n] - shift_x, ordered[1, n] - shift_y, z - turn * length
-            find_bins(ordered, first, stop, place, scale, found[filled:])
+            origin = ordered[0, n] - shift_x, ordered[1, n] - shift_y, z - turn * length
+            find_bins(ordered, first, stop, origin, scale, indices[filled:])
             filled += stop - first
     return filled
 
 
 @allocating_kernel
-def count_pairs(places, lengths, numbers, spans, furthest, counts):
+def count_pairs(coordinates, lengths, numbers, spans, furthest, counts):
     """Add the pairs nearer than `furthest` to counts of equal intervals of the distance.
 
     Parameters
     ----------
-    places : (3, N), positions, for discs with 0 along the first axis
+    coordinates : (3, N), positions, for discs with 0 along the first axis
     lengths : (3,), sides of the container
     numbers : (3,), number of boxes along each axis
     spans : (2,), number of columns on each side, along the first two axes, that are near enough
     furthest : largest distance, at most half of the shortest side
     counts : (bins,), counts
     """
-    count, bins = places.shape[1], len(counts)
+    count, bins = coordinates.shape[1], len(counts)
     start = np.empty(numbers[0] * numbers[1] * numbers[2] + 1, np.int32)
-    ordered = sort_by_box(places, lengths, numbers, start, np.empty(count, np.int32))
+    ordered = sort_by_box(coordinates, lengths, numbers, start, np.empty(count, np.int32))
     tables = np.zeros((_TABLES, bins + 1), np.int64)
-    found = np.empty(max(count, _ROOM) + WIDTH, np.int32)
+    indices = np.empty(max(count, _ROOM) + WIDTH, np.int32)
     square, filled, widths = (furthest * MARGIN) ** 2, 0, lengths / numbers
     boxes = lengths[2], numbers[2], start, (bins / furthest, float(bins))
     for x in range(numbers[0]):
@@ -199,12 +199,12 @@ def count_pairs(places, lengths, numbers, spans, furthest, counts):
                     for n in range(start[own], start[own + numbers[2]]):
                         gap_x = gap_to_column(ordered[0, n], x + dx, widths[0]) if dx else 0.0
                         gap_y = gap_to_column(ordered[1, n], y + dy, widths[1]) if dy else 0.0
-                        left = square - gap_x * gap_x - gap_y * gap_y
-                        if left > 0.0:
+                        remaining = square - gap_x * gap_x - gap_y * gap_y
+                        if remaining > 0.0:
                             filled = count_of_particle(
-                                n, ordered, sqrt(left), image, boxes, tables, found, filled
+                                n, ordered, sqrt(remaining), image, boxes, tables, indices, filled
                             )
-    add_to_tables(found, filled, tables)
+    add_to_tables(indices, filled, tables)
     for table in range(_TABLES):
         for n in range(bins):
             counts[n] += tables[table, n]

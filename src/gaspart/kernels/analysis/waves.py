@@ -17,16 +17,16 @@ CONJUGATE = -1
 
 
 @inner_helper
-def tabulate_factors(cosines, sines, first, made, real, imaginary):
+def tabulate_factors(cosines, sines, first, products, real, imaginary):
     """Fill the rows of a block's factors; all are 0 beyond the last particle.
 
-    Row 0 is 1, the next rows are the factors of the axes, and the others are `made`.
+    Row 0 is 1, the next rows are the factors of the axes, and the others are `products`.
 
     Parameters
     ----------
     cosines, sines : (d, N), of 2 pi x / L along each axis
     first : first particle of the block
-    made : (R, 2), rows whose product is each further row, or a row and `CONJUGATE`
+    products : (R, 2), rows whose product is each further row, or a row and `CONJUGATE`
     real, imaginary : (rows, BLOCK), filled with the factors
     """
     here = min(BLOCK, cosines.shape[1] - first)
@@ -38,8 +38,8 @@ def tabulate_factors(cosines, sines, first, made, real, imaginary):
         imaginary[1 + k, here:] = 0.0
         for n in range(here):
             real[1 + k, n], imaginary[1 + k, n] = cosines[k, first + n], sines[k, first + n]
-    for row in range(len(made)):
-        a, b = made[row]
+    for row in range(len(products)):
+        a, b = products[row]
         if b == CONJUGATE:
             for n in range(BLOCK):
                 real[base + row, n], imaginary[base + row, n] = real[a, n], -imaginary[a, n]
@@ -105,20 +105,20 @@ def sum_products_of_three(real, imaginary, rows, lanes):
 
 
 @allocating_kernel
-def sum_waves(cosines, sines, made, waves, sums):
+def sum_waves(cosines, sines, products, waves, sums):
     """Add sum exp(i k.r) over N particles to sums of real and imaginary parts.
 
     Parameters
     ----------
     cosines, sines : (d, N), of 2 pi x / L along each axis
-    made : (R, 2), rows whose product is each further row of factors, or a row and `CONJUGATE`
+    products : (R, 2), rows whose product is each further row of factors, or a row and `CONJUGATE`
     waves : (M, d), row of each axis for each wave vector
     sums : (2, M), real and imaginary parts
     """
-    rows = 1 + len(cosines) + len(made)
+    rows = 1 + len(cosines) + len(products)
     real, imaginary, lanes = np.empty((rows, BLOCK)), np.empty((rows, BLOCK)), np.empty((2, LANES))
     for first in range(0, cosines.shape[1], BLOCK):
-        tabulate_factors(cosines, sines, first, made, real, imaginary)
+        tabulate_factors(cosines, sines, first, products, real, imaginary)
         for m in range(len(waves)):
             if waves.shape[1] == 2:
                 sum_products_of_two(real, imaginary, waves[m], lanes)
