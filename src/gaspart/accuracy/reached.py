@@ -298,7 +298,7 @@ def _contacts(frame: xr.Dataset) -> float:
 
 
 def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
-    """Return True if an observable never changed, or is made of contacts and there was no contact."""
+    """Return True if an observable never changed, or counts contacts and there was none."""
     return any(
         one.rule == _UNCHANGED
         or (one.value == 0.0 if "face" in OBSERVABLES[one.asked.observable].along else collisions == 0.0)

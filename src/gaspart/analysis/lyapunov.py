@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -184,7 +185,7 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
         growth.append(math.log(deviation.rescale(float(end))))
     measured = edges[turning:]
     rates = np.array(growth[turning:]) / np.diff(measured)
-    about = {"units": "1 / time", "long_name": "largest Lyapunov exponent"}
+    about: dict[str, Any] = {"units": "1 / time", "long_name": "largest Lyapunov exponent"}
     return scalar("lyapunov_exponent", rates, measured, **about)
 
 

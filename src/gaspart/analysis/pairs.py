@@ -18,7 +18,6 @@ from gaspart.analysis.observables import KEPT, require_defined
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
-from gaspart.kernels.analysis.pairs import MARGIN, count_pairs
 from gaspart.keys.values import count_of, number
 from gaspart.scene.impulses import FURTHEST
 from gaspart.state.optional_tallies import PairImpulseTally, stored_tally
@@ -65,6 +64,8 @@ def pair_counts(
     ValueError
         If the distance exceeds half of the shortest side, where a pair has several images.
     """
+    from gaspart.kernels.analysis.pairs import MARGIN, count_pairs  # .4 s of numba
+
     sides = np.asarray(lengths, dtype=float)
     if not 0.0 < furthest <= 0.5 * sides.min():
         raise ValueError(f"furthest: {furthest} (must be positive, and at most {0.5 * sides.min()})")
@@ -154,7 +155,7 @@ _ALIKE = 1e-9
 def kept(run: Run) -> PairImpulseTally | None:
     """Return the stored impulses of pairs of a run, or None.
 
-    It is None without them, and if not all particles are in the file, from which the temperature follows.
+    Without them nothing is returned, nor if the file lacks particles, from which the temperature follows.
     """
     return None if run.is_subset else stored_tally(run.data.attrs, PairImpulseTally)
 

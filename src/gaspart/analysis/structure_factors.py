@@ -16,7 +16,6 @@ from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES, stretches_of
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import means_of
-from gaspart.kernels.analysis.waves import CONJUGATE, sum_waves
 from gaspart.keys.values import count_of, number
 from gaspart.trajectory.pairs import pair_names, pairs_of
 from gaspart.workers import in_threads
@@ -106,6 +105,8 @@ def amplitudes(
     ndarray of complex, shape (T, M)
         The sums.
     """
+    from gaspart.kernels.analysis.waves import sum_waves  # .4 s of numba
+
     base = 2.0 * np.pi / np.asarray(lengths, dtype=float)
     products, rows = _factor_rows(waves)
 
@@ -123,6 +124,8 @@ def _factor_rows(waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     As `sum_waves` takes them: (R, 2) and (M, d), for waves (M, d).
     """
+    from gaspart.kernels.analysis.waves import CONJUGATE
+
     dimension = waves.shape[1]
     products: list[tuple[int, int]] = []
     row_of = {(axis, 0): 0 for axis in range(dimension)} | {(axis, 1): 1 + axis for axis in range(dimension)}

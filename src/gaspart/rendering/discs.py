@@ -37,8 +37,8 @@ class Canvas:
 
     def _pixels(self, points: np.ndarray) -> np.ndarray:
         """Convert points (N, 2) of the container to columns and rows of pixels."""
-        places = self.corner + self.scale * np.asarray(points, dtype=float)
-        return np.column_stack([places[:, 0], self._height - places[:, 1]])
+        pixels = self.corner + self.scale * np.asarray(points, dtype=float)
+        return np.column_stack([pixels[:, 0], self._height - pixels[:, 1]])
 
     def discs(self, positions: np.ndarray, radii: np.ndarray, colours: np.ndarray) -> None:
         """Draw discs, later ones over earlier ones; none smaller than half a pixel in radius."""
@@ -54,11 +54,21 @@ class Canvas:
             self.image[: low[1]] = self.image[high[1] :] = 1.0
 
     def line(self, points: np.ndarray, colour: tuple[float, ...] = INK, width: int = 1) -> None:
-        """Draw a line through points (N, 2), `width` pixels wide (odd)."""
+        """Draw a line through points.
+
+        Parameters
+        ----------
+        points : ndarray, shape (N, 2), [length]
+            Corners of the line.
+        colour : tuple of float, shape (3,)
+            Red, green and blue, from 0 to 1.
+        width : int, [pixel]
+            Width, an odd number.
+        """
         half = width // 2
         for shift in product(range(-half, half + 1), repeat=2):
-            places = self._pixels(points) + np.array(shift)
-            draw_segments(self.image, places[:-1], places[1:], np.array(colour, dtype=float))
+            corners = self._pixels(points) + np.array(shift)
+            draw_segments(self.image, corners[:-1], corners[1:], np.array(colour, dtype=float))
 
     def outline(self, surfaces: Sequence[DrawnSurface]) -> None:
         """Draw the sides of the container, without those on which a surface lies."""
@@ -127,9 +137,12 @@ class Canvas:
                 self.line(line, shade, width)
 
     def path(self, points: np.ndarray) -> None:
-        """Draw a dark line with a bright border through points (N, 2).
+        """Draw a dark line with a bright border, which is visible on discs of any colour.
 
-        It is visible on discs of any colour.
+        Parameters
+        ----------
+        points : ndarray, shape (N, 2), [length]
+            Corners of the line.
         """
         self.line(points, PAPER, 5)
         self.line(points, INK, 3)

@@ -211,25 +211,25 @@ class LiveGas:
         law = replace(law, normal=normal) if law else Restitution(normal=normal) if normal < 1.0 else None
         self._go_on(replace(self.simulation.scene, restitution=law))
 
-    def push(self, place: float) -> None:
-        """Move the side x high to a place: inwards as a piston, outwards at once, into a vacuum.
+    def push(self, coordinate: float) -> None:
+        """Move the side x high: inwards as a piston, outwards at once, into a vacuum.
 
         Parameters
         ----------
-        place : float, [length]
-            Coordinate of the side.
+        coordinate : float, [length]
+            New coordinate of the side.
         """
         if self._target is not None:
             self._settle()
         scene = self.simulation.scene
         length = scene.container.lengths[0]
-        if place < length:
-            self._target = place
+        if coordinate < length:
+            self._target = coordinate
             speed = _SPEED * max(scales(scene).thermal_speed, self._thermal_speed)
             faces = {**scene.faces, "x_high": Piston(speed=speed)}
             self._go_on(replace(scene, faces=faces))
-        elif place > length:
-            self._resize(scene, place)
+        elif coordinate > length:
+            self._resize(scene, coordinate)
 
     def _settle(self) -> None:
         """Stop the piston where it is."""

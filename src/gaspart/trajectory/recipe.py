@@ -344,10 +344,10 @@ def stored_revision(path: Path) -> str:
         return getattr(file, "git_revision", "")
 
 
-def begun_as(path: Path, wanted: Recipe) -> bool:
+def begun_as(path: Path, recipe: Recipe) -> bool:
     """Return True if this program began a file with this recipe, at any git revision."""
     try:
-        header = wanted.header(stored_revision(path))
+        header = recipe.header(stored_revision(path))
     except SceneError:
         return False
     with open_regular(path) as file:
