@@ -36,7 +36,7 @@ from gaspart.scene.thermostat import Thermostat as Thermostat
 from gaspart.scene.walls import Plate as Plate
 from gaspart.scene.walls import Wall as Wall
 from gaspart.simulation import Simulation as Simulation
-from gaspart.state.insertion import compress as compress
+from gaspart.state.compression import compress as compress
 from gaspart.state.state import State as State
 from gaspart.state.tally import Tally as Tally
 from gaspart.trajectory.correlator import Correlations as Correlations

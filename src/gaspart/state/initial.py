@@ -13,7 +13,8 @@ from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
 from gaspart.scene.species import LATTICES
-from gaspart.state.insertion import compressed, per_particle, random_insertion
+from gaspart.state.compression import compressed
+from gaspart.state.insertion import per_particle, random_insertion
 from gaspart.state.random import directions, natural_log, normals, stream
 from gaspart.state.state import State
 

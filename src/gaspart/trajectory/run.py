@@ -184,7 +184,7 @@ def _difference(path: Path, wanted: Recipe, content: Content) -> str:
         stored = read_recipe(path)
     except SceneError:
         return " and is damaged"
-    if content is Content.SHORTER:
+    if content is Content.SHORTER and stored.until is None and wanted.until is None:
         return f", with a shorter duration; continue it: gaspart resume {path} --duration {wanted.duration:g}"
     keys = [item.name for item in fields(Recipe) if item.compare]
     changed = [key for key in keys if getattr(stored, key) != getattr(wanted, key)]

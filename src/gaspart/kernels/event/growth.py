@@ -1,4 +1,4 @@
-"""Kernels of a compression (`state.insertion`): particles that grow while they fly and collide.
+"""Kernels of a compression (`state.compression`): particles that grow while they fly and collide.
 
 The particles are smooth, of mass 1, and grow in proportion, in a container of hard or periodic faces: the
 radius of a flight is the radius at clock time 0; at time t it is multiplied by 1 + rate t. Queue, boxes and

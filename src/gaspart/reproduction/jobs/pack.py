@@ -45,7 +45,7 @@ def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> Po
     """
     import numpy as np
 
-    from gaspart.state.insertion import compress
+    from gaspart.state.compression import compress
 
     shape = (len(seeds), scene.count, scene.dimension)
     positions, scales, fractions, pressures = np.full(shape, np.nan), [], [], []
