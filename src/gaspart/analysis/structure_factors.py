@@ -177,7 +177,7 @@ def structure_factor(
     Raises
     ------
     SceneError
-        For walls, followed particles, too few frames, and a wave number below that of the longest wave.
+        For walls, followed particles, too few frames, and a wave number below the longest wave's.
 
     Notes
     -----
