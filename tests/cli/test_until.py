@@ -63,7 +63,7 @@ def test_the_longest_duration_ends_a_run_with_a_line_that_says_what_was_reached(
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        (["--until", "Z"], "argument --until: 'Z' must be the name of an observable, = and its relative accuracy"),
+        (["--until", "Z"], "'Z' must be the name of an observable, = and its relative accuracy"),
         (["--until", "Z=small"], "'Z=small' must be the name of an observable"),
         (["--until", "Q=0.1"], "until.observable = 'Q': unknown observable; known are Z, pressure,"),
         (["--until", "Z=0"], "until.accuracy = 0.0: must be from 1e-08 to 1"),
