@@ -14,7 +14,7 @@ import gaspart as gp
 from gaspart import compress
 from gaspart.kernels.event.boxes import empty_lists
 from gaspart.kernels.physics.contact import time_to_growing_contact
-from gaspart.state import insertion as compression
+from gaspart.state import compression
 from gaspart.state.boxes import make_boxes
 from gaspart.state.initial import initial_state
 

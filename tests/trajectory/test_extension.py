@@ -161,7 +161,7 @@ def test_only_a_run_being_extended_gives_way_to_a_longer_one(tmp_path):
     """A run of another duration is refused as before, unless it was asked for with `resume`."""
     recipe, path = (gas(2, 20, 0.3), gp.EventDriven(), 1), tmp_path / "run.nc"
     gp.run(*recipe, 2.0, 0.5, path, keep_checkpoint=True)
-    with pytest.raises(gp.SceneError, match=r"run\.nc'?: exists, of another run"):
+    with pytest.raises(gp.SceneError, match=r"run\.nc'?: exists, with a shorter duration; continue it"):
         gp.run(*recipe, 4.0, 0.5, path)
     short = read_recipe(path)
     assert extension.is_beginning(path, replace(short, duration=4.0))

@@ -69,7 +69,7 @@ def test_it_has_the_same_bytes_again_after_a_cut_and_extended(tmp_path):
     gp.run(*recipe, 1.0, 0.5, path, initial=gp.last_state(first), keep_checkpoint=True)
     first.unlink()  # the file holds what it was started from
     assert gp.resume(path, duration=2.0).read_bytes() == whole
-    with pytest.raises(gp.SceneError, match=r"run\.nc'?: exists, of another run"):
+    with pytest.raises(gp.SceneError, match=r"run\.nc'?: exists, .*with another initial state"):
         gp.run(*recipe, 2.0, 0.5, path)
 
 
