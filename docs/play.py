@@ -68,7 +68,7 @@ GRIDS = {
     "shock": (_DENSITY, Dial("speed of the piston", (0.5, 1.0, 1.5), _face("x_low", "speed"))),
     "cooling": (_DENSITY, Dial("restitution", (0.99, 0.9, 0.7), _damped)),
 }
-"""By template its two dials."""
+"""The two dials of each template."""
 
 
 def small(name: str) -> gp.Scene:

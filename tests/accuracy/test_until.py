@@ -123,7 +123,7 @@ def test_without_the_corrections_it_would_cover_less():
 @pytest.mark.parametrize("form", ["square", "sine"])
 @pytest.mark.parametrize("period", [10, 20, 50, 100, 150, 200, 300, 500, 1000, 2000])
 def test_a_periodic_series_ends_no_run_before_it_is_known(form, period):
-    """By one of even period, whose mean is 1; of long periods less than one is seen, at any phase."""
+    """Series of an even period, whose mean is 1; of long periods less than one is seen, at any phase."""
     ends = 0
     for phase in np.random.default_rng(9).random(10):
         wave = np.sin(2.0 * math.pi * ((np.arange(COUNTS[-1]) + 0.01) / period + phase))

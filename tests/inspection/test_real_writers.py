@@ -386,7 +386,7 @@ def test_memory_is_known_before_a_file_is_read(tmp_path, right, monkeypatch):
 
 
 def test_ovito_leaves_out_a_corner_at_zero(tmp_path):
-    """As of a container whose lower side is a piston, at 0 in the first frame."""
+    """A container whose lower side is a piston, at 0 in the first frame."""
     path, text = tmp_path / "piston.xyz", ""
     for low in (0.0, 0.25):
         corner = f'Origin="{low} 0.0 0.0" ' if low else ""

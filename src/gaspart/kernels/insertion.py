@@ -11,7 +11,7 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, kernel
 from gaspart.kernels.obstacles.interior_wall import to_wall
-from gaspart.kernels.physics.flight import box_coordinate
+from gaspart.kernels.physics.periodic import box_coordinate
 from gaspart.kernels.prefetch import fetch
 
 BLOCK = 256  # trials of one block

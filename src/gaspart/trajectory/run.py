@@ -179,7 +179,7 @@ def is_finished(wanted: Recipe, path: Path, examiner: Examiner | None, overwrite
 
 
 def _difference(path: Path, wanted: Recipe, content: Content) -> str:
-    """Return the text that tells the file of a run from the wanted run."""
+    """Return the difference between the file of a run and the wanted run, as text."""
     try:
         stored = read_recipe(path)
     except SceneError:

@@ -104,7 +104,7 @@ _DOUBLE, _WORD = ir.DoubleType(), ir.IntType(64)
 
 
 def nearest(gap: Lanes, length: ir.Value) -> Lanes:
-    """Return differences along a periodic axis by the nearest image, as in `physics.flight`."""
+    """Return differences along a periodic axis by the nearest image, as in `physics.periodic`."""
     side = gap.all(length)
     lower = (gap + side).where(gap + gap < gap.all(0.0) - side, gap)
     return (gap - side).where(gap + gap > side, lower)

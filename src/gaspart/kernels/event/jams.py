@@ -27,7 +27,8 @@ from gaspart.kernels.model import LOSS, NONE, Support
 from gaspart.kernels.obstacles.interior_wall import to_wall
 from gaspart.kernels.obstacles.support import leave_of
 from gaspart.kernels.physics.contact import SHORTEST
-from gaspart.kernels.physics.flight import acceleration_of, advance, flown, mark_resting, nearest
+from gaspart.kernels.physics.flight import acceleration_of, advance, flown, mark_resting
+from gaspart.kernels.physics.periodic import nearest
 from gaspart.kernels.physics.running_sum import add
 
 # Search for the particles of a scene under gravity that have come to rest.

@@ -12,7 +12,6 @@ from math import inf
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.event.boxes import member, move
 from gaspart.kernels.model import BOX_VISITS, PAIR_TESTS
-from gaspart.kernels.physics.flight import box_coordinate, nearest
 from gaspart.kernels.physics.lees_edwards import (
     FLOW,
     GRADIENT,
@@ -21,6 +20,7 @@ from gaspart.kernels.physics.lees_edwards import (
     time_of_sheared_contact,
 )
 from gaspart.kernels.physics.mass import mass_of
+from gaspart.kernels.physics.periodic import box_coordinate, nearest
 from gaspart.kernels.physics.running_sum import add
 
 

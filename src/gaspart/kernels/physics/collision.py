@@ -19,7 +19,7 @@ from gaspart.kernels.physics.contact import (
     restitution_of_pair,
     tangential_impulse,
 )
-from gaspart.kernels.physics.flight import nearest
+from gaspart.kernels.physics.periodic import nearest
 from gaspart.kernels.physics.running_sum import add
 
 LEAST = (

@@ -151,28 +151,6 @@ def time_of_contact(flights, i, j, offset, space, gravity):
     return start + time_to_contact(rr, rv, vv, ss)
 
 
-# Coordinates along one axis of the container: the box that contains a coordinate, the nearest image of a
-# difference.
-
-
-@inner_helper
-def box_coordinate(x, width, per_side):
-    """Return the index along an axis of the box that contains x; outside, the outermost box."""
-    c = int(x / width)
-    return min(max(c, 0), per_side - 1)
-
-
-@inner_helper
-def nearest(gap, length, periodic):
-    """Return a difference of two coordinates, by the nearest image on a periodic axis."""
-    if periodic:
-        if gap + gap > length:
-            return gap - length
-        if gap + gap < -length:
-            return gap + length
-    return gap
-
-
 # Planes across an axis, at the boundaries of equal bins: the planes below which an impulse acts.
 #
 # An impulse dp on a particle at z changes the momentum below every plane above z. For the planes within one

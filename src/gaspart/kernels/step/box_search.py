@@ -17,7 +17,7 @@ from gaspart.kernels.compile.policy import (
     inner_helper,
     inner_kernel,
 )
-from gaspart.kernels.physics.flight import box_coordinate
+from gaspart.kernels.physics.periodic import box_coordinate
 from gaspart.kernels.step.model import BOX_VISITS, DISPLACEMENT, FASTEST, PAIR_TESTS, Search, Step
 from gaspart.kernels.step.resolve import count_left, distance_squared, examine, in_order
 from gaspart.kernels.step.shared_contacts import resolve_found

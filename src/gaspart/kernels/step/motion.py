@@ -7,7 +7,7 @@ tested one by one only if one of them has left the container.
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_allocating_kernel, inner_helper, inner_kernel
-from gaspart.kernels.physics.flight import nearest
+from gaspart.kernels.physics.periodic import nearest
 from gaspart.kernels.physics.running_sum import add_whole
 from gaspart.kernels.step.boundaries import add_reflection, add_share, is_free, meet_faces
 from gaspart.kernels.step.model import DISPLACEMENT, FASTEST

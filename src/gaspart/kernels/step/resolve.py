@@ -11,7 +11,7 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_allocating_kernel, inner_helper, inner_kernel
 from gaspart.kernels.physics.contact import contact_root, exchange
-from gaspart.kernels.physics.flight import nearest
+from gaspart.kernels.physics.periodic import nearest
 from gaspart.kernels.physics.running_sum import add
 from gaspart.kernels.prefetch import fetch
 from gaspart.kernels.step.boundaries import add_contact, collide_flights, place_and_speed
