@@ -21,7 +21,7 @@ from gaspart.kernels import insertion, model
 from gaspart.kernels.event import boxes as candidates
 from gaspart.kernels.event import boxes as search
 from gaspart.kernels.event import prediction, prefetch
-from gaspart.kernels.obstacles import interior_wall as distance
+from gaspart.kernels.obstacles import distance
 from gaspart.kernels.physics import flight
 from gaspart.kernels.step import neighbour_list as step_list
 from gaspart.kernels.step import resolve as step_contacts

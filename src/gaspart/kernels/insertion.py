@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, kernel
-from gaspart.kernels.obstacles.interior_wall import to_wall
+from gaspart.kernels.obstacles.distance import to_wall
 from gaspart.kernels.physics.periodic import box_coordinate
 from gaspart.kernels.prefetch import fetch
 

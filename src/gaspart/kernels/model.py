@@ -374,8 +374,8 @@ class InteriorWalls(NamedTuple):
 
     Attributes
     ----------
-    rows : (M, 5) or (M, 11), see `obstacles.interior_wall`
-    wall : (M,), see `obstacles.interior_wall`
+    rows : (M, 5) or (M, 11), see `obstacles.distance`
+    wall : (M,), see `obstacles.distance`
     first, listed : listed[first[b] : first[b + 1]] are the rows near box b, for particles of a radius up to
         `largest_radius`; all rows, for larger particles, follow the last box
     largest_radius : see `listed`

@@ -1,7 +1,7 @@
 """Interior walls as arrays, with images of walls near periodic faces.
 
 There is a row for each wall, and for each image of a wall that comes near a periodic face. Rows of segments
-and plates are described in `kernels.obstacles.interior_wall`. Particles meet a wall near a periodic face
+and plates are described in `kernels.obstacles.distance`. Particles meet a wall near a periodic face
 across it too, so a wall has an image wherever one is within a radius of the container.
 """
 
@@ -33,7 +33,7 @@ def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     walls : ndarray of int, shape (M,)
         Index of the wall of each row.
     """
-    from gaspart.kernels.obstacles.interior_wall import PLATE, SEGMENT
+    from gaspart.kernels.obstacles.distance import PLATE, SEGMENT
 
     lengths, reach = np.array(scene.container.lengths), scene.largest_radius * (1 + _SLACK)
     rows, walls = [], []

@@ -24,7 +24,7 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.model import LOSS, NONE, Support
-from gaspart.kernels.obstacles.interior_wall import to_wall
+from gaspart.kernels.obstacles.distance import to_wall
 from gaspart.kernels.obstacles.support import leave_of
 from gaspart.kernels.physics.contact import SHORTEST
 from gaspart.kernels.physics.flight import acceleration_of, advance, flown, mark_resting
