@@ -1,4 +1,4 @@
-"""Vectors from a point to the nearest point of an interior wall, given by the rows below."""
+"""Vectors from a point to the nearest point of an interior wall, and rows of walls."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Coordinates along one axis of the container: the box of a coordinate, the nearest image of a difference."""
+"""Coordinates along an axis: the box of a coordinate, and differences by the nearest image."""
 
 from gaspart.kernels.compile.policy import inner_helper
 
