@@ -53,7 +53,7 @@ def departures(path: Path) -> list[Departure]:
 
 def _of_docstrings(tree: ast.Module) -> Iterator[tuple[str, int, str]]:
     """Yield rule, line and text for the module, its classes, functions and properties."""
-    for kind, node, is_public in _definitions(tree):
+    for kind, node in _definitions(tree):
         text = ast.get_docstring(node) or ""
         line, name = getattr(node, "lineno", 1), getattr(node, "name", "")
         first = text.split("\n\n")[0].strip()
@@ -72,36 +72,17 @@ def _of_docstrings(tree: ast.Module) -> Iterator[tuple[str, int, str]]:
             continue
         if _PARTICIPLE.fullmatch(name) and name.strip("_") not in _NO_PARTICIPLES:
             yield "participle as a name", line, name
-        undocumented = _arguments(node) and not re.search(r"^Parameters\n-+$", text, re.MULTILINE)
-        if is_public and undocumented and not name.startswith("__"):
-            yield "public without Parameters", line, name
 
 
-def _definitions(tree: ast.Module) -> Iterator[tuple[str, ast.Module | ast.ClassDef | ast.FunctionDef, bool]]:
-    """Yield kind, node and True if public, for the module and all classes and functions in it."""
-    yield "module", tree, True
-
-    def walk(node: ast.AST, public: bool, in_class: bool) -> Iterator:
-        for child in ast.iter_child_nodes(node):
-            if not isinstance(child, ast.FunctionDef | ast.ClassDef):
-                yield from walk(child, public, in_class)
-                continue
-            kind = "function"
-            if isinstance(child, ast.ClassDef):
-                kind = "class"
-            elif any("property" in ast.unparse(mark) for mark in child.decorator_list):
-                kind = "property"
-            seen = public and not child.name.startswith("_")
-            yield kind, child, seen
-            yield from walk(child, seen and kind == "class", kind == "class")
-
-    yield from walk(tree, True, False)
-
-
-def _arguments(node: ast.FunctionDef) -> list[str]:
-    """Return the names of a function's arguments."""
-    arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
-    return [argument.arg for argument in arguments if argument.arg not in ("self", "cls")]
+def _definitions(tree: ast.Module) -> Iterator[tuple[str, ast.Module | ast.ClassDef | ast.FunctionDef]]:
+    """Yield the kind and the node of the module and of all classes and functions in it."""
+    yield "module", tree
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ClassDef):
+            yield "class", node
+        elif isinstance(node, ast.FunctionDef):
+            is_property = any("property" in ast.unparse(mark) for mark in node.decorator_list)
+            yield "property" if is_property else "function", node
 
 
 def _of_constants(tree: ast.Module) -> Iterator[tuple[str, int, str]]:
