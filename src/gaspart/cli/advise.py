@@ -160,12 +160,10 @@ def _bulk(plan: Plan, count: int) -> str:
 
 def _rarely_visited(plan: Plan) -> list[str]:
     """Describe the part of a curve to which the accuracy refers."""
-    known, places = plan.places
-    if known == places:
+    known, total = plan.points
+    if known == total:
         return []
-    text = (
-        f"{known} of {places}, to which particles come in every part of the pilot: the accuracy is of these"
-    )
+    text = f"{known} of {total}, to which particles come in every part of the pilot: the accuracy is of these"
     return [f"places            {text}"]
 
 
