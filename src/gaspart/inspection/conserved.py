@@ -57,6 +57,7 @@ def judge_flights(frames: Frames) -> Check:
     deviation = flights(frames)
     if not deviation.number:
         return Check("flights", None, "no particle kept its velocity from one frame to the next")
-    text = f"off by {deviation.worst:.2g} of their length at most in {deviation.number} flights without a collision"
+    text = f"off by {deviation.worst:.2g} of their length at most in {deviation.number} flights"
+    text += " without a collision"
     wrong = deviation.worst > WRONG
     return Check("flights", not wrong, text + (f", before frame {deviation.frame}" if wrong else ""))

@@ -22,7 +22,7 @@ from gaspart.inspection.netcdf_contents import is_own, read_netcdf
 from gaspart.inspection.xyz_contents import read_xyz
 from gaspart.scene.scene import Scene
 from gaspart.state.given import state_at_time_zero
-from gaspart.state.initial import assembled
+from gaspart.state.initial import assemble_state
 from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
 from gaspart.system import memory
@@ -109,7 +109,8 @@ def _require_memory(path: Path) -> None:
         size = os.fstat(file.fileno()).st_size
     available, required = memory(), COPIES * size
     if available is not None and required > available:
-        rule = f"needs {required / 1e9:.3g} GB of memory for all frames; this machine has {available / 1e9:.3g} GB"
+        rule = f"needs {required / 1e9:.3g} GB of memory for all frames; "
+        rule += f"this machine has {available / 1e9:.3g} GB"
         raise SceneError("file", str(path), rule)
 
 
@@ -179,7 +180,7 @@ def read_state(path: str | Path, scene: Scene) -> State:
         for name, values in (("positions", contents.positions), ("velocities", contents.velocities))
     )
     turning = (scene.count,) if scene.dimension == 2 else (scene.count, 3)
-    state = assembled(scene, positions - _origin(contents, scene), velocities, np.zeros(turning))
+    state = assemble_state(scene, positions - _origin(contents, scene), velocities, np.zeros(turning))
     plain = replace(state, piston=None, piston_face=None, displaced=None, shear_rate=None)
     try:
         return state_at_time_zero(scene, plain)
