@@ -153,13 +153,13 @@ def test_particles_that_are_compressed_are_made_once(monkeypatch):
     dense = gp.Species(200, 0.5, temperature=1.0, exact_temperature=True, arrangement="compressed")
     scene = gp.Scene(gp.Container((15.0, 15.0), "periodic"), [dense])
     made = []
-    whole = initial.compressed
+    whole = initial.compress_positions
 
     def compressed(*arguments):
         made.append(arguments)
         return whole(*arguments)
 
-    monkeypatch.setattr(initial, "compressed", compressed)
+    monkeypatch.setattr(initial, "compress_positions", compressed)
     plan.plan_from_pilots(scene, "rdf", 0.2, pilot_seconds=0.4)
     assert len(made) == 1
 
