@@ -84,15 +84,15 @@ class MetalSlab:
 
     def _advance(self) -> None:
         """Advance all electrons by a step."""
-        moving, remaining = np.arange(len(self.positions)), np.full(len(self.place), _STEP)
+        moving, remaining = np.arange(len(self.positions)), np.full(len(self.positions), _STEP)
         while moving.size:
             across = self.velocity[moving, 0]
-            ahead = np.where(across > 0.0, self.gap - self.positions[moving], self.place[moving])
+            ahead = np.where(across > 0.0, self.gap - self.positions[moving], self.positions[moving])
             to_wall = ahead / np.maximum(np.abs(across), 1e-300)
             speed = np.linalg.norm(self.velocity[moving], axis=1)
             to_hit = self.rng.exponential(size=moving.size) / speed
             flight = np.minimum(np.minimum(to_wall, to_hit), remaining[moving])
-            self.positions[moving] = np.clip(self.place[moving] + across * flight, 0.0, self.gap)
+            self.positions[moving] = np.clip(self.positions[moving] + across * flight, 0.0, self.gap)
             stopped = flight < remaining[moving]
             remaining[moving] -= flight
             self._leave_wall(moving[stopped & (to_wall <= to_hit)])
