@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.insertion import _covered, insertions
-from gaspart.analysis.structure_factors import admitted, shells_of
+from gaspart.analysis.structure_factors import shells_of, wave_vectors
 
 A = gp.analysis
 SCENES = {
@@ -25,7 +25,7 @@ def fluid(request, tmp_path_factory):
 
 @pytest.mark.parametrize("lengths", [(5.0, 9.0), (4.0, 5.0, 7.0)])
 def test_one_of_each_pair_of_admitted_wave_vectors_is_found(lengths):
-    waves, size = admitted(lengths, 4.0)
+    waves, size = wave_vectors(lengths, 4.0)
     assert size == pytest.approx(np.linalg.norm(2.0 * np.pi * waves / lengths, axis=1))
     assert (np.diff(size) >= 0.0).all() and 0.0 < size[0] == pytest.approx(2.0 * np.pi / max(lengths))
     both = {*map(tuple, waves), *map(tuple, -waves)}

@@ -10,14 +10,14 @@ import numpy as np
 
 from gaspart.analysis import series
 from gaspart.analysis.expected.equilibrium import described
-from gaspart.analysis.flow import face_areas, touched
+from gaspart.analysis.flow import accessible_lengths, face_areas
 from gaspart.analysis.impulses import (
     USUAL_BINS,
-    controlled,
     engine_class,
     estimator,
     group_count,
     knows_energies,
+    subtract_controls,
     wall_controls,
 )
 from gaspart.analysis.observable import Observable, observable, scalar
@@ -124,7 +124,7 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     ['x low', 'x high', 'y low', 'y high']
     """
     with _open_walls(source, start, "pressure") as (run, ends):
-        about = described("pressure", run, touched(run, run.time[:1])[0])
+        about = described("pressure", run, accessible_lengths(run, run.time[:1])[0])
         return _of_faces("wall_pressure", run, ends, about)
 
 
@@ -220,7 +220,7 @@ def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.nda
     for index, face in enumerate(map(str, faces)) if groups else ():
         controls = wall_controls(run, "xyz".index(face[0]))
         if controls is not None:
-            improved = controlled(each[:, index], controls, groups)
+            improved = subtract_controls(each[:, index], controls, groups)
             by_face[index] = face, controls.shape[1], improved
     return by_face
 

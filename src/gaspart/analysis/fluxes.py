@@ -49,7 +49,7 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     It is the energy that particles lose there in the frame of the wall: of a wall that slides, the energy
     that it is given without the work that it does. The mean is taken in the steady state: the contributions
     of the changes of the energy of the gas and of its first moment across the walls, which are bounded, are
-    subtracted (`_corrected`).
+    subtracted (`_mean_without_stores`).
 
     Theory: 0 in equilibrium; between two plates free flight above a Knudsen number of 100, Fourier's law with
     Enskog's conductivity and temperature jumps below 0.1, and between these an interpolation, good to 8 %
@@ -69,11 +69,11 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     with open_run(source, start) as run:
         require_defined("heat_flux", run.scene)
         faces = np.array(run.scene.thermal_numbers)
-        heat = _given(run, "wall_energy", "heat_per_area")
+        heat = _amounts_per_area(run, "wall_energy", "heat_per_area")
         for number, face in run.scene.sliding_faces:
-            heat[:, number] -= _given(run, "wall_shear", "momentum_per_area")[:, number] @ np.array(
-                face.velocity
-            )
+            heat[:, number] -= _amounts_per_area(run, "wall_shear", "momentum_per_area")[
+                :, number
+            ] @ np.array(face.velocity)
         means = _steady(run, faces, heat[:, faces], _energies(run))
         along = {"face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"})}
         about = described("heat_flux", run, faces)
@@ -126,7 +126,7 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
         require_defined("wall_shear", run.scene)
         faces = np.array(run.scene.drawing_numbers)
         axes = np.array([axis for axis in range(run.dimension) if (faces // 2 != axis).any()])
-        momentum = _given(run, "wall_shear", "momentum_per_area")[:, faces][..., axes]
+        momentum = _amounts_per_area(run, "wall_shear", "momentum_per_area")[:, faces][..., axes]
         parts = [_steady(run, faces, momentum[..., n], _momenta(run, axis)) for n, axis in enumerate(axes)]
         across = faces[:, None] // 2 == axes
         columns = {key: np.stack([getattr(part, key) for part in parts], axis=1) for key in vars(parts[0])}
@@ -139,7 +139,7 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
         return with_freedom(observable("wall_shear", along, means.values, means.errors, **about), means)
 
 
-def _given(run: Run, name: str, tallied: str) -> np.ndarray:
+def _amounts_per_area(run: Run, name: str, tallied: str) -> np.ndarray:
     """Return what each face is given in each interval per accessible area.
 
     The shape is (T - 1, 2d, ...). See `per_area`. Raises SceneError for frames without the sum of this name.
@@ -168,12 +168,12 @@ def _steady(run: Run, faces: np.ndarray, amounts: np.ndarray, stored: list[np.nd
     grown = amounts[: blocks * length].reshape(blocks, length, -1).sum(axis=1)
     rates = grown / np.diff(run.time[ends])[:, None]
     changes = [np.diff(values[ends]) for values in stored]
-    estimates = [_corrected(rate, changes) for rate in rates.T]
+    estimates = [_mean_without_stores(rate, changes) for rate in rates.T]
     columns = ([getattr(estimate, name) for estimate in estimates] for name in ("value", "error", "freedom"))
     return Means(*map(np.array, columns))
 
 
-def _corrected(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
+def _mean_without_stores(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
     """Compute the mean of rates (K,) in consecutive blocks, corrected for changes of bounded sums.
 
     The contribution of the changes (K,) is removed by least squares: a gas gives back what it has stored.

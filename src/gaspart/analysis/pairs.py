@@ -152,7 +152,7 @@ _ALIKE = 1e-9
 """Relative difference of two thicknesses of shells that is rounding."""
 
 
-def kept(run: Run) -> PairImpulseTally | None:
+def read_pair_impulses(run: Run) -> PairImpulseTally | None:
     """Return the stored impulses of pairs of a run, or None.
 
     Without them nothing is returned, nor if the file lacks particles, from which the temperature follows.
@@ -172,7 +172,7 @@ def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> n
     or not in parts of these shells, if a block takes no time, and if no pair has collided: then impulses do
     not determine g(r), which is not 0.
     """
-    has = kept(run)
+    has = read_pair_impulses(run)
     if has is None or starts[-1] == len(run.time) - 1 or furthest > has.furthest * (1.0 + _ALIKE):
         return None
     each = furthest / bins * has.shells / has.furthest
@@ -259,7 +259,7 @@ def rdf(
     """
     with open_run(source, start) as run:
         require_defined("rdf", run.scene)
-        has = kept(run)
+        has = read_pair_impulses(run)
         bins = count_of("bins", bins or (has.shells if has else _BINS), least=2)
         stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
         if stored < 2:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.analysis.expected.equilibrium import described
-from gaspart.analysis.flow import FLOW, Grid, left_by_obstacles
+from gaspart.analysis.flow import FLOW, Grid, accessible_fraction
 from gaspart.analysis.impulses import default_bins, described_density, mixed_density
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.observables import having, require_defined
@@ -326,7 +326,7 @@ def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
     if np.isfinite(run.masses).all():
         return cells.density().times(run.count / stored)
     edges, radii = cells.grid.edges[0], run.radii[members]  # fixed particles leave less room to larger ones
-    fractions = {radius: left_by_obstacles(run, radius, axis, edges) for radius in np.unique(radii)}
+    fractions = {radius: accessible_fraction(run, radius, axis, edges) for radius in np.unique(radii)}
     shares = np.array([fractions[radius] for radius in radii])  # (n, bins)
     here = cells.cells
     part = np.take_along_axis(shares.T, here, axis=0)

@@ -72,7 +72,7 @@ def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
         raise SceneError("frames", len(run.time), rule)
     if not run.temperature > 0.0:
         raise SceneError("temperature", run.temperature, "without motion no flux fluctuates")
-    heat, passed = run.data["heat_sum"].values, _passed(run)
+    heat, passed = run.data["heat_sum"].values, _sum_displacements(run)
     coupling = _products(passed, passed, number).mean(axis=-1)
     with_heat = _products(passed, heat[None], number).mean(axis=-1)
     factors = np.linalg.lstsq(coupling, with_heat[:, 0], rcond=None)[0]
@@ -84,7 +84,7 @@ def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
     return scalar("thermal_conductivity", series, run.time[: len(series) + 1], **about)
 
 
-def _passed(run: Run) -> np.ndarray:
+def _sum_displacements(run: Run) -> np.ndarray:
     """Sum displacements about the centre of mass over the particles of each species.
 
     The shape is (S - 1, T, d): the sum of the last species follows from the others.
@@ -245,7 +245,7 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
             return _coefficient(run, "thermal_conductivity", "heat", lag)
         require_defined("thermal_conductivity", run.scene)
         run.require_all()
-        settings = _stored(run)
+        settings = _read_settings(run)
         lags = _lags_until(settings, lag)
         return conductivity_without_diffusion(run, lags * settings.interval)
 
@@ -287,7 +287,7 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     """
     with open_run(source, start, sheared=True) as run:
         require_defined("pressure_tensor", run.scene)
-        _stored(run)
+        _read_settings(run)
         if len(run.time) <= LEAST_INTERVALS:
             raise SceneError("frames", len(run.time), f"an error needs {LEAST_INTERVALS + 1} or more")
         d, volume = run.dimension, math.prod(run.scene.container.lengths)
@@ -304,7 +304,7 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
         )
 
 
-def _stored(run: Run) -> Correlations:
+def _read_settings(run: Run) -> Correlations:
     """Return the settings of a run's correlations of the stress.
 
     Raises SceneError for a run without them. An older version stored fluxes of absolute velocities: such a
@@ -339,7 +339,7 @@ def _initial(run: Run) -> State:
 
 def _response(run: Run, lag: float | None) -> Observable:
     """Measure the shear viscosity of a sheared gas, from the momentum carried across the flow."""
-    _stored(run)
+    _read_settings(run)
     scene, rate = run.scene, run.scene.shear_rate
     if lag is not None:
         raise SceneError("lag", lag, "is that of fluctuations at rest; a sheared gas responds without")
@@ -357,7 +357,7 @@ def _coefficient(run: Run, public: str, name: str, lag: float | None) -> Observa
     The flux is `name` in `trajectory.correlator.STRESS`.
     """
     require_defined(public, run.scene)
-    settings = _stored(run)
+    settings = _read_settings(run)
     lags = _lags_until(settings, lag)
     running, slopes = (
         np.sum([form(run, part) for part in _PARTS.get(name, (name,))], axis=0)
@@ -412,7 +412,7 @@ def green_kubo(run: Run, name: str) -> np.ndarray:
     SceneError
         If the run has no correlations of the stress.
     """
-    interval = _stored(run).interval
+    interval = _read_settings(run).interval
     products, _ = _blocks(run, name)
     return _scale(run, name) * interval * (np.cumsum(products, axis=1) - 0.5 * products[:, :1])
 
@@ -432,7 +432,7 @@ def helfand(run: Run, name: str) -> np.ndarray:
     ndarray, shape (B, lags)
         The coefficient; NaN at the lag 0.
     """
-    interval = _stored(run).interval
+    interval = _read_settings(run).interval
     _, squares = _blocks(run, name)
     time = interval * np.arange(squares.shape[1])
     return 0.5 * _scale(run, name) * squares / np.where(time > 0.0, time, np.nan)
