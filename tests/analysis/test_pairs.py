@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.analysis.insertion import _covered, insertions
+from gaspart.analysis.insertion import _find_covered_cells, insertions
 from gaspart.analysis.structure_factors import shells_of, wave_vectors
 
 A = gp.analysis
@@ -57,7 +57,7 @@ def test_the_cells_that_particles_cover_are_those_whose_corners_all_are_near_one
     furthest = np.sqrt(((apart + 0.5 * sides) ** 2).sum(axis=-1)).min(axis=2)
     expected = (furthest <= distances).any(axis=1)
     assert 0.1 < expected.mean() < 0.9
-    assert np.array_equal(_covered(groups, sides, number), expected)
+    assert np.array_equal(_find_covered_cells(groups, sides, number), expected)
 
 
 def test_the_structure_factor_is_that_of_the_distribution_and_of_theory(fluid):
