@@ -7,12 +7,12 @@ import xarray as xr
 
 from gaspart.analysis.conditions import walled_axis_of
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import per_area
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.profiles import Means, with_freedom
-from gaspart.analysis.run import Run, Source, open_run, selected
+from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 from gaspart.scene.faces import FACES, Open
@@ -76,7 +76,7 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
             ] @ np.array(face.velocity)
         means = _steady(run, faces, heat[:, faces], _energies(run))
         along = {"face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"})}
-        about = described("heat_flux", run, faces)
+        about = describe("heat_flux", run, faces)
         return with_freedom(observable("heat_flux", along, means.values, means.errors, **about), means)
 
 
@@ -135,7 +135,7 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
             "face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"}),
             "component": (np.array(list("xyz"))[axes], {"long_name": "axis along the face"}),
         }
-        about = described("wall_shear", run, faces, axes)
+        about = describe("wall_shear", run, faces, axes)
         return with_freedom(observable("wall_shear", along, means.values, means.errors, **about), means)
 
 
@@ -289,13 +289,13 @@ def particle_flux(
         require_defined("flux", run.scene, axis=axis, at=at, species=species)
         number = walled_axis_of(run.scene, axis)
         position = 0.5 * run.scene.container.lengths[number] if at is None else float(at)
-        members = np.flatnonzero(run.moving)[selected(run, species, None)]
+        members = np.flatnonzero(run.moving)[select_particles(run, species, None)]
         beyond = (run.positions[:, members, number] > position).sum(axis=1) - _entered_beyond(run, number)
         if len(beyond) <= LEAST_INTERVALS:
             raise SceneError("frames", len(beyond), f"an error needs {LEAST_INTERVALS + 1} or more")
         estimate = correlated_mean(np.diff(beyond) / np.diff(run.time), LEAST_INTERVALS).estimate
         along = {"component": (np.array(["xyz"[number]]), {"long_name": "axis"})}
-        about = described("flux", run, number, position, members, beyond)
+        about = describe("flux", run, number, position, members, beyond)
         means = Means(*(np.array([each]) for each in (estimate.value, estimate.error, estimate.freedom)))
         return with_freedom(observable("flux", along, means.values, means.errors, **about), means)
 
@@ -358,7 +358,7 @@ def particle_number(source: Source, start: float | None = None) -> Observable:
 
     Notes
     -----
-    Without collisions, correlations fall as slowly as 1/t: the error is that of
+    Without collisions, correlations fall as slowly as 1/t: the error is computed by
     `gaspart.analysis.statistics.slow_mean`.
 
     Examples
@@ -377,4 +377,4 @@ def particle_number(source: Source, start: float | None = None) -> Observable:
         require_defined("number", run.scene)
         counts = particle_numbers(run.scene, run.data)
         series = counts[1:].astype(float)
-        return scalar("particle_number", series, run.time, slow=True, **described("number", run))
+        return scalar("particle_number", series, run.time, slow=True, **describe("number", run))

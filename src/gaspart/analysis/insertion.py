@@ -20,7 +20,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES
@@ -253,7 +253,7 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
         frames = slice(None, None, -(-len(run.time) // MOST_FRAMES))
         time = run.time[frames]
         edges = np.append(time, 2.0 * time[-1] - time[-2])
-        about = described("chemical_potential", run)
+        about = describe("chemical_potential", run)
         tried = [_insert(run, frames, hosts, trials) for hosts in _hosts(run)]
         if run.scene.alike:
             series, counts = tried[0]

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.impulses import estimator, mixture
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
 from gaspart.analysis.observables import KEPT, require_defined
@@ -281,7 +281,7 @@ def rdf(
         values, errors = means_of(each)
         distance = (np.arange(bins) + 0.5) * (end / bins)
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
-        about = described("rdf", run, distance, end / bins)
+        about = describe("rdf", run, distance, end / bins)
         result = observable("rdf", along, values, errors, **about)
         tally = PairImpulseTally(float(end), 200, 0.1)
         result.attrs |= estimator(run, "counts", "counts and impulses", parts is not None, tally)
@@ -362,8 +362,8 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
 
     Notes
     -----
-    Theory: exact except for the contact values, which are those of an infinite mixture. A particle of N_i has
-    N_i - 1 partners of its own species, and the mean speed is that of a finite number at fixed energy.
+    Theory: exact except for the contact values, which hold for an infinite mixture. A particle of N_i has
+    N_i - 1 partners of its own species, and the mean speed holds for a finite number at fixed energy.
 
     Examples
     --------
@@ -433,7 +433,9 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
 
 
 def rate_scales(run: Run) -> np.ndarray:
-    """Compute the collision rate of a pair of species divided by that of a particle of the first.
+    """Compute the ratio of the collision rates of a pair of species and of a particle.
+
+    The particle is of the first species of the pair.
 
     Parameters
     ----------
@@ -519,4 +521,4 @@ def _of_pairs(observed: str, name: str, run: Run, estimates: list[Estimate]) -> 
     """Return the result of an observable of pairs, `observed`, whose variable has a name."""
     along = {"pair": (np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"})}
     values, errors = np.array([[estimate.value, estimate.error] for estimate in estimates]).T
-    return observable(name, along, values, errors, **described(observed, run))
+    return observable(name, along, values, errors, **describe(observed, run))

@@ -20,8 +20,8 @@ import math
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.expected.equilibrium import described
-from gaspart.analysis.motion import unwrapped
+from gaspart.analysis.expected.equilibrium import describe
+from gaspart.analysis.motion import unwrap_positions
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import KEPT, require_defined
 from gaspart.analysis.run import Run, Source, open_run
@@ -79,7 +79,7 @@ def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
     rest = (heat - np.tensordot(factors, passed, 1))[None]
     scale = 1.0 / (math.prod(run.scene.container.lengths) * run.temperature**2 * run.interval)
     series = scale * _products(rest, rest, number)[0, 0]
-    about = described("thermal_conductivity", run, run.temperature)
+    about = describe("thermal_conductivity", run, run.temperature)
     about["long_name"] += " without diffusion"
     return scalar("thermal_conductivity", series, run.time[: len(series) + 1], **about)
 
@@ -90,7 +90,7 @@ def _sum_displacements(run: Run) -> np.ndarray:
     The shape is (S - 1, T, d): the sum of the last species follows from the others.
     """
     moving, masses = run.moving, run.masses  # raises SceneError if some are not in the file
-    paths = unwrapped(run)[:, moving]
+    paths = unwrap_positions(run)[:, moving]
     paths = paths - np.einsum("tnd,n->td", paths, masses / masses.sum())[:, None]
     kinds = np.unique(run.species)[:-1]
     return np.array([paths[:, run.species == kind].sum(axis=1) for kind in kinds])
@@ -300,7 +300,7 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
             {"component": (names, {"long_name": "component"})},
             np.array([mean.value for mean in means]),
             np.array([mean.error for mean in means]),
-            **described("pressure_tensor", run, run.temperature),
+            **describe("pressure_tensor", run, run.temperature),
         )
 
 
@@ -346,7 +346,7 @@ def _response(run: Run, lag: float | None) -> Observable:
     assert rate, "see `conditions.shears`"
     carried = run.increments("stress_sum")[:, 1, 0]
     viscosity = -carried / (rate * scene.container.volume * np.diff(run.time))
-    about = described("shear_viscosity", run, run.temperature)
+    about = describe("shear_viscosity", run, run.temperature)
     about["long_name"] += ", response"
     return scalar("shear_viscosity", viscosity, run.time, **about)
 
@@ -363,7 +363,7 @@ def _coefficient(run: Run, public: str, name: str, lag: float | None) -> Observa
         np.sum([form(run, part) for part in _PARTS.get(name, (name,))], axis=0)
         for form in (green_kubo, helfand)
     )
-    about = described(public, run, run.temperature)
+    about = describe(public, run, run.temperature)
     units = about["units"]
     result = scalar(public, running[:, lags], run.time[-len(running) - 1 :], **about)
     time = settings.interval * np.arange(running.shape[1])

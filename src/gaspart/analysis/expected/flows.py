@@ -353,8 +353,8 @@ def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray
     """Compute the velocity that a force drives along plates of one temperature at rest.
 
     The uncertainty is the next order of the slip, the packing fraction, and half of the heating of the gas by
-    friction: in units of k_B T, with the greatest velocity u, 4/45 m u^2 in the middle, and at the plates
-    32/45 m u^2 times the coefficient of the temperature jump times the Knudsen number.
+    friction. In units of k_B T it is, with the greatest velocity u, 4/45 m u^2 in the middle, and at the
+    plates 32/45 m u^2 times the coefficient of the temperature jump times the Knudsen number.
     """
     slow = not plates.slide.any() and plates.equal and axis == plates.axis
     if not slow or plates.dimension == 2 or not 0.0 < plates.knudsen <= FLUID or not dilute(plates, run):
