@@ -267,6 +267,8 @@ def _mean(found: list[Observable], recipes: list[_Recipe]) -> Observable:
             raise _other_coordinate(first, one, recipes[0].name, recipe.name)
     each = np.array([one.estimate.values for one in found])
     values, errors = means_of(each)
+    unknown = np.isnan([single.error.values for single in found]).all(axis=0)
+    errors = np.where(unknown & (errors == 0.0), np.nan, errors)  # as of bins that are empty in all runs
     parts = {"": values, "_error": errors}
     if all(one.theory is not None for one in found):
         for part in ("_theory", "_theory_error"):
