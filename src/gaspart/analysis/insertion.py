@@ -305,7 +305,7 @@ def _inserted(run: Run, frames: slice, hosts: Hosts, places: int) -> tuple[np.nd
 
 
 def _is_sampled(probability: np.ndarray, error: float) -> bool:
-    """Return True if the frames (T,) that contribute most to the mean probability are among these frames.
+    """Return True if the frames that contribute most to the mean probability (T,) are known.
 
     error : standard error of the mean over the mean, with the correlation of the frames.
     """
