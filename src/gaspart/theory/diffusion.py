@@ -15,7 +15,7 @@ from gaspart.theory.finite_size import LARGEST_REMAINDER, finite_size_remainder
 from gaspart.theory.geometry import (
     Numbers,
     Values,
-    checked,
+    check_ranges,
     checked_dimension,
     checked_packing_fraction,
     number_density,
@@ -91,7 +91,7 @@ def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
     return 1.0 + 0.05403 * y + 6.3656 * y**2 - 10.9425 * y**3
 
 
-@checked
+@check_ranges
 def erpenbeck_wood_diffusion(
     packing_fraction: Numbers, diameter: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:
@@ -132,7 +132,7 @@ def erpenbeck_wood_diffusion(
     return erpenbeck_wood_ratio(packing_fraction) * enskog
 
 
-@checked
+@check_ranges
 def viscosity_ratio(packing_fraction: Numbers) -> Values:
     """Compute the shear viscosity of spheres divided by Enskog's.
 
@@ -165,11 +165,11 @@ def viscosity_ratio(packing_fraction: Numbers) -> Values:
     """
     eta = checked_packing_fraction(packing_fraction, ERPENBECK_WOOD_HIGHEST)
     path = Path(__file__).parent / "data" / "viscosity_3d.csv"
-    known, ratio, _ = np.loadtxt(path, delimiter=",", skiprows=1, unpack=True)
-    return np.interp(eta, known, np.r_[1.0, ratio[1:]])[()]
+    fractions, ratio, _ = np.loadtxt(path, delimiter=",", skiprows=1, unpack=True)
+    return np.interp(eta, fractions, np.r_[1.0, ratio[1:]])[()]
 
 
-@checked
+@check_ranges
 def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) -> Values:
     """Compute the correction of the self-diffusion coefficient of spheres for a finite periodic cube.
 
@@ -211,7 +211,7 @@ def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) ->
     return YEH_HUMMER_CONSTANT * temperature / (6.0 * math.pi * viscosity * length)
 
 
-@checked
+@check_ranges
 def diffusion_in_cube(
     packing_fraction: float,
     length: float,
@@ -282,7 +282,7 @@ def diffusion_in_cube(
     return infinite - shift, math.hypot(math.hypot(relative, _ORDERED * remainder) * infinite, of_shift)
 
 
-@checked
+@check_ranges
 def velocity_decay_rate(
     packing_fraction: Numbers,
     dimension: int,
@@ -334,7 +334,7 @@ def velocity_decay_rate(
     return 2.0 / dimension * rate
 
 
-@checked
+@check_ranges
 def enskog_mean_squared_displacement(
     time: Numbers,
     packing_fraction: Numbers,
@@ -405,7 +405,7 @@ def _spreading(
     return density, diffusion + viscosity / (mass * density)
 
 
-@checked
+@check_ranges
 def velocity_autocorrelation_tail(
     time: Numbers,
     packing_fraction: Numbers,
@@ -462,7 +462,7 @@ def velocity_autocorrelation_tail(
     return amplitude * (4.0 * math.pi * spreading * np.asarray(time)) ** (-0.5 * dimension)
 
 
-@checked
+@check_ranges
 def logarithmic_slope(
     packing_fraction: Numbers, diameter: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:
