@@ -85,7 +85,7 @@ WORDS = {
     "sweep no folder": (lambda: gp.sweep(SCENE, {}, ["Z"]), "folder = None: is required by sweep"),
     "accuracy tolerance": (lambda: gp.Accuracy("Z", tolerance=0.1), "here it is accuracy"),
     "film fps": (lambda: gp.film("a.nc", "a.gif", fps=10), "here it is frames_per_second"),
-    "film by place": (lambda: gp.film("a.nc", "a.gif", (9, 9)), "takes trajectory, path without names"),
+    "film by place": (lambda: gp.film("a.nc", "a.gif", (9, 9)), "takes trajectory, path by position"),
     "render color": (lambda: gp.render(SCENE, color="speed"), "here it is colour"),
     "advance t": (lambda: SIM.advance(t=1.0), "of Simulation.advance; here it is duration"),
     "advance steps": (lambda: SIM.advance(steps=10), "here it is duration"),
@@ -107,7 +107,7 @@ WORDS = {
     "last state of a scene": (lambda: gp.last_state(SCENE), "this is a scene: run it first"),
     "open density": (lambda: gp.Open(density=0.1), "here it is activity, which gaspart.theory.activity"),
     "piston velocity": (lambda: gp.Piston(velocity=1.5), "here it is speed"),
-    "piston alone": (lambda: gp.Piston(mass=10.0), "a piston has a mass and a pressure, or a speed alone"),
+    "piston alone": (lambda: gp.Piston(mass=10.0), "must be mass and pressure, or speed alone"),
     "wall temp": (lambda: gp.Wall((5.0, 5.0), (5.0, 9.0), temp=2.0), "here it is temperature"),
     "boundary in capitals": (
         lambda: gp.Container((9, 9), boundary="Periodic"),
