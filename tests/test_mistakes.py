@@ -54,7 +54,7 @@ WORDS = {
     "container pbc": (lambda: gp.Container((9, 9), pbc=True), "here it is boundary"),
     "container a number": (lambda: gp.Container(9.0), "lengths = 9.0: must be a list of 2 or 3"),
     "container two numbers": (lambda: gp.Container(9.0, 9.0), "lengths = 9.0: must be a list"),
-    "container three numbers": (lambda: gp.Container(9.0, 9.0, 9.0), "which takes lengths, boundary"),
+    "container three numbers": (lambda: gp.Container(9.0, 9.0, 9.0), "takes lengths, boundary by position"),
     "boundary true": (lambda: gp.Container((9, 9), boundary=True), "must be one of ('wall', 'periodic')"),
     "scene box": (lambda: gp.Scene(box=BOX), "unknown argument of Scene; here it is container"),
     "scene g": (lambda: gp.Scene(BOX, g=(0, -1)), "here it is gravity"),
