@@ -288,7 +288,7 @@ def _bounds(
     if scene.shear_rate is not None:
         high[:, GRADIENT] = np.nextafter(high[:, GRADIENT], 0.0)
     if wall := scene.moving_wall:
-        axis, place = wall.axis, wall.place if piston is None else piston[0]
+        axis, place = wall.axis, wall.position if piston is None else piston[0]
         above = positions[:, axis] > place
         low[above, axis] = place + radii[above]
         high[~above, axis] = place - radii[~above]
