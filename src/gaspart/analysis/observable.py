@@ -37,26 +37,25 @@ class ByFace(xr.Dataset):
 
     __slots__ = ()
 
+    def sel(self, *indexers: Any, **named: Any) -> Self:
+        """Select as from a Dataset, a face by either of its names, `x_low` or `x low`.
 
-def sel(self, *indexers: Any, **named: Any) -> Self:
-    """Select as from a Dataset, a face by either of its names, `x_low` or `x low`.
+        Parameters
+        ----------
+        *indexers
+            Arguments of `xarray.Dataset.sel`.
+        **named
+            Keyword arguments of `xarray.Dataset.sel`.
 
-    Parameters
-    ----------
-    *given
-        Arguments of `xarray.Dataset.sel`.
-    **named
-        Keyword arguments of `xarray.Dataset.sel`.
-
-    Returns
-    -------
-    ByFace
-        The selection.
-    """
-    for selection in (*(item for item in indexers if isinstance(item, dict)), named):
-        if "face" in selection:
-            selection["face"] = wall_of(selection["face"])
-    return super().sel(*indexers, **named)
+        Returns
+        -------
+        ByFace
+            The selection.
+        """
+        for selection in (*(item for item in indexers if isinstance(item, dict)), named):
+            if "face" in selection:
+                selection["face"] = wall_of(selection["face"])
+        return super().sel(*indexers, **named)
 
 
 class Observable(ByFace):
