@@ -1,6 +1,7 @@
 """A gas in a notebook: what its sliders change, and that it runs."""
 
 import asyncio
+import dataclasses
 import sys
 
 import nbformat
@@ -183,6 +184,78 @@ def test_a_wall_that_is_removed_lets_gases_mix():
         gas.advance()
     assert (gas.simulation.state.positions[:, 0] > 6.0).sum() > 3
     assert gas.collisions > collisions and gas.time > time
+
+
+@pytest.fixture(scope="module")
+def effusion():
+    """A gas between a reservoir, whose sides are open, and a vacuum."""
+    faces = {"x_low": gp.Open(activity=0.1, temperature=1.0), "x_high": gp.Open()}
+    container = gp.Container((20.0, 10.0), ("wall", "periodic"))
+    species = [gp.Species(16, 0.4, temperature=1.0)]
+    return gp.Scene(container, species, faces=faces, centres_to_walls=True)
+
+
+def test_open_faces_let_particles_in_and_out_and_go_on_with_those_inside(effusion):
+    gas = LiveGas(effusion, size=(80, 60))
+    for _ in range(100):
+        gas.step()
+    before = gas.simulation.state
+    assert not np.array_equal(before.numbers, np.arange(16))
+    gas.feed(0.3)
+    gas.heat(2.0)
+    after = gas.simulation.state
+    assert np.array_equal(before.positions, after.positions)
+    assert np.array_equal(before.velocities, after.velocities)
+    assert gas.simulation.scene.faces == {"x_low": gp.Open(0.3, 2.0), "x_high": gp.Open()}
+    for _ in range(400):
+        gas.step()
+    names, values, errors, theories = zip(*gas.gauges(), strict=True)
+    assert names == ("temperature", "particles", "pressure, x low", "pressure, x high")
+    counts = [np.isfinite(row["velocities"][:, 0]).sum() for row in gas._rows]
+    assert values[1] == pytest.approx(np.mean(counts)) and 0.0 < errors[1] < 0.5 * values[1]
+    assert theories == (None,) * 4
+    edges, density, _ = gas.speeds()
+    assert (density * np.diff(edges)).sum() == pytest.approx(1.0, abs=0.01)
+    gas.heat(0.0)
+    assert gas.simulation.scene.faces["x_low"] == gp.Open(0.3, 1.0)
+
+
+def test_reservoirs_on_both_sides_give_their_temperature_and_the_number_of_their_density(effusion):
+    reservoir = gp.Open(activity=0.02, temperature=2.0)
+    scene = dataclasses.replace(effusion, faces={"x_low": reservoir, "x_high": reservoir})
+    gas = LiveGas(scene, size=(80, 60))
+    gas.interval *= 20.0
+    for _ in range(20):
+        gas.step()
+    gas.observe()
+    for _ in range(300):
+        gas.step()
+    temperature, particles, *_ = gas.gauges()
+    assert temperature[3] == 2.0 and abs(temperature[1] - 2.0) < 4.0 * temperature[2] < 0.4
+    ideal = 0.02 * 200.0 / (np.pi * 0.4**2)  # of which the excluded area takes twice the packing fraction
+    assert abs(particles[1] - ideal * (1.0 - 4.0 * 0.02)) < 4.0 * particles[2] + 0.02 * ideal
+
+
+def test_an_empty_container_is_shown_and_refuses_changes_in_a_line():
+    scene = gp.Scene(
+        gp.Container((5.0, 5.0)),
+        particles=(),
+        species=[gp.Species(3, 0.2, speed=1.0)],
+        faces={f"{axis}_{end}": gp.Open() for axis in "xy" for end in ("low", "high")},
+        centres_to_walls=True,
+    )
+    gas = LiveGas(scene, size=(80, 60))
+    gas.simulation.advance(duration=100.0)
+    for _ in range(40):
+        gas.advance()
+    assert gas.simulation.state.count == 0
+    assert gas.gauges()[1][:2] == ("particles", 0.0)
+    with pytest.raises(gp.SceneError, match="all particles have left"):
+        gas.heat(1.0)
+
+
+def test_sliders_of_open_faces_are_those_of_their_reservoirs(effusion):
+    assert list(parts(live(effusion, size=(80, 60)))[2]) == ["activity of reservoirs", "temperature of walls"]
 
 
 def test_gauges_agree_with_the_observables_of_the_library():

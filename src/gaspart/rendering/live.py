@@ -58,8 +58,7 @@ def live(
     Raises
     ------
     SceneError
-        If nothing moves at the start, the number of particles is not fixed, the engine cannot model the
-        scene, or ipywidgets is not installed.
+        If nothing moves at the start, the engine cannot model the scene, or ipywidgets is not installed.
 
     Notes
     -----
@@ -114,7 +113,7 @@ def live(
     running.observe(start, "value")
     tracer = widgets.ToggleButton(description="tracer")
     tracer.observe(trace, "value")
-    buttons = [running, tracer] if scene.dimension == 2 else [running]
+    buttons = [running, tracer] if gas.traceable else [running]
     if scene.walls:
         opening = widgets.Button(description="remove walls")
         opening.on_click(remove_walls)
@@ -144,14 +143,16 @@ def _ranges(gas: LiveGas) -> list[tuple[str, tuple[float, float, float], Callabl
     """Return the name, the range and the effect of each slider that suits a gas."""
     scene = gas.simulation.scene
     ranges: list[tuple[str, tuple[float, float, float], Callable[[float], None]]] = []
-    if gas.emptiest < scene.packing_fraction:
+    if gas.richest:
+        ranges.append(("activity of reservoirs", (0.1 * gas.activity, gas.activity, gas.richest), gas.feed))
+    if gas.emptiest < scene.packing_fraction and not scene.is_open:
         ranges.append(("packing fraction", (gas.emptiest, scene.packing_fraction, gas.densest), gas.fill))
     if gas.strongest:
         ranges.append(("gravity", (0.0, gas.gravity, gas.strongest), gas.pull))
     if gas.hottest:
         ranges.append(("temperature of walls", (0.0, gas.temperature, gas.hottest), gas.heat))
     normal = scene.restitution.normal if scene.restitution else 1.0
-    if scene.count > 1:
+    if scene.count > 1 and not scene.is_open:
         ranges.append(("restitution", (min(0.5, normal), normal, 1.0), gas.damp))
     if gas.shortest:
         length = scene.container.lengths[0]
