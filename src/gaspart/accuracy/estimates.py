@@ -173,23 +173,36 @@ def _on_walls(run: Run, observable: str) -> dict[str, Component]:
     found = {}
     for place, (face, one) in enumerate(zip(map(str, faces), series.T, strict=True)):
         if place in improved:
-            _, controls, one = improved[place]
-            found[face] = without_stores(one, interval, controls)
+            _, controls, rest = improved[place]
+            found[face] = without_stores(one, rest, interval, controls)
         else:
             found[face] = with_stores(one, stored["xyz".index(face[0])], interval)
     return found
 
 
-def without_stores(series: np.ndarray, interval: float, controls: int) -> Component:
-    """Estimate the mean of a series (K,) from which `controls` controls were subtracted.
+def without_stores(series: np.ndarray, rest: np.ndarray, interval: float, controls: int) -> Component:
+    """Estimate the mean of a series (K,) by the `rest` (K,) after subtraction of `controls` controls.
 
     The intervals have one length. All stored quantities are among the controls.
     """
     from gaspart.analysis.statistics import correlated_mean
 
-    found, time = correlated_mean(series).estimate, len(series) * interval
-    freedom = max(1.0, found.freedom - controls)
-    return Component(found.value, abs(found.value), time, found.error**2 * time, freedom=freedom)
+    mean, time = correlated_mean(rest).estimate, len(rest) * interval
+    freedom = _remaining_freedom(series, mean, controls)
+    return Component(mean.value, abs(mean.value), time, mean.error**2 * time, freedom=freedom)
+
+
+def _remaining_freedom(series: np.ndarray, rest: Estimate, controls: int) -> float:
+    """Return the degrees of freedom of the error of a series (K,) without its controls.
+
+    Controls may explain a series to rounding, as the momentum of a single particle does the impulses on two
+    walls. What remains is the same in all samples, but the series is not: its error is known to be 0, with
+    the degrees of freedom of the changes that were explained.
+    """
+    from gaspart.analysis.statistics import count_changes
+
+    freedom = rest.freedom if rest.error > 0.0 else float(count_changes(series))
+    return max(1.0, freedom - controls)
 
 
 def with_stores(series: np.ndarray, stores: np.ndarray, interval: float) -> Component:
@@ -208,4 +221,5 @@ def with_stores(series: np.ndarray, stores: np.ndarray, interval: float) -> Comp
     slopes = np.linalg.lstsq(centred, series - mean, rcond=None)[0]
     rest = correlated_mean(series - centred @ slopes).estimate
     stored = 2.0 * float(np.var(kept @ slopes)) if slopes.size else 0.0
-    return Component(mean, abs(mean), time, rest.error**2 * time, stored, rest.freedom)
+    freedom = _remaining_freedom(series, rest, controls=0)
+    return Component(mean, abs(mean), time, rest.error**2 * time, stored, freedom)

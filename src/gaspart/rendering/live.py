@@ -163,8 +163,8 @@ def _ranges(gas: LiveGas) -> list[tuple[str, tuple[float, float, float], Callabl
 def meters_of(gas: LiveGas) -> str:
     """Return the gauges and the histogram of speeds as HTML."""
     rows = []
-    for name, value, error, known in gas.gauges():
-        expected = "" if known is None or not np.isfinite(known) else f"{known:.4g}"
+    for name, value, error, theory in gas.gauges():
+        expected = "" if theory is None or not np.isfinite(theory) else f"{theory:.4g}"
         rows.append((name, f"{value:.4g} &plusmn; {error:.1g}", expected))
     lines = "".join(f"<tr><td>{html.escape(name)}</td><td>{a}</td><td>{b}</td></tr>" for name, a, b in rows)
     waiting = "" if rows else f"<tr><td>measuring: {LEAST_FRAMES} pictures</td></tr>"

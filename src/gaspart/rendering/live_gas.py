@@ -15,7 +15,7 @@ from gaspart.analysis.statistics.blocks import correlated_mean
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.rendering.films import pieces
-from gaspart.rendering.frames import Picture, labelled, particles_of
+from gaspart.rendering.frames import Picture, draw_labelled, particles_of
 from gaspart.rendering.particles import FASTEST
 from gaspart.scene.faces import Open, Piston, Thermal
 from gaspart.scene.restitution import Restitution
@@ -111,7 +111,7 @@ class LiveGas:
         particles = particles_of(self.simulation)
         paths = pieces(self._path, particles.lengths) if self.traced and self.traceable else ()
         fastest = FASTEST * self._thermal_speed or None
-        return labelled(particles, self.time, self.size, self.colour, fastest, paths=paths)
+        return draw_labelled(particles, self.time, self.size, self.colour, fastest, paths=paths)
 
     def advance(self) -> Picture:
         """Advance by an interval and return the picture then."""
