@@ -231,7 +231,7 @@ def test_reservoirs_on_both_sides_give_their_temperature_and_the_number_of_their
     for _ in range(300):
         gas.step()
     temperature, particles, *_ = gas.gauges()
-    assert temperature[3] == 2.0 and abs(temperature[1] - 2.0) < 4.0 * temperature[2] < 0.4
+    assert temperature[3] == 2.0 and abs(temperature[1] - 2.0) < 4.0 * temperature[2] < 0.6
     ideal = 0.02 * 200.0 / (np.pi * 0.4**2)  # of which the excluded area takes twice the packing fraction
     assert abs(particles[1] - ideal * (1.0 - 4.0 * 0.02)) < 4.0 * particles[2] + 0.02 * ideal
 
@@ -246,6 +246,7 @@ def test_an_empty_container_is_shown_and_refuses_changes_in_a_line():
     )
     gas = LiveGas(scene, size=(80, 60))
     gas.simulation.advance(duration=100.0)
+    gas.observe()
     for _ in range(40):
         gas.advance()
     assert gas.simulation.state.count == 0

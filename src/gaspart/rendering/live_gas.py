@@ -406,8 +406,10 @@ class LiveGas:
     def shortest(self) -> float | None:
         """Least coordinate of the side x high to choose; None if it cannot be moved."""
         first = self._first
+        if first.is_open:
+            return None
         fixed = bool(self.emptiest) or any(item.fixed for item in first.particles)
-        bound = first.walls or first.pistons or first.is_open or (first.gravity and first.gravity[0])
+        bound = first.walls or first.pistons or (first.gravity and first.gravity[0])
         if bound or fixed or "x_high" not in (*self._hard, *self._warm):
             return None
         return first.container.lengths[0] * max(_SMALLEST, first.packing_fraction / self.densest)
