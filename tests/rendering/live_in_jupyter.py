@@ -24,6 +24,7 @@ import nbformat
 from tornado.websocket import websocket_connect
 
 PORT, TOKEN = 18888, "gaspart"
+RUN = '.jp-NotebookPanel-toolbar [data-command="notebook:run-cell-and-select-next"]'
 WAIT = 300.0  # seconds, for kernels that are compiled
 FIVE_HUNDRED = "gp.Scene(gp.Container((60.0, 45.0)), [gp.Species(500, 0.5, temperature=1.0)])"
 DIVIDED = """gp.Scene(
@@ -151,10 +152,8 @@ async def changed(page, name, part):
 
 async def watch(page, name, moves, buttons=()):
     """Run a notebook, its gas, its buttons and its sliders; return pictures per second."""
-    await page.until(
-        "window.jupyterapp?.shell.currentWidget?.context?.sessionContext?.session?.kernel && true"
-    )
-    await page.until("jupyterapp.commands.execute('notebook:run-all-cells').then(() => true)")
+    await page.until("document.querySelector('.jp-Notebook-ExecutionIndicator')?.dataset.status === 'idle'")
+    await page.evaluate(f"document.querySelector({json.dumps(RUN)}).click()")
     await page.until('document.querySelector(".jp-OutputArea img.widget-image")?.src.startsWith("blob:")')
     await page.picture(f"{name}-0")
     await page.click("run")
@@ -217,7 +216,7 @@ async def main(jupyter, pictures):
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         write_notebooks(folder)
-        server = [jupyter, "lab", "--no-browser", "--allow-root", f"--port={PORT}", "--expose-app-in-browser"]
+        server = [jupyter, "lab", "--no-browser", "--allow-root", f"--port={PORT}"]
         server += [f"--IdentityProvider.token={TOKEN}", f"--ServerApp.root_dir={folder}"]
         environment = os.environ | {"JUPYTER_PATH": str(folder / "jupyter"), "HOME": str(folder)}
         environment["GASPART_CACHE"] = os.environ.get("GASPART_CACHE", str(Path.home() / ".cache/gaspart"))
