@@ -52,7 +52,7 @@ COUNT = """new Promise(resolve => {
   setTimeout(() => { observer.disconnect(); resolve(pictures / SECONDS); }, 1000 * SECONDS);
 })"""
 PLACE = """(() => {
-  const found = [...document.querySelectorAll(".jp-OutputArea " + SELECTOR)].find(CHOSEN);
+  const found = [...document.querySelectorAll(SELECTOR)].find(CHOSEN);
   if (!found) return null;
   const part = INNER ? found.querySelector(INNER) : found;
   part.scrollIntoView({ block: "center" });
@@ -110,19 +110,21 @@ class Page:
     async def _mouse(self, kind, x, y):
         await self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
-    async def click(self, text):
-        """Click on a button."""
-        x, y, width, height = await self.place(
-            "button", f"part => part.innerText.trim() === {json.dumps(text)}"
-        )
+    async def press(self, selector, chosen="part => true"):
+        """Click on a part of the page."""
+        x, y, width, height = await self.place(selector, chosen)
         for kind in ("mousePressed", "mouseReleased"):
             await self._mouse(kind, x + width / 2, y + height / 2)
+
+    async def click(self, text):
+        """Click on a button of the widget."""
+        await self.press(".jp-OutputArea button", f"part => part.innerText.trim() === {json.dumps(text)}")
 
     async def slide(self, name, part):
         """Drag the handle of a slider to a part of its length."""
         chosen = f'part => part.querySelector(".widget-label").innerText === {json.dumps(name)}'
-        x, y, width, height = await self.place(".widget-slider", chosen, ".noUi-handle")
-        left, _, length, _ = await self.place(".widget-slider", chosen, ".noUi-base")
+        x, y, width, height = await self.place(".jp-OutputArea .widget-slider", chosen, ".noUi-handle")
+        left, _, length, _ = await self.place(".jp-OutputArea .widget-slider", chosen, ".noUi-base")
         y += height / 2
         await self._mouse("mousePressed", x + width / 2, y)
         for share in (0.5, 1.0):
@@ -153,7 +155,10 @@ async def changed(page, name, part):
 async def watch(page, name, moves, buttons=()):
     """Run a notebook, its gas, its buttons and its sliders; return pictures per second."""
     await page.until("document.querySelector('.jp-Notebook-ExecutionIndicator')?.dataset.status === 'idle'")
-    await page.evaluate(f"document.querySelector({json.dumps(RUN)}).click()")
+    await page.press(".jp-CodeCell .cm-content")  # without the focus there is no present notebook
+    while await page.evaluate("document.querySelector('.jp-InputPrompt').innerText === '[ ]:'"):
+        await page.press(RUN)  # which does nothing while the kernel is being connected
+        await asyncio.sleep(3.0)
     await page.until('document.querySelector(".jp-OutputArea img.widget-image")?.src.startsWith("blob:")')
     await page.picture(f"{name}-0")
     await page.click("run")
