@@ -201,7 +201,7 @@ def test_open_faces_let_particles_in_and_out_and_go_on_with_those_inside(effusio
         gas.step()
     before = gas.simulation.state
     assert not np.array_equal(before.numbers, np.arange(16))
-    gas.feed(0.3)
+    gas.supply(0.3)
     gas.heat(2.0)
     after = gas.simulation.state
     assert np.array_equal(before.positions, after.positions)

@@ -144,7 +144,7 @@ def _ranges(gas: LiveGas) -> list[tuple[str, tuple[float, float, float], Callabl
     scene = gas.simulation.scene
     ranges: list[tuple[str, tuple[float, float, float], Callable[[float], None]]] = []
     if gas.richest:
-        ranges.append(("activity of reservoirs", (0.1 * gas.activity, gas.activity, gas.richest), gas.feed))
+        ranges.append(("activity of reservoirs", (0.1 * gas.activity, gas.activity, gas.richest), gas.supply))
     if not scene.is_open and gas.emptiest < scene.packing_fraction:
         ranges.append(("packing fraction", (gas.emptiest, scene.packing_fraction, gas.densest), gas.fill))
     if gas.strongest:

@@ -205,7 +205,7 @@ class LiveGas:
                 faces[name] = Thermal(temperature)
         self._go_on(replace(self.simulation.scene, faces=faces))
 
-    def feed(self, activity: float) -> None:
+    def supply(self, activity: float) -> None:
         """Continue with reservoirs of another activity, which keep their ratios.
 
         Parameters
