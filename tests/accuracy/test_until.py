@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 
 import gaspart as gp
 from gaspart.accuracy import reached
-from gaspart.accuracy.reached import AccuracyStatus, Examiner, confirmed, merged
+from gaspart.accuracy.reached import AccuracyStatus, Examiner, combine_replicas, confirm_estimate
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.analysis.statistics.blocks import ORDER
@@ -62,7 +62,7 @@ def ended(known, accuracy, correct):
     before, length, asked = None, 0, gp.Accuracy("Z", accuracy)
     for row, count in zip(known, COUNTS, strict=True):
         now, samples = Estimate(*row), count - count // 4
-        one = confirmed(now, before, length / samples) if correct else now
+        one = confirm_estimate(now, before, length / samples) if correct else now
         reached = AccuracyStatus(asked, "", one.value, one.error, one.freedom, before is not None)
         if reached.met if correct else reached.accuracy <= accuracy:
             return one.value, reached.interval, samples
@@ -88,7 +88,7 @@ def means(rows, replicas):
     """Estimates, as `rows` of `check_coverage`, of the means of so many runs."""
     groups = rows[: RUNS // replicas * replicas].reshape(-1, replicas, *rows.shape[1:]).swapaxes(1, 2)
     return np.array(
-        [[astuple(merged([Estimate(*one) for one in each])) for each in group] for group in groups]
+        [[astuple(combine_replicas([Estimate(*one) for one in each])) for each in group] for group in groups]
     )
 
 
