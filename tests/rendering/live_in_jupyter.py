@@ -156,7 +156,7 @@ async def watch(page, name, moves, buttons=()):
     """Run a notebook, its gas, its buttons and its sliders; return pictures per second."""
     await page.until("document.querySelector('.jp-Notebook-ExecutionIndicator')?.dataset.status === 'idle'")
     await page.press(".jp-CodeCell .cm-content")  # without the focus there is no present notebook
-    while await page.evaluate("document.querySelector('.jp-InputPrompt').innerText === '[ ]:'"):
+    while not await page.evaluate("/[*0-9]/.test(document.querySelector('.jp-InputPrompt').innerText)"):
         await page.press(RUN)  # which does nothing while the kernel is being connected
         await asyncio.sleep(3.0)
     await page.until('document.querySelector(".jp-OutputArea img.widget-image")?.src.startsWith("blob:")')
