@@ -149,6 +149,7 @@ async def changed(page, name, part):
     await page.slide(name, part)
     await page.until(f"{READ}.sliders[{json.dumps(name)}] !== {json.dumps(before['sliders'][name])}", 60.0)
     await page.until(f"{READ}.shown !== {json.dumps(before['shown'])}")
+    await page.until("!document.querySelector('.jp-OutputArea').innerText.includes('one moment')")
     return await page.read()
 
 

@@ -282,6 +282,15 @@ def test_gauges_agree_with_the_observables_of_the_library():
         assert (middles**2 * values * widths).sum() == pytest.approx(2.0 * temperature[1], rel=0.02)
 
 
+def test_colours_of_speeds_are_those_of_a_picture_of_the_same_gas(monkeypatch):
+    gas = LiveGas(gp.Scene(gp.Container((20.0, 20.0)), [gp.Species(60, 0.3, speed=1.0)]), size=(80, 60))
+    ends = []
+    monkeypatch.setattr(
+        "gaspart.rendering.live_gas.draw_labelled", lambda *given, **_: ends.append(given[-1])
+    )
+    assert gas.picture is None and ends == [pytest.approx(2.0)]  # twice the root-mean-square speed
+
+
 def test_the_tracer_is_a_line_where_its_particle_has_been():
     scene = gp.Scene(gp.Container((20.0, 20.0)), [gp.Species(20, 0.3, temperature=1.0)])
     gas = LiveGas(scene, size=(160, 120))

@@ -110,7 +110,7 @@ class LiveGas:
         """Picture of the particles now, with the parameters of the scene."""
         particles = particles_of(self.simulation)
         paths = pieces(self._path, particles.lengths) if self.traced and self.traceable else ()
-        fastest = FASTEST * self._thermal_speed or None
+        fastest = FASTEST * np.sqrt(self._first.dimension) * self._thermal_speed or None
         return draw_labelled(particles, self.time, self.size, self.colour, fastest, paths=paths)
 
     def advance(self) -> Picture:
