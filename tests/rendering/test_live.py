@@ -79,10 +79,12 @@ def test_the_film_runs_until_it_is_stopped_and_follows_its_sliders(scene):
 def test_what_does_not_fit_is_said_in_a_line_and_changes_nothing(scene):
     image, _, sliders, note = parts(live(scene, size=(80, 60)))
     sliders["packing fraction"].max = 0.9
-    before = image.value
+    before, value = image.value, sliders["packing fraction"].value
     sliders["packing fraction"].value = 0.88
     assert "does not fit by random insertion" in note.value and "\n" not in note.value
-    assert image.value == before
+    assert image.value == before and sliders["packing fraction"].value == value
+    sliders["packing fraction"].value = 0.05
+    assert image.value != before and note.value == ""
 
 
 def test_sliders_that_would_mean_nothing_are_left_out():

@@ -94,13 +94,16 @@ def live(
         if change.new:
             running.task = asyncio.get_running_loop().create_task(play())  # which must be referred to
 
-    def changing(change: Callable[..., None], *values: float) -> None:
+    def changing(change: Callable[..., None], *values: float) -> bool:
+        """Return False if the gas refuses a change."""
         note.value = "one moment: kernels of a new kind of scene are compiled"
         try:
             change(*values)
-            image.value, note.value, meters.value = gas.picture._repr_png_(), "", meters_of(gas)
         except SceneError as error:
             note.value = str(error)
+            return False
+        image.value, note.value, meters.value = gas.picture._repr_png_(), "", meters_of(gas)
+        return True
 
     def trace(event: Any) -> None:
         gas.traced = event.new
@@ -129,13 +132,23 @@ def _slider(
     name: str,
     range_: tuple[float, float, float],
     change: Callable[[float], None],
-    changing: Callable[..., None],
+    changing: Callable[..., bool],
 ) -> Any:
-    """Return a slider of a name and a range (least, value, most) that changes a gas."""
+    """Return a slider of a name and a range (least, value, most) that changes a gas.
+
+    It goes back from a value that the gas refuses.
+    """
     least, value, most = range_
     slider = widgets.FloatSlider(value, min=least, max=most, step=(most - least) / 50.0, description=name)
     slider.continuous_update, slider.style.description_width = False, "initial"
-    slider.observe(lambda event: changing(change, event.new), "value")
+
+    def move(event: Any) -> None:
+        if not changing(change, event.new):
+            slider.unobserve(move, "value")
+            slider.value = event.old
+            slider.observe(move, "value")
+
+    slider.observe(move, "value")
     return slider
 
 
