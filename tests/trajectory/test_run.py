@@ -130,7 +130,7 @@ def test_a_trajectory_ends_in_nc(tmp_path):
 @pytest.mark.parametrize(
     ("command", "moment"),
     [
-        *product(["resume", "run"], ["begun_as", "may_replace", "is_blank", "locked"]),
+        *product(["resume", "run"], ["begun_as", "may_replace", "is_blank", "open_locked"]),
         ("resume", "read_recipe"),  # `run` reads it under the lock, when no other process can finish the file
     ],
 )

@@ -22,7 +22,7 @@ from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
 from gaspart.system import path_for_others
-from gaspart.trajectory.opening import no_run
+from gaspart.trajectory.opening import not_a_trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -115,7 +115,7 @@ def film(
     to = _gif if path.suffix == ".gif" else _mp4
     with open_source(trajectory) as source:
         if isinstance(source, Scene):
-            raise no_run(source)
+            raise not_a_trajectory(source)
         if isinstance(source, Simulation | State):
             raise SceneError(
                 "trajectory",

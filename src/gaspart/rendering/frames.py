@@ -306,7 +306,7 @@ def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.n
             corner, second, third, fourth = wall.corners.values()
             segments += pairwise((corner, second, fourth, third, corner))
     lengths = np.array(scene.container.lengths)
-    positions = [(moving.axis, moving.place if piston is None else float(piston))] if moving else []
+    positions = [(moving.axis, moving.position if piston is None else float(piston))] if moving else []
     for name, face in scene.faces.items():
         axis, upper = "xyz".index(name[0]), "high" in name
         if isinstance(face, Vibrating):

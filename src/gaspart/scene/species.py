@@ -46,14 +46,14 @@ _FIXED = declared(flag("the particle never moves: it has infinite mass"))
 _SPIN: dict = {"type": ["number", "array"], "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
 
 
-def _check_matter(thing: Species | Particle) -> None:
+def _check_matter(particle: Species | Particle) -> None:
     """Check the rules for several keys that species and single particles have in common."""
-    if thing.moment_of_inertia is not None:
-        if not SMALLEST <= thing.moment_of_inertia / thing.mass / thing.radius**2 <= LARGEST:
+    if particle.moment_of_inertia is not None:
+        if not SMALLEST <= particle.moment_of_inertia / particle.mass / particle.radius**2 <= LARGEST:
             rule = f"must be from {SMALLEST:g} to {LARGEST:g} times the mass times the radius squared"
-            raise SceneError("moment_of_inertia", thing.moment_of_inertia, rule)
-    if thing.vibration is not None and not thing.fixed:
-        raise SceneError("vibration", thing.vibration, "only a fixed particle vibrates")
+            raise SceneError("moment_of_inertia", particle.moment_of_inertia, rule)
+    if particle.vibration is not None and not particle.fixed:
+        raise SceneError("vibration", particle.vibration, "only a fixed particle vibrates")
 
 
 @dataclass(frozen=True)

@@ -290,7 +290,7 @@ def _bounds(
     if scene.shear_rate is not None:
         high[:, GRADIENT] = np.nextafter(high[:, GRADIENT], 0.0)
     if wall := scene.moving_wall:
-        axis, position = wall.axis, wall.place if piston is None else piston[0]
+        axis, position = wall.axis, wall.position if piston is None else piston[0]
         above = positions[:, axis] > position
         low[above, axis] = position + radii[above]
         high[~above, axis] = position - radii[~above]
