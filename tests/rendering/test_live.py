@@ -127,6 +127,10 @@ def test_thermal_faces_of_the_scene_keep_their_ratio():
     assert (now["x_low"].temperature, now["x_high"].temperature) == (5.0, 2.5)
     gas.heat(0.0)
     assert gas.simulation.scene.faces == faces
+    gas.push(10.0)
+    gas.heat(5.0)  # the piston stays one
+    now = gas.simulation.scene.faces
+    assert now["x_low"].temperature == 5.0 and isinstance(now["x_high"], gp.Piston)
 
 
 def test_a_piston_does_work_and_an_expansion_into_a_vacuum_does_none():

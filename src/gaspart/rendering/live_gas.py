@@ -196,12 +196,16 @@ class LiveGas:
         warm = self._warm
         scale = temperature / self.temperature if warm and temperature > 0.0 else 1.0
         for name in warm or self._hard:
+            face = faces.get(name)
+            if isinstance(face, Piston):  # on its way
+                continue
             if warm:
-                faces[name] = replace(faces[name], temperature=scale * warm[name].temperatures[0])
+                assert isinstance(face, Open | Thermal)
+                faces[name] = replace(face, temperature=scale * warm[name].temperatures[0])
             elif temperature <= 0.0:
                 faces.pop(name, None)
                 faces |= {name: first[name]} if name in first else {}
-            elif not isinstance(faces.get(name), Piston):
+            else:
                 faces[name] = Thermal(temperature)
         self._go_on(replace(self.simulation.scene, faces=faces))
 
@@ -215,8 +219,9 @@ class LiveGas:
         """
         faces = dict(self.simulation.scene.faces)
         for name, reservoir in self._reservoirs.items():
-            scale = activity / self.activity
-            faces[name] = replace(faces[name], activity=scale * reservoir.activity)
+            face, share = faces[name], (reservoir.activity or 0.0) / self.activity
+            assert isinstance(face, Open)
+            faces[name] = replace(face, activity=activity * share)
         self._go_on(replace(self.simulation.scene, faces=faces))
 
     def damp(self, normal: float) -> None:
