@@ -106,7 +106,7 @@ MISTAKES = {
     "theory beyond the fluid": (line("theory", "Z", "--eta", "0.9"), "0.9"),
     "accuracy in percent": (line(*RUN[:4], "--until", "Z=1%"), "as Z=1e-3 for 0.1 %"),
     "accuracy without a number": (line(*RUN[:4], "--until", "Z"), "as Z=1e-3 for 0.1 %"),
-    "budget of a scene": (line("budget", "scene.yaml"), "unknown key; known are title, seed, points"),
+    "budget of a scene": (line("budget", "scene.yaml"), "is a scene, and must be a config of the workflow"),
     "unknown part to keep": (line(*RUN, "--keep", "speeds"), "must be one of ('positions', 'velocities')"),
     "film as .avi": (line("render", "a.nc", "-o", "a.avi"), "must end in .png, .mp4, .gif"),
     "no interval": (line(*RUN[:6]), "required: --sample-interval, or --until; for this scene --duration"),
