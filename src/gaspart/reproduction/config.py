@@ -169,9 +169,9 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
                 raise SceneError("lengths", experiment, unknown_word(experiment, config["experiments"]))
         planned = {experiment: checked_points(config, experiment) for experiment in config["experiments"]}
         for figure, block in config["figures"].items():
-            shown = figure_points(config, figure, planned)
+            points = figure_points(config, figure, planned)
             if "kind" in block:
-                registry.validate(figure, block, shown)
+                registry.validate(figure, block, points)
                 _check_caption(figure, block)
         for animation, block in config.get("animations", {}).items():
             _animation(config, animation, block)
@@ -231,7 +231,7 @@ def _installed_kinds(config: object) -> tuple[tuple[str, str], ...]:
     Raises SceneError for a kind that is unknown, or whose package cannot be used.
     """
     figures = config.get("figures") if isinstance(config, dict) else None
-    found = []
+    pairs = []
     for figure, block in figures.items() if isinstance(figures, dict) else ():
         kind = block.get("kind") if isinstance(block, dict) else None
         if kind is None or kind in list(registry.kinds()):
@@ -243,8 +243,8 @@ def _installed_kinds(config: object) -> tuple[tuple[str, str], ...]:
             registry.settings_of_kind(kind)
         except SceneError as error:
             raise error.inside(where) from None
-        found.append((figure, kind))
-    return tuple(found)
+        pairs.append((figure, kind))
+    return tuple(pairs)
 
 
 def _check_caption(figure: str, block: dict) -> None:
@@ -266,7 +266,7 @@ def _check_caption(figure: str, block: dict) -> None:
 def _animation(config: dict, animation: str, block: dict | None) -> None:
     """Refuse a film of an experiment that is missing in the config, or has no trajectories."""
     experiment = block["experiment"] if block else None
-    kinds = {name: made.get("job", "simulate") for name, made in config["experiments"].items()}
+    kinds = {name: definition.get("job", "simulate") for name, definition in config["experiments"].items()}
     if block and kinds.get(experiment) != TRAJECTORIES:
         rule = "must be the name of an experiment that makes trajectories"
         raise SceneError(f"animations.{animation}.experiment", experiment, rule)
@@ -280,10 +280,10 @@ def checked_points(config: dict, experiment: str) -> dict[str, Point]:
 
     Each value of the grid is checked too. Raises SceneError.
     """
-    made = gridded_points(config, experiment)
-    for point in made.values():
+    points = gridded_points(config, experiment)
+    for point in points.values():
         check_point(point)
-    return made
+    return points
 
 
 def gridded_points(config: dict, experiment: str) -> dict[str, Point]:

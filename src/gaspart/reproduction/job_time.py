@@ -39,7 +39,9 @@ def used(results: Path, rule: str, *names: str) -> Used | None:
     """
     log = (results / "logs").joinpath(rule, *names)
     try:
-        found = _LINE.findall(log.with_name(f"{log.name}.log").read_text(encoding="utf-8", errors="replace"))
+        matches = _LINE.findall(
+            log.with_name(f"{log.name}.log").read_text(encoding="utf-8", errors="replace")
+        )
     except FileNotFoundError:
         return None
-    return Used(*map(float, found[-1])) if found else None
+    return Used(*map(float, matches[-1])) if matches else None

@@ -153,7 +153,9 @@ def sweep(
     plan = _planned(_experiment(point, axes, engine), _root(folder), count_of("seed", seed))
     _require_measurable(names, plan.able)
     _make(plan, count_of("workers", workers, least=1), bool(overwrite), progress or _print)
-    rows = [_row(one, names, equilibration is None, plan.failures.get(one.name, "")) for one in plan.points]
+    rows = [
+        _row(point, names, equilibration is None, plan.failures.get(point.name, "")) for point in plan.points
+    ]
     return table(rows, names, axes, {"scene": scene, "engine": engine, "seed": seed})
 
 
@@ -229,11 +231,11 @@ def _length(
         if at_most is not None:
             raise SceneError("at_most", at_most, "needs until")
         return {"samples": _SAMPLES, **settings}
-    asked = tuple(until) if isinstance(until, list | tuple) else (until,)
-    for one in Until(asked, settings["duration"]).accuracies:  # raises SceneError for other things
-        if one.start is not None:
-            raise SceneError("until.start", one.start, "is the equilibration of a sweep")
-    return {**settings, "until": {one.name: one.accuracy for one in asked}}
+    accuracies = tuple(until) if isinstance(until, list | tuple) else (until,)
+    for accuracy in Until(accuracies, settings["duration"]).accuracies:  # raises SceneError for other things
+        if accuracy.start is not None:
+            raise SceneError("until.start", accuracy.start, "is the equilibration of a sweep")
+    return {**settings, "until": {accuracy.name: accuracy.accuracy for accuracy in accuracies}}
 
 
 def _kept(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
@@ -316,8 +318,8 @@ def _gas(scene: Scene, axes: Mapping[str, list], varied: str) -> dict[str, Any]:
         "side": list(container.lengths),
     }
     same = {"count": species.count, "radius": species.radius, "side": list(container.lengths)}
-    given = {key: value for key, value in {**settings, **same}.items() if value is not None}
-    if Point(EXPERIMENT, "", "simulate", given, "", 0).scene != scene:
+    explicit = {key: value for key, value in {**settings, **same}.items() if value is not None}
+    if Point(EXPERIMENT, "", "simulate", explicit, "", 0).scene != scene:
         raise SceneError(f"over.{varied}", axes[varied], rule)
     order = _KEPT if species.alike else _KEPT_OF_SIZES
     kept = [key for key in order if key not in axes][: 3 - sum(key in axes for key in EXTENTS)]
@@ -386,10 +388,10 @@ def _row(point: Point, names: list[str], part: bool, failure: str) -> Measured:
     """Return the row of a point: its results, or the reason of its failure."""
     if failure:
         return Measured({}, [], failure)
-    found, refused = measured(point, names, part)
+    result, refused = measured(point, names, part)
     for name, error in refused.items():
         _complain(point.name, str(error), name)
-    return replace(found, failure="; ".join(str(error) for error in refused.values()))
+    return replace(result, failure="; ".join(str(error) for error in refused.values()))
 
 
 def _print(done: int, points: int, name: str) -> None:
@@ -397,5 +399,5 @@ def _print(done: int, points: int, name: str) -> None:
 
 
 def _complain(point: str, reason: str, observable: str = "") -> None:
-    what = f": {observable}" if observable else ""
-    print(f"{EXPERIMENT}[{point}]{what} is NaN: {reason}", file=sys.stderr, flush=True)
+    subject = f": {observable}" if observable else ""
+    print(f"{EXPERIMENT}[{point}]{subject} is NaN: {reason}", file=sys.stderr, flush=True)

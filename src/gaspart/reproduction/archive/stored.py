@@ -125,7 +125,7 @@ class Stored:
         Raises SceneError for another content.
         """
         try:
-            found = json.loads(self.text(RUN, 1 << 20))
+            content = json.loads(self.text(RUN, 1 << 20))
         except RecursionError:
             raise self.refused(f"has a {RUN} that is nested too deep") from None
         except ValueError as error:
@@ -133,19 +133,19 @@ class Stored:
                 raise
             raise self.refused(f"has a {RUN} that cannot be read: {error}") from None
         for key in _STATED:
-            if not (isinstance(found, dict) and isinstance(found.get(key), str)):
+            if not (isinstance(content, dict) and isinstance(content.get(key), str)):
                 raise self.refused(f"has a {RUN} that does not state {key}, a text")
-        return dict(found)
+        return dict(content)
 
     def manifest(self) -> dict[str, str]:
         """Return {path: digest} as the manifest states them; raise SceneError for another text."""
-        found: dict[str, str] = {}
+        digests: dict[str, str] = {}
         for line in io.StringIO(self.text(MANIFEST)):
             value, gap, name = line.removesuffix("\n").partition("  ")
-            if not gap or len(value) != _DIGITS or name in found:
+            if not gap or len(value) != _DIGITS or name in digests:
                 raise self.refused(f"has a {MANIFEST} that cannot be read")
-            found[name] = value
-        return found
+            digests[name] = value
+        return digests
 
 
 def _reason(error: BaseException) -> str:
@@ -226,11 +226,11 @@ def _folder(path: Path) -> Stored:
     if not (path / MANIFEST).is_file():
         raise SceneError("archive", str(path), f"is no archive of gaspart: it has no {MANIFEST}")
     names, stated, there = [], 0, 0
-    for name, found in _below(path, ""):
-        if not stat.S_ISREG(found.st_mode):
+    for name, status in _below(path, ""):
+        if not stat.S_ISREG(status.st_mode):
             raise SceneError("archive", str(path), f"has what is no regular file: {name}")
         names.append(name)
-        stated, there = stated + found.st_size, there + 512 * found.st_blocks
+        stated, there = stated + status.st_size, there + 512 * status.st_blocks
         if len(names) > MOST_FILES:
             raise SceneError("archive", str(path), f"has more than {MOST_FILES} files")
     check_names(path, names)
@@ -263,7 +263,9 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
     """
     _write_config(stored, folder)
     with checked(folder / "config/config.yaml") as (_, planned):
-        points = {(one.experiment, one.name): one for each in planned.values() for one in each.values()}
+        points = {
+            (point.experiment, point.name): point for each in planned.values() for point in each.values()
+        }
     rows = stored.rows(tables.POINTS, tables.PointFile._fields)
     listed = list(
         dict.fromkeys((row["experiment"], row["point"]) for row in rows if row["job"] == TRAJECTORIES)
@@ -272,7 +274,7 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
     missing = [f"{experiment}/{name}" for experiment, name in drawn if (experiment, name) not in points]
     if missing:
         raise SceneError("archive", str(stored.path), f"has a point that its config has not: {missing[0]}")
-    return [points[one] for one in drawn]
+    return [points[key] for key in drawn]
 
 
 def _write_config(stored: Stored, folder: Path) -> None:
@@ -296,20 +298,20 @@ def rerun(stored: Stored, point: Point, folder: Path) -> Check:
     """Simulate all replicas of a point, and compare the digests of their numbers."""
     load_numba(ours=True)
     rows = stored.rows(tables.POINTS, tables.PointFile._fields)
-    known = {
+    digests = {
         row["replica"]: row["numbers_sha256"]
         for row in rows
         if (row["experiment"], row["point"]) == (point.experiment, point.name)
     }
     other = []
     for replica, recipe in enumerate(recipes(**point.arguments)):
-        made = folder / "again.nc"
+        output = folder / "again.nc"
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of coarse settings, which the config has on purpose
-            record(recipe, made, True)
-        if digest_of_numbers(made) != known.get(str(replica)):
+            record(recipe, output, True)
+        if digest_of_numbers(output) != digests.get(str(replica)):
             other.append(str(replica))
-        made.unlink()
+        output.unlink()
     name = f"{point.experiment}/{point.name}"
     if not other:
         return Check("rerun", True, f"{name}: the same bits in {_counted(point.replicas)}")
@@ -366,8 +368,8 @@ def _files(stored: Stored, stated: Mapping[str, str]) -> Check:
     missing = sorted(stated.keys() - stored.names)
     unknown = sorted(stored.names - stated.keys() - {MANIFEST})
     changed = [name for name in sorted(stated.keys() & stored.names) if stored.digest(name) != stated[name]]
-    found = {"missing": missing, "changed or damaged": changed, "not of the archive": unknown}
-    faults = [f"{what}: {_shown(names)}" for what, names in found.items() if names]
+    faulty = {"missing": missing, "changed or damaged": changed, "not of the archive": unknown}
+    faults = [f"{kind}: {_shown(names)}" for kind, names in faulty.items() if names]
     return Check("files", not faults, "; ".join(faults) or f"{len(stated)} have the digests of {MANIFEST}")
 
 
@@ -410,10 +412,10 @@ def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
     named = [tuple(row[key] for key in _JUDGED) for row in listed]
     if named != [tuple(row[key] for key in _JUDGED) for row in judged]:
         return Check("claims", False, f"{tables.CLAIMS} and the results list different claims")
-    known = dict(stated) | {row["path"]: row["sha256"] for row in points}
+    digests = dict(stated) | {row["path"]: row["sha256"] for row in points}
     wrong = []
     inputs = {data: _inputs(stored, data) for data in dict.fromkeys(row["data"] for row in listed)}
-    joint = {data: joint_digest(paths, known) for data, paths in inputs.items()}
+    joint = {data: joint_digest(paths, digests) for data, paths in inputs.items()}
     for row in listed:
         if row["data_sha256"] != stated.get(row["data"]) or row["inputs_sha256"] != joint[row["data"]]:
             wrong.append(row["figure"])

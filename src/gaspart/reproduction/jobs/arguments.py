@@ -45,8 +45,8 @@ def from_plain(values: dict[str, Any]) -> dict[str, Any]:
     return _converted(values, 1)
 
 
-def _converted(given: dict[str, Any], direction: int) -> dict[str, Any]:
+def _converted(arguments: dict[str, Any], direction: int) -> dict[str, Any]:
     return {
         name: _FORMS[name][direction](value) if name in _FORMS and value is not None else value
-        for name, value in given.items()
+        for name, value in arguments.items()
     }

@@ -52,10 +52,10 @@ class Strip(ast.NodeTransformer):
     def visit_If(self, node: ast.If) -> ast.stmt | list[ast.stmt]:
         """Keep the branch that is taken."""
         self.generic_visit(node)
-        known = self._known(node.test)
-        if known is None:
+        value = self._known(node.test)
+        if value is None:
             return node
-        return (node.body if known else node.orelse) or ast.Pass()
+        return (node.body if value else node.orelse) or ast.Pass()
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.stmt:
         """Drop the statements after a return that has become unconditional."""
@@ -68,8 +68,8 @@ class Strip(ast.NodeTransformer):
     def visit_IfExp(self, node: ast.IfExp) -> ast.AST:
         """Keep the value that is taken."""
         self.generic_visit(node)
-        known = self._known(node.test)
-        return node if known is None else node.body if known else node.orelse
+        value = self._known(node.test)
+        return node if value is None else node.body if value else node.orelse
 
 
 def stripped(source: str) -> str:

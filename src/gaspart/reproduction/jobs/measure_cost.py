@@ -164,9 +164,12 @@ def measure_cost(
     start = _start(scene, careful, seed, equilibration)
     runs = [_Run(scene, start, engine.resolved(scene), extras) for engine in engines]
     if rival:
-        made = rival["scene"]
-        other = start if made == scene else _start(made, careful, seed, equilibration)
-        runs += [_Run(made, other, one.resolved(made), _NONE) for one in rival["engines"]]
+        rival_scene = rival["scene"]
+        other = start if rival_scene == scene else _start(rival_scene, careful, seed, equilibration)
+        runs += [
+            _Run(rival_scene, other, rival_engine.resolved(rival_scene), _NONE)
+            for rival_engine in rival["engines"]
+        ]
     available = config.NUMBA_NUM_THREADS
     possible = max(run.cores for run in runs) <= available
     times, counts = _in_turn(runs, interval, samples if possible else 1)
@@ -288,5 +291,5 @@ def _sides(engine: Engine, dimension: int) -> tuple[int, ...]:
     settings = engine_to_dict(engine)
     if settings.get("search", "boxes") not in ("automatic", "boxes"):
         return (1,) * dimension
-    given = settings.get("boxes_per_side") or 0
-    return given if isinstance(given, tuple) else (given,) * dimension
+    sides = settings.get("boxes_per_side") or 0
+    return sides if isinstance(sides, tuple) else (sides,) * dimension

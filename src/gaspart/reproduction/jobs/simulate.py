@@ -76,12 +76,12 @@ def modules(point: Point) -> list[str]:
 def arguments(point: Point) -> dict:
     """Return the arguments of `simulate`; raise SceneError."""
     times, settings = point.schedule, point.settings
-    given = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
+    common = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
     if "until" in settings:
         for key in _NOT_WITH_UNTIL:
             if settings.get(key):
                 raise point.refused(key, "has no meaning with until")
-        return {**given, **point.ending}
+        return {**common, **point.ending}
     follow = settings.get("follow")
     if follow is not None and follow > point.extents.particles:
         raise point.refused("follow", f"there are {point.extents.particles} particles")
@@ -91,7 +91,7 @@ def arguments(point: Point) -> dict:
         correlations = {"interval": times.sample_interval, "lags": lags, "start": times.equilibration}
         correlations |= {"stress": True} if settings.get("stress") else {}
     return {
-        **given,
+        **common,
         "duration": times.duration,
         "sample_interval": _frame_interval(point),
         "displacements": False,

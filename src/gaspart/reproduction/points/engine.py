@@ -42,10 +42,10 @@ def scanned(point: Point) -> list[Engine]:
             raise point.refused(scan, f"has no meaning with engine: {single.name}")
         return [single.with_step(step) for step in values]
     if scans == ["scan_step_parts"]:
-        whole: Any = point.engine.resolved(point.scene)
-        if whole.quantum is None:
-            raise point.refused(scan, f"has no meaning with engine: {whole.name}")
-        return [whole.with_step(part * whole.time_step) for part in values]
+        resolved: Any = point.engine.resolved(point.scene)
+        if resolved.quantum is None:
+            raise point.refused(scan, f"has no meaning with engine: {resolved.name}")
+        return [resolved.with_step(part * resolved.time_step) for part in values]
     if len(scans) > 1 or "boxes_per_side" in settings or "boxes_per_particle" in settings:
         raise point.refused(scan, "a scan excludes every other choice of boxes")
     if not values:
@@ -117,14 +117,14 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
         advice = tabulated(scene, observable, accuracy)
     except SceneError as error:
         raise error.inside(where) from None
-    made = {key: value for key, value in settings.items() if key not in point_keys.ENGINE_KEYS["auto"]}
+    merged = {key: value for key, value in settings.items() if key not in point_keys.ENGINE_KEYS["auto"]}
     engine = advice.best.engine
-    made |= {"engine": engine.name, **engine.advised_settings()}
+    merged |= {"engine": engine.name, **engine.advised_settings()}
     if not point_keys.LENGTHS.keys() & settings.keys():
-        made["collisions_per_particle"] = math.ceil(advice.collisions_per_particle)
-        made.setdefault("replicas", advice.replicas)
-        made.setdefault("equilibration", EQUILIBRATION)
-    return made
+        merged["collisions_per_particle"] = math.ceil(advice.collisions_per_particle)
+        merged.setdefault("replicas", advice.replicas)
+        merged.setdefault("equilibration", EQUILIBRATION)
+    return merged
 
 
 # Duration and sampling of a point's runs.
@@ -201,19 +201,19 @@ def _unit_of_time(point: Point, unit: str) -> float:
         return point.settings["time_step"]
     from gaspart import theory
 
-    key, given = f"experiments.{point.experiment}.collisions_per_particle", point.settings[unit]
+    key, value = f"experiments.{point.experiment}.collisions_per_particle", point.settings[unit]
     gas, mixture = point.scene.gas, point.scene.mixture
     if mixture is None:
         rule = "is known only for smooth particles without gravity or obstacles; give duration"
-        raise SceneError(key, given, rule)
+        raise SceneError(key, value, rule)
     if not mixture.temperature > 0.0:
-        raise SceneError(key, given, "needs a temperature or a speed above zero")
+        raise SceneError(key, value, "needs a temperature or a speed above zero")
     try:
         rate = theory.collision_rate(**gas.parameters) if gas else _mean_rate(mixture)
     except ValueError as error:
-        raise SceneError(key, given, f"cannot be turned into a time: {error}") from None
+        raise SceneError(key, value, f"cannot be turned into a time: {error}") from None
     if not 0.0 < rate < math.inf:
-        raise SceneError(key, given, f"cannot be turned into a time: the collision rate is {rate:g}")
+        raise SceneError(key, value, f"cannot be turned into a time: the collision rate is {rate:g}")
     return 1.0 / float(rate)
 
 

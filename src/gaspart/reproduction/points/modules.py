@@ -97,8 +97,8 @@ def kernel_digest(*roots: str | Path) -> str:
 
     Jobs that need equal modules share their stamps.
     """
-    needed = closure(*roots) & closure("gaspart.reproduction.points.point")
-    return _digest_of([path for path in _in_order(needed) if path.is_relative_to(PACKAGE / "kernels")])
+    modules = closure(*roots) & closure("gaspart.reproduction.points.point")
+    return _digest_of([path for path in _in_order(modules) if path.is_relative_to(PACKAGE / "kernels")])
 
 
 def _in_order(paths: frozenset[Path]) -> list[Path]:

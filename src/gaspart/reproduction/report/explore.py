@@ -32,7 +32,7 @@ def states(paths: Mapping[str, str]) -> list[dict[str, Any]]:
     """Return `series` of the measurements of figures, {figure: path}, that are equations of state."""
     import xarray as xr
 
-    stated = {figure: one for figure, one in registry.series().items() if figure in paths}
+    stated = {figure: declaration for figure, declaration in registry.series().items() if figure in paths}
     return series({figure: xr.load_dataset(paths[figure]) for figure in stated}, stated)
 
 
@@ -43,8 +43,8 @@ def choice_of_engine(paths: Mapping[str, str]) -> dict[str, Any] | None:
     """
     import xarray as xr
 
-    found = [figure for figure in registry.costs() if figure in paths]
-    return {"figure": found[0], **engines(xr.load_dataset(paths[found[0]]))} if found else None
+    figures = [figure for figure in registry.costs() if figure in paths]
+    return {"figure": figures[0], **engines(xr.load_dataset(paths[figures[0]]))} if figures else None
 
 
 def series(
@@ -88,13 +88,13 @@ def engines(dataset: xr.Dataset) -> dict[str, Any]:
 
     from gaspart.reproduction.families.tradeoff import panels
 
-    found = []
+    observables = []
     for quantity in dataset["quantity"].values:
         of = dataset.sel(quantity=quantity)
         of = of.isel(fraction=(of["cost"] < np.inf).any(("accuracy", "solver")).values)
         if of.sizes["fraction"]:
             cost = of["cost"].transpose("fraction", "accuracy", "solver")
-            found.append(
+            observables.append(
                 {
                     "key": str(quantity),
                     "name": panels.TITLES[str(quantity)].replace("$", ""),
@@ -111,7 +111,7 @@ def engines(dataset: xr.Dataset) -> dict[str, Any]:
             for engine in map(str, dataset["solver"].values)
         ],
         "parts": list(panels.PART_NAMES),
-        "observables": found,
+        "observables": observables,
     }
 
 
@@ -197,10 +197,10 @@ def cited(citation: re.Match[str], references: Mapping[str, Reference]) -> Refer
 
 def used(texts: Iterable[str], references: Mapping[str, Reference]) -> dict[str, Reference]:
     """Return the references that some texts cite, by key, in the same order, numbered from 1."""
-    found = (cited(citation, references) for text in texts for citation in CITATION.finditer(text))
-    keys = {reference.key for reference in found if reference is not None}
+    matches = (cited(citation, references) for text in texts for citation in CITATION.finditer(text))
+    keys = {reference.key for reference in matches if reference is not None}
     kept = (reference for key, reference in references.items() if key in keys)
-    return {one.key: replace(one, number=number) for number, one in enumerate(kept, 1)}
+    return {item.key: replace(item, number=number) for number, item in enumerate(kept, 1)}
 
 
 def linked(text: str, references: Mapping[str, Reference]) -> str:

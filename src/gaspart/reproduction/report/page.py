@@ -37,12 +37,12 @@ class Dot:
     """Claim on the axis of deviations.
 
     row : row of the claims table.
-    place : position in percent of the axis.
+    position : position in percent of the axis.
     level : 0, 1, ... from below, so that dots do not hide one another.
     """
 
     row: dict[str, Any]
-    place: float
+    position: float
     level: int
 
 

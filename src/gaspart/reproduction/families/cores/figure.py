@@ -76,8 +76,8 @@ def _by_cores(axis: Axes, runs: Table, models: Table, available: int) -> None:
             for part, dashes in ((fine <= available, "-"), (fine >= available, ":")):
                 speed = _modelled(models, widest, fine[part], widest.count)
                 axis.plot(fine[part], speed, dashes, color=style.COLOURS[kind], linewidth=0.8)
-    place = f"cores (dotted: beyond the {available} of this machine)"
-    style.labelled(axis, place, _LABEL, legend="upper left", xlim=(0.8, _MOST + 0.2), ylim=(0.0, _MOST + 0.5))
+    cores = f"cores (dotted: beyond the {available} of this machine)"
+    style.labelled(axis, cores, _LABEL, legend="upper left", xlim=(0.8, _MOST + 0.2), ylim=(0.0, _MOST + 0.5))
 
 
 def _once(label: str, named: set[str]) -> str:

@@ -38,7 +38,10 @@ def dsmc_convergence(dataset: xr.Dataset) -> list[Claim]:
     return [
         *(_limit(quantity, own) for quantity, own in of.items()),
         _narrow_cells(gases),
-        *(_of_steps(quantity, of[quantity], known) for quantity, known in STEP_COEFFICIENTS.items()),
+        *(
+            _of_steps(quantity, of[quantity], coefficient)
+            for quantity, coefficient in STEP_COEFFICIENTS.items()
+        ),
         _wide_cells(parts["paths"]),
         *_dense(parts["dense"]),
         *_plates(parts["plates"], parts["event_plates"]),
@@ -114,14 +117,14 @@ def _dense(gases: Table) -> list[Claim]:
     The model is compared with its own equation.
     """
     where = "in the Enskog model at packing fraction {packing_fraction:g}"
-    given: dict[str, Any] = {
+    common: dict[str, Any] = {
         "expected": 1.0,
         "required": 0.003,
         "source": "the contact value of Carnahan and Starling, which the model is given",
         "fails_if": "a wrong chance to collide, or a loss of pairs that approach",
     }
-    excess = each(gases, f"Z - 1 over Carnahan and Starling's {where}", measured=gases.excess, **given)
-    rate = each(gases, f"collision rate over Enskog's {where}", measured=gases.rate, **given)
+    excess = each(gases, f"Z - 1 over Carnahan and Starling's {where}", measured=gases.excess, **common)
+    rate = each(gases, f"collision rate over Enskog's {where}", measured=gases.rate, **common)
     diffusion = each(
         gases,
         f"diffusion over Enskog's {where}",

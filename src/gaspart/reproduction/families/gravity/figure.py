@@ -61,8 +61,8 @@ def _source_columns(top: Axes, bottom: Axes, columns: list[Row]) -> None:
         _temperature(bottom, row, kind)
     top.set_ylim(0.0)
     style.labelled(top, y=r"density $\rho/\bar\rho$", legend="upper right")
-    place = "height $z$ (length) in the source's column"
-    style.labelled(bottom, place, r"$T(z)/T - 1$ (%)", ylim=(-6.0, 12.0))
+    label = "height $z$ (length) in the source's column"
+    style.labelled(bottom, label, r"$T(z)/T - 1$ (%)", ylim=(-6.0, 12.0))
 
 
 def separation(ds: xr.Dataset) -> Figure:
@@ -118,8 +118,8 @@ def _shares(axis: Axes, row: Row) -> None:
     style.points(axis, 0.5 * (edges[1:] + edges[:-1]), row.share, kind=1, label="the same, here")
     light, heavy = row.hydrostatic
     axis.plot(row.height, light / (light + heavy), color=style.REFERENCE, label="equilibrium at its $T$")
-    place = "height $z$ (length) in the source's mixture"
-    style.labelled(axis, place, "share of light discs", "upper left", ylim=(0.0, 1.0))
+    label = "height $z$ (length) in the source's mixture"
+    style.labelled(axis, label, "share of light discs", "upper left", ylim=(0.0, 1.0))
 
 
 def _named(ds: xr.Dataset, *names: str) -> list[Row]:
@@ -170,8 +170,8 @@ def heat_capacity(ds: xr.Dataset) -> Figure:
         style.points(top, at, capacity, **look, label=label)
         style.points(bottom, at, 100.0 * (capacity / expected - 1.0), **look)
     style.labelled(top, y=r"heat capacity $C_V/Nk$", legend="lower right", ylim=(0.9, 2.1))
-    place, deviation = r"height of the box $x = mgH/kT$", "deviation from\nexact (%)"
-    style.labelled(bottom, place, deviation, xlim=(-0.03 * end, end), ylim=(-4.5, 4.5))
+    height, deviation = r"height of the box $x = mgH/kT$", "deviation from\nexact (%)"
+    style.labelled(bottom, height, deviation, xlim=(-0.03 * end, end), ylim=(-4.5, 4.5))
     style.letters(top, bottom)
     return figure
 

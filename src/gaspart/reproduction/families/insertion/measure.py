@@ -54,8 +54,10 @@ class Fill:
     def packing_fraction(self, times: np.ndarray) -> np.ndarray:
         """Compute (replica, times): packing fraction at the times t."""
         attempts = times / self.particle
-        placed_at = [np.cumsum(one[one >= 0] + 1) for one in self.failures]
-        return self.particle * np.array([np.searchsorted(one, attempts, side="right") for one in placed_at])
+        placed_at = [np.cumsum(series[series >= 0] + 1) for series in self.failures]
+        return self.particle * np.array(
+            [np.searchsorted(series, attempts, side="right") for series in placed_at]
+        )
 
     def trials(self) -> tuple[np.ndarray, np.ndarray]:
         """Return failures and successes (replica, particle) at each number of particles; zero beyond."""

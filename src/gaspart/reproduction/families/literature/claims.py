@@ -52,7 +52,9 @@ def literature(dataset: xr.Dataset) -> list[Claim]:
             fails_if="contacts are missed, correlations cut too early, or finite numbers act otherwise",
         ),
         *_together(values[static], "Z and pressures beside those of others"),
-        *_together(values[[not one for one in static]], "transport coefficients beside those of others"),
+        *_together(
+            values[[not is_static for is_static in static]], "transport coefficients beside those of others"
+        ),
     ]
 
 

@@ -82,12 +82,12 @@ def _compressibility(gas: Row) -> Claim:
     This equation must be excluded unless they are dilute.
     """
     allowance = math.hypot(gas.reference_error, gas.santos - gas.linear, gas.correction * _UNSURE)
-    over, what, required, alternative = gas.santos, "Z over that of [Santos 2002]", REQUIRED, None
+    over, subject, required, alternative = gas.santos, "Z over that of [Santos 2002]", REQUIRED, None
     if gas.dimension == 3 and not _dilute(gas):
-        over, what, alternative = gas.boublik, "Z over Boublik's and Mansoori's", 1.0
+        over, subject, alternative = gas.boublik, "Z over Boublik's and Mansoori's", 1.0
         required = abs(gas.santos / over - 1.0) / 5.0
     return Claim(
-        claim=f"{what}, {_where(gas)}",
+        claim=f"{subject}, {_where(gas)}",
         measured=gas.Z / over,
         expected=Estimate(gas.santos, allowance) / over,
         required=required,

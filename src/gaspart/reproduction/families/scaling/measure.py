@@ -38,11 +38,11 @@ def naive_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     relative difference of the pair tests from N(N-1)/2; ``test_seconds``, the cost of a pair test, from time
     = a N + b tests.
     """
-    made = one_box([xr.load_dataset(point.path) for point in points])
-    gases = Table(made, "count")
+    dataset = one_box([xr.load_dataset(point.path) for point in points])
+    gases = Table(dataset, "count")
     count, tests = gases.count.astype(float), gases.pair_tests
     parts = weights(gases.seconds, count, tests)
-    return made.assign(
+    return dataset.assign(
         **entries({
             "exponent": trend(count, gases.seconds.value),
             "test_seconds": (parts.values[1], parts.errors[1]),
@@ -250,10 +250,10 @@ def _advantages(fine: xr.Dataset, round_per_side: list[int]) -> list[Estimate]:
     """
     n = fine.fine_boxes_per_side.values[0]
     difference = np.log(fine.fine_seconds.values[1]) - np.log(fine.fine_seconds.values[0])
-    others = [difference[(n != one) & (np.abs(n / one - 1.0) <= 0.125)] for one in round_per_side]
+    others = [difference[(n != boxes) & (np.abs(n / boxes - 1.0) <= 0.125)] for boxes in round_per_side]
     freedom = sum(near.size - 1 for near in others)
     scatter = math.sqrt(sum(near.size * near.var() for near in others) / freedom)
     return [
-        Estimate(difference[n == one][0] - near.mean(), scatter * math.sqrt(1.0 + 1.0 / near.size), freedom)
-        for one, near in zip(round_per_side, others, strict=True)
+        Estimate(difference[n == boxes][0] - near.mean(), scatter * math.sqrt(1.0 + 1.0 / near.size), freedom)
+        for boxes, near in zip(round_per_side, others, strict=True)
     ]

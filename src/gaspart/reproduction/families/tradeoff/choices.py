@@ -68,11 +68,13 @@ class Choice:
         remainder after equilibration.
         """
         length = self.measured(accuracy)
-        left = 0.0
+        remainder = 0.0
         if self.decay and math.isfinite(length):
-            left = self.trace * math.exp(-self.equilibration / self.decay) * self.decay / length
+            remainder = self.trace * math.exp(-self.equilibration / self.decay) * self.decay / length
         noise = QUANTILE * math.sqrt(self.unit / length)
-        return dict(zip(PARTS, (self.model, self.discretisation, noise, left, self.finite_size), strict=True))
+        return dict(
+            zip(PARTS, (self.model, self.discretisation, noise, remainder, self.finite_size), strict=True)
+        )
 
 
 def required(variance: float, accuracy: float, bias: float, least: float = 0.0) -> float:
@@ -81,10 +83,10 @@ def required(variance: float, accuracy: float, bias: float, least: float = 0.0) 
     It is at least `least`. The unit is that in which a measurement has this relative variance; inf if the
     bias leaves no noise.
     """
-    left = (accuracy - bias) / QUANTILE
-    return max(variance / left**2, least) if left > 0.0 else math.inf
+    margin = (accuracy - bias) / QUANTILE
+    return max(variance / margin**2, least) if margin > 0.0 else math.inf
 
 
 def cheapest(choices: Sequence[Choice], accuracy: float) -> Choice:
     """Return the choice that costs least, or the least biased one where none reaches the accuracy."""
-    return min(choices, key=lambda one: (one.cost(accuracy), one.bias))
+    return min(choices, key=lambda choice: (choice.cost(accuracy), choice.bias))

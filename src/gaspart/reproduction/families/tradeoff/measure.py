@@ -76,7 +76,7 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     dataset = dataset.assign(tables.table("steady", long, _steady, rows)).merge(
         frontier(dataset), join="outer", compat="no_conflicts"
     )
-    events = [one for one in timed if one["setting"] == "event"]
+    events = [timing for timing in timed if timing["setting"] == "event"]
     dataset = dataset.assign(tables.table("timed", events, _timed))
     cells = cells_by_fraction(points, settings["cells"])
     models = _models(events, timed, cells)
@@ -146,19 +146,21 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
 
 def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
     """Time of this machine over the table's, for each engine and precision, from the reference gas."""
-    found = {}
-    for one in timed:
-        if one["gas"] != (3, REFERENCE) or one["setting"] not in ("event", *PRECISIONS):
+    speeds = {}
+    for timing in timed:
+        if timing["gas"] != (3, REFERENCE) or timing["setting"] not in ("event", *PRECISIONS):
             continue
-        engine = "event" if one["setting"] == "event" else "step"
-        precision = PRECISIONS.get(one["setting"], "float64")
-        at = 0 if engine == "event" else int(np.argmin(np.abs(one["time_step"] - STEP)))
-        event = next(other for other in timed if other["gas"] == one["gas"] and other["setting"] == "event")
-        here = one["seconds"][at] / event["collisions"][0]
-        found[engine, precision] = here / table.seconds(
+        engine = "event" if timing["setting"] == "event" else "step"
+        precision = PRECISIONS.get(timing["setting"], "float64")
+        at = 0 if engine == "event" else int(np.argmin(np.abs(timing["time_step"] - STEP)))
+        event = next(
+            other for other in timed if other["gas"] == timing["gas"] and other["setting"] == "event"
+        )
+        here = timing["seconds"][at] / event["collisions"][0]
+        speeds[engine, precision] = here / table.seconds(
             3, REFERENCE, engine, precision, STEP * (engine == "step")
         )
-    return found
+    return speeds
 
 
 def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float, speeds: dict) -> np.ndarray:
@@ -175,9 +177,9 @@ def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float,
         contacts = required(noise, accuracy, bias, 0.5 * count * LEAST) + 0.5 * count * EQUILIBRATION
         return contacts * each if np.isfinite(each) else np.inf
 
-    known = table.seconds(dimension, fraction, "event") * speeds["event", "float64"]
+    tabulated = table.seconds(dimension, fraction, "event") * speeds["event", "float64"]
     event = rows[0]["event_seconds"]
-    found = [(0, cost(0.0, event), cost(0.0, known), rows[0]["event_error"] / event)]
+    costs = [(0, cost(0.0, event), cost(0.0, tabulated), rows[0]["event_error"] / event)]
     for row in rows:
         precision = PRECISIONS[row["setting"]]
         bounds = np.abs(row["bias"][observable]) + 2.0 * row["bias_error"][observable]
@@ -185,8 +187,8 @@ def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float,
             each = table.seconds(dimension, fraction, "step", precision, step) * speeds["step", precision]
             bias = table.bias(dimension, fraction, precision, step, name)
             spread = row["seconds_error"][n] / row["seconds"][n]
-            found.append((1, cost(bounds[n], row["seconds"][n]), cost(bias, each), spread))
-    return np.array(found)
+            costs.append((1, cost(bounds[n], row["seconds"][n]), cost(bias, each), spread))
+    return np.array(costs)
 
 
 def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
@@ -194,17 +196,17 @@ def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
 
     The error is scaled by the scatter.
     """
-    found = []
+    orders = []
     for bias, error in zip(row["bias"], row["bias_error"], strict=True):
         size = np.abs(bias)
         seen = (size > SEEN * error) & (size < largest)
         if seen.sum() < FITTED or np.unique(np.sign(bias[seen])).size > 1:
-            found.append((np.nan, np.nan))
+            orders.append((np.nan, np.nan))
             continue
         law = statistics.fit_power_law(row["time_step"][seen], size[seen], error[seen])
         scatter = max(1.0, law.chi_square / max(1, law.degrees_of_freedom)) ** 0.5
-        found.append((law.exponent, law.exponent_error * scatter))
-    return found
+        orders.append((law.exponent, law.exponent_error * scatter))
+    return orders
 
 
 def _models(events: list[dict], timed: list[dict], cells: dict[float, Cells]) -> list[tuple[dict, dict]]:
@@ -213,11 +215,11 @@ def _models(events: list[dict], timed: list[dict], cells: dict[float, Cells]) ->
     For the Enskog model the error by cells must have been measured, in spheres.
     """
     return [
-        (event, one)
+        (event, timing)
         for event in events
-        for one in timed
-        if one["gas"] == event["gas"]
-        and (one["setting"] == "boltzmann" or (one["setting"] == "enskog" and _cells(one, cells)))
+        for timing in timed
+        if timing["gas"] == event["gas"]
+        and (timing["setting"] == "boltzmann" or (timing["setting"] == "enskog" and _cells(timing, cells)))
     ]
 
 
@@ -232,17 +234,17 @@ def _model(timings: tuple[dict, dict], cells: dict[float, Cells]) -> dict[str, A
 
     The step is the cheapest one, on which Z does not depend.
     """
-    event, one = timings
-    (dimension, fraction), model, known = one["gas"], one["setting"], _cells(one, cells)
-    seconds = each_of(one, float(event["collisions"][0]))
+    event, timing = timings
+    (dimension, fraction), model, own_cells = timing["gas"], timing["setting"], _cells(timing, cells)
+    seconds = each_of(timing, float(event["collisions"][0]))
     cheapest = seconds[np.argmin(seconds.value)]
-    of_cells = known.error if known and model == "enskog" else 0.0
+    of_cells = own_cells.error if own_cells and model == "enskog" else 0.0
     return {
         "dsmc_model": model,
         "dsmc_dimension": dimension,
         "dsmc_packing_fraction": fraction,
         "dsmc_seconds": (cheapest.value, cheapest.error),
-        "dsmc_step": one["step_parts"],
+        "dsmc_step": timing["step_parts"],
         "dsmc_step_seconds": (seconds.value, seconds.error),
         "dsmc_bias": model_error(fraction, dimension, model, "Z") + of_cells,
     }

@@ -54,7 +54,7 @@ def _bed(point: Point, settings: dict) -> dict[str, Any]:
     }
     replicas = [means(run, settings) for run in runs(point)]
     for name in replicas[0]:
-        row[name] = Estimate(*means_of([one[name] for one in replicas]), len(replicas) - 1)
+        row[name] = Estimate(*means_of([replica[name] for replica in replicas]), len(replicas) - 1)
     weight = species.count * -scene.gravity[1] / width
     row["packing_fraction"] = math.pi * species.radius**2 * weight / row["temperature"].value
     return row
