@@ -26,7 +26,7 @@ import xarray as xr
 
 from gaspart.reproduction import cost as budget
 from gaspart.reproduction.claims.judging import judge, sufficient
-from gaspart.reproduction.config import checked
+from gaspart.reproduction.config import open_config
 from gaspart.reproduction.table import MADE_OF
 
 IN_HAND = 1.3
@@ -60,7 +60,7 @@ def demands(figure: str, block: Mapping, dataset: xr.Dataset) -> Iterator[Demand
     """Find the demands of the claims of a figure that runs decide and that are decided."""
     before = budget.claims_of(figure, block, dataset)
     rows = list(_rows(dataset))
-    after = [budget.claims_of(figure, block, _enlarged(dataset, position)) for position, _ in rows]
+    after = [budget.claims_of(figure, block, _enlarge_errors(dataset, position)) for position, _ in rows]
     for n, (claim, verdict) in enumerate(zip(before, judge(before), strict=True)):
         multiple = sufficient(claim)
         if not budget.is_decided_by_runs(claim) or not multiple <= 1.0 or verdict == "inconclusive":
@@ -87,7 +87,7 @@ def _rows(dataset: xr.Dataset) -> Iterator[tuple[dict[str, int], list[str]]]:
                     yield dict(zip(map(str, column.dims), position, strict=True)), text.splitlines()
 
 
-def _enlarged(dataset: xr.Dataset, position: Mapping[str, int]) -> xr.Dataset:
+def _enlarge_errors(dataset: xr.Dataset, position: Mapping[str, int]) -> xr.Dataset:
     """Return the data with enlarged uncertainties, and an enlarged scatter of replicas, in a row."""
     factor = np.ones([dataset.sizes[over] for over in position])
     factor[tuple(position.values())] = math.sqrt(_ENLARGED)
@@ -105,7 +105,7 @@ def _enlarged(dataset: xr.Dataset, position: Mapping[str, int]) -> xr.Dataset:
     return dataset.assign(changed)
 
 
-def allocated(
+def allocate(
     demanded: Sequence[Demand], cost: Mapping[str, float], figures: Mapping[str, Sequence[str]]
 ) -> tuple[dict[str, float], list[float]]:
     """Return the multiple of the length of each point, and the price of each demand.
@@ -154,18 +154,18 @@ def _least_cost(shares: np.ndarray, times: np.ndarray, least: np.ndarray) -> tup
 
 def main(path: str, page: str) -> None:
     """Allocate lengths from the run of a config; see the module."""
-    with checked(path) as (config, planned):
+    with open_config(path) as (config, planned):
         results = Path("results") / (config.get("run") or "")
         figures = budget.shown_points(config, planned)
         demanded = [
             demand
             for figure in figures
-            for demand in demands(figure, config["figures"][figure], _measured(results, figure))
+            for demand in demands(figure, config["figures"][figure], _read_measurement(results, figure))
         ]
         names = {figure: ["/".join(point) for point in points] for figure, points in figures.items()}
         points = {point for points in figures.values() for point in points}
         cost = {"/".join(point): budget.point_seconds(results, point) for point in points}
-        multiples, prices = allocated(demanded, cost, names)
+        multiples, prices = allocate(demanded, cost, names)
         had = config.get("lengths") or {}
     for name in multiples:
         experiment, _, point = name.partition("/")
@@ -174,7 +174,7 @@ def main(path: str, page: str) -> None:
     Path(page).write_text(_page(multiples, cost, demanded, prices), encoding="utf-8")
 
 
-def _measured(results: Path, figure: str) -> xr.Dataset:
+def _read_measurement(results: Path, figure: str) -> xr.Dataset:
     return xr.load_dataset(results / "measurements" / f"{figure}.nc")
 
 

@@ -16,7 +16,7 @@ from gaspart.errors import SceneError
 from gaspart.files import whole_file
 from gaspart.reproduction import job_time
 from gaspart.reproduction.claims.judging import Claim, judge, sufficient
-from gaspart.reproduction.config import checked
+from gaspart.reproduction.config import open_config
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import Gas
@@ -32,7 +32,7 @@ def predict(path: str) -> list[str]:
     SceneError.
     """
     lines, total, unknown = [], 0.0, []
-    with checked(path) as (_, planned):
+    with open_config(path) as (_, planned):
         for experiment, points in planned.items():
             costs = [_seconds(point) for point in points.values()]
             predicted = [seconds for seconds in costs if seconds is not None]
@@ -146,7 +146,7 @@ def budgets(path: str | Path) -> list[Budget]:
     """
     import xarray as xr
 
-    with checked(path) as (config, planned):
+    with open_config(path) as (config, planned):
         results = Path("results") / (config.get("run") or "")
         every = shown_points(config, planned)
         rows = []
@@ -209,14 +209,14 @@ def shown_points(
 def point_seconds(results: Path, point: tuple[str, str]) -> float:
     """Return the processor time of a point's job. Raises SceneError if it was not made."""
     for rule in ("simulate", "compute"):
-        if used := job_time.used(results, rule, *point):
+        if used := job_time.read_used(results, rule, *point):
             return used.seconds
     raise SceneError("results", str(results / "logs"), f"has no time of the point {'/'.join(point)}")
 
 
 def _made(results: Path, figure: str) -> float:
     """Return the CPU time of the jobs that make numbers, verdicts and picture of a figure."""
-    jobs = (job_time.used(results, rule, figure) for rule in ("measure", "judge", "draw"))
+    jobs = (job_time.read_used(results, rule, figure) for rule in ("measure", "judge", "draw"))
     return sum(used.seconds for used in jobs if used)
 
 

@@ -26,12 +26,12 @@ class Used(NamedTuple):
     memory: float
 
 
-def stated() -> str:
+def describe() -> str:
     """Return the line for the log of this process."""
     return f"processor time: {sum(os.times()[:4]):.2f} s, memory: {largest_memory() / 1e6:.1f} MB"
 
 
-def used(results: Path, rule: str, *names: str) -> Used | None:
+def read_used(results: Path, rule: str, *names: str) -> Used | None:
     """Return what the log of a job states; None if it states nothing.
 
     `results` is the folder of the logs' folder; `names` are the wildcards of the rule, as folders and file of

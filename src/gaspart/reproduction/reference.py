@@ -95,7 +95,7 @@ def _figure_keys() -> list[str]:
 
 
 def _features() -> list[str]:
-    return [_models(), "## What excludes what\n", _excluded()]
+    return [_models(), "## What excludes what\n", _describe_exclusions()]
 
 
 def _models() -> str:
@@ -146,7 +146,7 @@ def _observables() -> list[str]:
     return ["\n".join([*rows, ""])]
 
 
-def _excluded() -> str:
+def _describe_exclusions() -> str:
     """Describe the features that exclude each other in any scene."""
     rows = ["| feature | excludes | why |", "| --- | --- | --- |"]
     for (first, second), reason in EXCLUDED.items():
@@ -199,10 +199,10 @@ def in_words(kind: Kind) -> str:
         return " or ".join(dict.fromkeys(map(in_words, kind["anyOf"])))
     declared = kind.get("type", "anything")
     types = [name for name in ([declared] if isinstance(declared, str) else declared) if name != "null"]
-    return " or ".join(_typed(kind, name) for name in types)
+    return " or ".join(_describe_type(kind, name) for name in types)
 
 
-def _typed(kind: Kind, name: str) -> str:
+def _describe_type(kind: Kind, name: str) -> str:
     """Describe one of the types of a kind, with the rules for it."""
     noun = _TYPES.get(name, name)
     if name in ("number", "integer"):

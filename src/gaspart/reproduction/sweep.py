@@ -24,7 +24,7 @@ from gaspart.reproduction.points.measurable import distinct, require_observable
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.points.point_keys import ENGINE_KEYS, EXTENTS, GAS, PREFIX
 from gaspart.reproduction.sweep_points import axes_of, make_all, names_of
-from gaspart.reproduction.sweep_table import Measured, SweepTable, measured, table
+from gaspart.reproduction.sweep_table import Measured, SweepTable, measure_point, table
 from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
@@ -148,9 +148,9 @@ def sweep(
     axes = axes_of(over)
     names = names_of(observables, axes)
     length = _length(duration, until, at_most, samples, equilibration)
-    point = {**length, **_settings(scene, axes, engine), **_kept(names, correlations, length)}
+    point = {**length, **_settings(scene, axes, engine), **_contents_settings(names, correlations, length)}
     point["replicas"] = count_of("replicas", replicas, least=1)
-    plan = _planned(_experiment(point, axes, engine), _root(folder), count_of("seed", seed))
+    plan = _make_plan(_experiment(point, axes, engine), _root(folder), count_of("seed", seed))
     _require_measurable(names, plan.able)
     _make(plan, count_of("workers", workers, least=1), bool(overwrite), progress or _print)
     rows = [
@@ -184,14 +184,14 @@ def _make(plan: _Plan, workers: int, overwrite: bool, progress: Progress) -> Non
     for name, reason in plan.failures.items():
         _complain(name, reason)
 
-    def finished(point: Point, reason: str) -> None:
+    def report(point: Point, reason: str) -> None:
         if reason:
             plan.failures[point.name] = reason
             _complain(point.name, reason)
         progress(next(done), len(plan.points), point.name)
 
     _make_folder(plan.points[0].root)
-    make_all(plan.able, workers, overwrite, finished)
+    make_all(plan.able, workers, overwrite, report)
 
 
 def _root(folder: Any) -> str:
@@ -238,7 +238,9 @@ def _length(
     return {**settings, "until": {accuracy.name: accuracy.accuracy for accuracy in accuracies}}
 
 
-def _kept(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
+def _contents_settings(
+    names: list[str], correlations: Correlations | None, length: dict[str, Any]
+) -> dict[str, Any]:
     """Return the keys of the contents of a point's files, or raise SceneError."""
     needs = {OBSERVABLES[name].needs for name in names}
     if "until" in length:
@@ -261,7 +263,7 @@ def _kept(names: list[str], correlations: Correlations | None, length: dict[str,
 
 
 def point_keys(engine: Engine) -> set[str]:
-    """Return the keys of a config that a sweep may vary: the keys of a gas and of the engine.
+    """Return the config keys that a sweep may vary: keys of a gas and of the engine.
 
     Parameters
     ----------
@@ -329,7 +331,7 @@ def _gas(scene: Scene, axes: Mapping[str, list], varied: str) -> dict[str, Any]:
     return {key: value for key, value in settings.items() if key not in axes}
 
 
-def _planned(experiment: dict, root: str, seed: int) -> _Plan:
+def _make_plan(experiment: dict, root: str, seed: int) -> _Plan:
     """Return the points of an experiment, in the order of the product of its values.
 
     Raises SceneError for values that no point can use, and if no point can be run.
@@ -388,7 +390,7 @@ def _row(point: Point, names: list[str], part: bool, failure: str) -> Measured:
     """Return the row of a point: its results, or the reason of its failure."""
     if failure:
         return Measured({}, [], failure)
-    result, refused = measured(point, names, part)
+    result, refused = measure_point(point, names, part)
     for name, error in refused.items():
         _complain(point.name, str(error), name)
     return replace(result, failure="; ".join(str(error) for error in refused.values()))

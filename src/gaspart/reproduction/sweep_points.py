@@ -28,9 +28,9 @@ from gaspart.workers import in_processes, require_processes
 
 
 def make_all(
-    points: Sequence[Point], workers: int, overwrite: bool, finished: Callable[[Point, str], None]
+    points: Sequence[Point], workers: int, overwrite: bool, report: Callable[[Point, str], None]
 ) -> None:
-    """Make the trajectories of all points, and call finished(point, reason) for each.
+    """Make the trajectories of all points, and call report(point, reason) for each.
 
     The reason states why it could not be made, or is "". Points whose trajectories exist come first: a
     conflict is then found before anything is run. Raises SceneError for files that cannot be written or are
@@ -39,7 +39,7 @@ def make_all(
     ordered = sorted(points, key=lambda point: not Path(point.path).exists())
     if workers == 1:
         for point in ordered:
-            finished(point, make(point, overwrite))
+            report(point, make(point, overwrite))
         return
     require_processes("workers", workers)
     for representative in {
@@ -48,7 +48,7 @@ def make_all(
         with suppress(SceneError, SimulationError):  # of its own point alone
             compile_kernels(compile_task(representative))
     calls = [(point.to_dict(), point.path, overwrite) for point in ordered]
-    in_processes(_make_in_process, calls, workers, lambda n, reason: finished(ordered[n], str(reason)))
+    in_processes(_make_in_process, calls, workers, lambda n, reason: report(ordered[n], str(reason)))
 
 
 def make(point: Point, overwrite: bool) -> str:

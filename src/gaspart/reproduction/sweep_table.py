@@ -41,7 +41,7 @@ class SweepTable(ByFace):
     def plot(  # type: ignore[override]
         self, observable: str | None = None, along: str | None = None, axis: Axes | None = None
     ) -> Axes:
-        """Draw an observable with bars of one standard deviation, and theory as lines where it is known.
+        """Draw an observable with bars of one standard deviation, and theory as lines.
 
         Each value of the other dimensions gives one curve.
 
@@ -66,9 +66,9 @@ class SweepTable(ByFace):
         """
         import matplotlib.pyplot as plt
 
-        name = _known("observable", observable, self.observables)
+        name = _check_name("observable", observable, self.observables)
         values = self[name]
-        along = _known("along", along, _preferred(values))
+        along = _check_name("along", along, _order_dimensions(values))
         if axis is None:
             axis = plt.figure(layout="constrained").add_subplot()
         others = [str(dim) for dim in values.dims if dim != along]
@@ -83,7 +83,7 @@ class SweepTable(ByFace):
         return axis
 
 
-def _known(key: str, name: str | None, names: list[str]) -> str:
+def _check_name(key: str, name: str | None, names: list[str]) -> str:
     """Return a name of the table, by default the first; raise SceneError."""
     if not names:
         raise SceneError(key, name, "there is nothing to be drawn: the sweep has one point")
@@ -92,7 +92,7 @@ def _known(key: str, name: str | None, names: list[str]) -> str:
     return name or names[0]
 
 
-def _preferred(values: xr.DataArray) -> list[str]:
+def _order_dimensions(values: xr.DataArray) -> list[str]:
     """Return the dimensions of an observable, those first that make the best axis."""
     dims = [str(dim) for dim in values.dims]
     numbers = [dim for dim in dims if _is_number(values, dim)]
@@ -153,7 +153,7 @@ class Measured:
     failure: str = ""
 
 
-def measured(point: Point, names: Sequence[str], part: bool) -> tuple[Measured, dict[str, SceneError]]:
+def measure_point(point: Point, names: Sequence[str], part: bool) -> tuple[Measured, dict[str, SceneError]]:
     """Measure observables of a point, by name, and return the error of each that fails.
 
     Frames count after the equilibration, or, with `part`, after the first quarter of each run.
@@ -233,7 +233,7 @@ def _variables(
     """
     available = [replicas for replicas in points if replicas]
     if not available:
-        nothing = xr.DataArray(_stacked(points, axes), dims=tuple(axes))
+        nothing = xr.DataArray(_stack(points, axes), dims=tuple(axes))
         return {name: nothing, f"{name}_error": nothing}
     first = available[0][0]
     along = [str(dim) for dim in first.estimate.dims]
@@ -249,14 +249,14 @@ def _variables(
         if part == "_theory" and all(value is None for value in each):
             continue
         about = dict(first.estimate.attrs)
-        variables[name + part] = xr.DataArray(_stacked(each, axes), dims=dims, attrs=about)
+        variables[name + part] = xr.DataArray(_stack(each, axes), dims=dims, attrs=about)
     for axis, dim in enumerate(along):
         about = dict(first[dim].attrs)
         if common:
             variables[inner[axis]] = xr.DataArray(positions[0][axis], dims=(inner[axis],), attrs=about)
         else:
             each = [replicas[0].estimate[dim].values if replicas else None for replicas in points]
-            at = xr.DataArray(_stacked(each, axes), dims=(*axes, f"{name}_{dim}"), attrs=about)
+            at = xr.DataArray(_stack(each, axes), dims=(*axes, f"{name}_{dim}"), attrs=about)
             variables[f"{name}_{dim}_places"] = at
     return variables
 
@@ -279,7 +279,7 @@ def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
     return np.mean(values, axis=0)
 
 
-def _stacked(each: Sequence[Any], axes: Mapping[str, list]) -> np.ndarray:
+def _stack(each: Sequence[Any], axes: Mapping[str, list]) -> np.ndarray:
     """Join the arrays of all points, some shorter or missing (None), to one.
 
     The rest is nan.

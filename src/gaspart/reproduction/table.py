@@ -222,7 +222,7 @@ def from_rows(
     columns = {}
     for name in dict.fromkeys(name for row in rows for name in row):
         key = name.removesuffix("_error")
-        values = _stacked([np.asarray(row.get(name, np.nan)) for row in rows])
+        values = _stack([np.asarray(row.get(name, np.nan)) for row in rows])
         dims = inner if isinstance(inner, tuple) else inner.get(key.removesuffix("_freedom"), ())
         dims = dims[: values.ndim - 1]  # one number of degrees of freedom may be that of an array
         attributes = {} if units is None or values.dtype.kind in "OSU" else {"units": units.get(key, "1")}
@@ -249,7 +249,7 @@ def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | No
     return row
 
 
-def _stacked(arrays: list[np.ndarray]) -> np.ndarray:
+def _stack(arrays: list[np.ndarray]) -> np.ndarray:
     """Join arrays of one number of dimensions along a new first one.
 
     NaN alone stands for an empty array.

@@ -15,7 +15,7 @@ from gaspart.errors import SceneError
 from gaspart.files import resolved
 from gaspart.reproduction.archive.limits import name_fault
 from gaspart.reproduction.claims import table
-from gaspart.reproduction.claims.table import filled
+from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.config import check, merged_with_default
 from gaspart.reproduction.families.registry import caption
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
@@ -144,7 +144,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
     prefix = parent.relative_to(root)
     inside = [str(path.relative_to(root)) for path in files if path.is_relative_to(root)]
     with chdir(root):  # from which scene files are read
-        points = _used(merged, check(merged, files))
+        points = _select_points(merged, check(merged, files))
         points = [replace(point, root=str(prefix / point.root)) for point in points]
         run = Finished(root, str(folder.relative_to(root)), merged, points, inside)
         _check_places(run, file)
@@ -165,7 +165,7 @@ def _project_of(folder: Path) -> Path | None:
     )
 
 
-def _used(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:
+def _select_points(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:
     """Return the points of figures and films, each once.
 
     No rule of `all` makes the other points.
@@ -315,7 +315,9 @@ def captions(run: Finished) -> dict[str, str]:
     rows = table.read(run.root / run.results / "tables/claims.csv")
     texts = {figure: _caption(run, figure) for figure in run.figures}
     return {
-        f"{run.results}/captions/{figure}.rst": filled(text, [row for row in rows if row["figure"] == figure])
+        f"{run.results}/captions/{figure}.rst": fill_caption(
+            text, [row for row in rows if row["figure"] == figure]
+        )
         for figure, text in texts.items()
         if text is not None
     }

@@ -42,7 +42,7 @@ from gaspart.reproduction.archive.limits import (
 )
 from gaspart.reproduction.archive.tables import RUN, rows_of
 from gaspart.reproduction.archive.writing import MANIFEST
-from gaspart.reproduction.config import checked
+from gaspart.reproduction.config import open_config
 from gaspart.reproduction.jobs.simulate import recipes, record
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.trajectory import provenance
@@ -66,14 +66,14 @@ class Stored:
     names: frozenset[str]
     opener: Callable[[str], IO[bytes]]
 
-    def refused(self, rule: str) -> SceneError:
+    def make_error(self, rule: str) -> SceneError:
         """Return the error about this archive."""
         return SceneError("archive", str(self.path), rule)
 
     def open(self, name: str) -> IO[bytes]:
         """Return a file of the archive; raise SceneError for another name, and DAMAGE."""
         if name not in self.names:
-            raise self.refused(f"has no file {name}")
+            raise self.make_error(f"has no file {name}")
         return self.opener(name)
 
     def text(self, name: str, most: int = MOST_BYTES) -> str:
@@ -85,12 +85,12 @@ class Stored:
             with self.open(name) as file:
                 content = file.read(most + 1)
             if len(content) > most:
-                raise self.refused(f"has a {name} of more than {most} bytes")
+                raise self.make_error(f"has a {name} of more than {most} bytes")
             return content.decode()
         except SceneError:
             raise
         except DAMAGE as error:
-            raise self.refused(f"has a damaged {name}: {_reason(error)}") from None
+            raise self.make_error(f"has a damaged {name}: {_reason(error)}") from None
 
     def copy(self, name: str, target: Path) -> None:
         """Write a file to `target`. Raises SceneError for one that is missing or damaged."""
@@ -100,7 +100,7 @@ class Stored:
         except SceneError:
             raise
         except DAMAGE as error:
-            raise self.refused(f"has a damaged {name}: {_reason(error)}") from None
+            raise self.make_error(f"has a damaged {name}: {_reason(error)}") from None
 
     def rows(self, name: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
         """Return the rows of a table that has at least these columns; raise SceneError."""
@@ -109,7 +109,7 @@ class Stored:
         except SceneError:
             raise
         except ValueError as error:
-            raise self.refused(f"has a table that cannot be read, {name}: {error}") from None
+            raise self.make_error(f"has a table that cannot be read, {name}: {error}") from None
 
     def digest(self, name: str) -> str:
         """Return the digest of a file; "" if it cannot be read."""
@@ -127,14 +127,14 @@ class Stored:
         try:
             content = json.loads(self.text(RUN, 1 << 20))
         except RecursionError:
-            raise self.refused(f"has a {RUN} that is nested too deep") from None
+            raise self.make_error(f"has a {RUN} that is nested too deep") from None
         except ValueError as error:
             if isinstance(error, SceneError):
                 raise
-            raise self.refused(f"has a {RUN} that cannot be read: {error}") from None
+            raise self.make_error(f"has a {RUN} that cannot be read: {error}") from None
         for key in _STATED:
             if not (isinstance(content, dict) and isinstance(content.get(key), str)):
-                raise self.refused(f"has a {RUN} that does not state {key}, a text")
+                raise self.make_error(f"has a {RUN} that does not state {key}, a text")
         return dict(content)
 
     def manifest(self) -> dict[str, str]:
@@ -143,7 +143,7 @@ class Stored:
         for line in io.StringIO(self.text(MANIFEST)):
             value, gap, name = line.removesuffix("\n").partition("  ")
             if not gap or len(value) != _DIGITS or name in digests:
-                raise self.refused(f"has a {MANIFEST} that cannot be read")
+                raise self.make_error(f"has a {MANIFEST} that cannot be read")
             digests[name] = value
         return digests
 
@@ -173,9 +173,9 @@ def opened_archive(path: str | Path) -> Iterator[Stored]:
         yield _zip_file(path, source)
 
 
-def _checked(stored: Stored) -> Stored:
+def _require_manifest(stored: Stored) -> Stored:
     if MANIFEST not in stored.names:
-        raise stored.refused(f"is no archive of gaspart: it has no {MANIFEST}")
+        raise stored.make_error(f"is no archive of gaspart: it has no {MANIFEST}")
     stored.text(MANIFEST)
     return stored
 
@@ -196,7 +196,7 @@ def _zip_file(path: Path, source: IO[bytes]) -> Stored:
     check_names(path, [entry.orig_filename for entry in entries])
     check_size(path, sum(entry.file_size for entry in entries), size)
     names = frozenset(entry.filename for entry in entries if not entry.is_dir())
-    return _checked(Stored(path, names, file.open))
+    return _require_manifest(Stored(path, names, file.open))
 
 
 def _check_entry(path: Path, entry: zipfile.ZipInfo) -> None:
@@ -235,7 +235,9 @@ def _folder(path: Path) -> Stored:
             raise SceneError("archive", str(path), f"has more than {MOST_FILES} files")
     check_names(path, names)
     check_size(path, stated, there)
-    return _checked(Stored(path, frozenset(names), lambda name: open_regular(path / name, follow=False)))
+    return _require_manifest(
+        Stored(path, frozenset(names), lambda name: open_regular(path / name, follow=False))
+    )
 
 
 def _below(folder: Path, beginning: str) -> Iterable[tuple[str, os.stat_result]]:
@@ -262,7 +264,7 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
     are written to `folder`. Raises SceneError for a config that cannot be planned.
     """
     _write_config(stored, folder)
-    with checked(folder / "config/config.yaml") as (_, planned):
+    with open_config(folder / "config/config.yaml") as (_, planned):
         points = {
             (point.experiment, point.name): point for each in planned.values() for point in each.values()
         }
@@ -286,7 +288,7 @@ def _write_config(stored: Stored, folder: Path) -> None:
     config = parse_yaml(stored.text(tables.CONFIG), tables.CONFIG)
     for name in scene_files(config):
         if name not in stored.names:
-            raise stored.refused(f"has a config with a scene that is not in the archive: {name}")
+            raise stored.make_error(f"has a config with a scene that is not in the archive: {name}")
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         stored.copy(name, target)
@@ -314,11 +316,11 @@ def rerun(stored: Stored, point: Point, folder: Path) -> Check:
         output.unlink()
     name = f"{point.experiment}/{point.name}"
     if not other:
-        return Check("rerun", True, f"{name}: the same bits in {_counted(point.replicas)}")
+        return Check("rerun", True, f"{name}: the same bits in {_count_text(point.replicas)}")
     return Check("rerun", False, f"{name}: other bits in replica {', '.join(other)}{_differing(stored)}")
 
 
-def _counted(count: int) -> str:
+def _count_text(count: int) -> str:
     return "1 trajectory" if count == 1 else f"{count} trajectories"
 
 
@@ -369,11 +371,11 @@ def _files(stored: Stored, stated: Mapping[str, str]) -> Check:
     unknown = sorted(stored.names - stated.keys() - {MANIFEST})
     changed = [name for name in sorted(stated.keys() & stored.names) if stored.digest(name) != stated[name]]
     faulty = {"missing": missing, "changed or damaged": changed, "not of the archive": unknown}
-    faults = [f"{kind}: {_shown(names)}" for kind, names in faulty.items() if names]
+    faults = [f"{kind}: {_join_names(names)}" for kind, names in faulty.items() if names]
     return Check("files", not faults, "; ".join(faults) or f"{len(stated)} have the digests of {MANIFEST}")
 
 
-def _shown(names: list[str]) -> str:
+def _join_names(names: list[str]) -> str:
     more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
     return ", ".join(names[:_NAMED]) + more
 
@@ -384,17 +386,17 @@ def _tables(stored: Stored, stated: Mapping[str, str]) -> Iterator[Check]:
     Raises SceneError for tables that `gaspart archive` cannot have written, though they have their digests.
     """
     try:
-        yield _stated(stored)
+        yield _describe_run(stored)
         yield _claims(stored, stated)
         yield _points(stored)
     except SceneError as error:
         rule = f"has tables that cannot be read, though they have their digests: it {error.rule}"
-        raise stored.refused(rule) from None
+        raise stored.make_error(rule) from None
     except KeyError as error:
-        raise stored.refused(f"has claims made of a file that it does not list: {error.args[0]}") from None
+        raise stored.make_error(f"has claims made of a file that it does not list: {error.args[0]}") from None
 
 
-def _stated(stored: Stored) -> Check:
+def _describe_run(stored: Stored) -> Check:
     """Describe the run; this check cannot fail."""
     run = stored.summary()
     revision = f", revision {run['revision']}" if run["revision"] else ""
@@ -420,7 +422,7 @@ def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
         if row["data_sha256"] != stated.get(row["data"]) or row["inputs_sha256"] != joint[row["data"]]:
             wrong.append(row["figure"])
     if wrong:
-        return Check("claims", False, f"made of other data: those of {_shown(sorted({*wrong}))}")
+        return Check("claims", False, f"made of other data: those of {_join_names(sorted({*wrong}))}")
     return Check("claims", True, f"{len(listed)}, made of {len(joint)} measurements with these digests")
 
 
@@ -432,7 +434,7 @@ def _inputs(stored: Stored, name: str) -> list[str]:
         try:
             return tables.inputs_of(copy)
         except (OSError, RuntimeError, AttributeError, ValueError) as error:
-            raise stored.refused(f"has a measurement that cannot be read, {name}: {error}") from None
+            raise stored.make_error(f"has a measurement that cannot be read, {name}: {error}") from None
 
 
 def _points(stored: Stored) -> Check:
@@ -440,5 +442,5 @@ def _points(stored: Stored) -> Check:
     listed = stored.rows(tables.POINTS, tables.PointFile._fields)
     rows = [row for row in listed if row["path"] in stored.names]
     wrong = [row["path"] for row in rows if stored.digest(row["path"]) != row["sha256"]]
-    text = f"other digests than in {tables.POINTS}: {_shown(wrong)}" if wrong else f"{len(rows)} files"
+    text = f"other digests than in {tables.POINTS}: {_join_names(wrong)}" if wrong else f"{len(rows)} files"
     return Check("points", not wrong, text)

@@ -135,7 +135,7 @@ def job_times(run: Finished) -> list[JobTime]:
         with path.open(newline="", encoding="utf-8") as file:
             timed = next(csv.DictReader(file, delimiter="\t"))
         ended = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
-        own = job_time.used(run.root / run.results, rule, *names)
+        own = job_time.read_used(run.root / run.results, rule, *names)
         stated = (f"{own.seconds:.2f}", f"{own.memory:.1f}") if own else ("", "")
         rows.append(JobTime(rule, "/".join(names), timed["s"], *stated, ended))
     return rows

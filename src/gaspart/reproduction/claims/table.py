@@ -172,7 +172,7 @@ _NUMBER = re.compile(r"(?<![\w.^/-])\d+\.\d+(?![\w.])")
 NOT_MEASURED = "(not measured in this run)"
 
 
-def filled(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASURED) -> str:
+def fill_caption(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASURED) -> str:
     """Fill in the measured values of claims, as 0.930(16), at the places of a caption.
 
     The values are from rows of its figure's claims table, or `absent` without such a claim. Raises ValueError

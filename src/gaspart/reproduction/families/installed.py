@@ -57,7 +57,7 @@ def package(kind: str) -> ModuleType:
     Raises SceneError, with the installed package, its entry point and the reason, for a package that cannot
     be imported or does not have the form of a family.
     """
-    with blamed(kind):
+    with blame_package(kind):
         module = import_module(family(kind))
         _check(module, kind)
     return module
@@ -83,7 +83,7 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
     """
     rules = getattr(package(settings["kind"]), "validate", None)
     if rules is not None:
-        with blamed(settings["kind"], f"figures.{figure}"):
+        with blame_package(settings["kind"], f"figures.{figure}"):
             rules(figure, settings, points)
 
 
@@ -93,7 +93,7 @@ def caption(settings: Mapping[str, Any]) -> str:
     Raises SceneError.
     """
     module = package(settings["kind"])
-    with blamed(settings["kind"]):
+    with blame_package(settings["kind"]):
         text = module.caption(settings)
         if not isinstance(text, str):
             raise TypeError(f"caption() must return text, not {type(text).__name__}")
@@ -101,7 +101,7 @@ def caption(settings: Mapping[str, Any]) -> str:
 
 
 @contextmanager
-def blamed(kind: str, where: str = "") -> Iterator[None]:
+def blame_package(kind: str, where: str = "") -> Iterator[None]:
     """Convert any error of a package within this context to a SceneError that names it.
 
     The message has one line.

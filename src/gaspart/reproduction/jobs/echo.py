@@ -80,7 +80,7 @@ def echo(
         state = equilibrium.state.copy()
         there = engine.start(scene, state)
         start = there.state  # rounded to the engine's precision
-        pair = [EventDriven().start(scene, initial) for initial in (state, _displaced(state, seed))]
+        pair = [EventDriven().start(scene, initial) for initial in (state, _displace(state, seed))]
         for k in range(samples):
             time = (k + 1) * interval
             there.advance(state.time + time + slack)
@@ -127,7 +127,7 @@ def _exponent(equilibrium: Simulation, interval: float) -> float:
     return float(lyapunov_exponent(equilibrium).estimate) * count * tally.time / (2.0 * tally.collisions)
 
 
-def _displaced(state: State, seed: tuple[int, ...]) -> State:
+def _displace(state: State, seed: tuple[int, ...]) -> State:
     """Return all particles displaced at random, by so little that only touching ones can overlap."""
     import numpy as np
 

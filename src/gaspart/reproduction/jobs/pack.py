@@ -30,7 +30,7 @@ def engines(point: Point) -> list[Engine]:
 def arguments(point: Point) -> dict:
     """Return the arguments of `pack`; raise SceneError."""
     if ("attempts" in point.settings) == (point.settings.get("arrangement") == "compressed"):
-        raise point.refused("attempts", "is required with job: pack, unless the arrangement is compressed")
+        raise point.make_error("attempts", "is required with job: pack, unless the arrangement is compressed")
     return {"scene": point.scene, "attempts": point.settings.get("attempts"), "seeds": point.seeds}
 
 

@@ -80,11 +80,11 @@ def arguments(point: Point) -> dict:
     if "until" in settings:
         for key in _NOT_WITH_UNTIL:
             if settings.get(key):
-                raise point.refused(key, "has no meaning with until")
+                raise point.make_error(key, "has no meaning with until")
         return {**common, **point.ending}
     follow = settings.get("follow")
     if follow is not None and follow > point.extents.particles:
-        raise point.refused("follow", f"there are {point.extents.particles} particles")
+        raise point.make_error("follow", f"there are {point.extents.particles} particles")
     correlations = None
     if "lags" in settings:
         lags = min(settings["lags"], (times.samples + 1) // 2)
@@ -106,7 +106,7 @@ def _frame_interval(point: Point) -> float:
     times, settings = point.schedule, point.settings
     if "frames" in settings:
         if "lags" not in settings:
-            raise point.refused("frames", "has a meaning with lags only; without them there are samples")
+            raise point.make_error("frames", "has a meaning with lags only; without them there are samples")
         return times.sample_interval * times.samples_per_frame
     only_ends = "lags" in settings and point.scene.shear_rate is None
     return times.duration if only_ends else times.sample_interval

@@ -21,7 +21,7 @@ _OF_SEEDS = ("echo", "fill", "pack")
 """Jobs whose work is the same for each replica, whatever the length."""
 
 
-def scaled(job: str, settings: Mapping[str, Any], multiple: float) -> dict[str, Any]:
+def scale_length(job: str, settings: Mapping[str, Any], multiple: float) -> dict[str, Any]:
     """Return the settings with `multiple` times as many replicas, and for the rest with longer runs.
 
     Runs keep the interval between samples as long as there are enough of these. The length of a run that does
@@ -35,11 +35,11 @@ def scaled(job: str, settings: Mapping[str, Any], multiple: float) -> dict[str, 
     if job in _OF_SEEDS or (job == "simulate" and not result.get("equilibration")) or "until" in result:
         return result
     if job == "simulate" and "lags" not in result:
-        return result | _resampled(result, multiple, _LEAST_SAMPLES, even=False)
-    return result | _resampled(result, multiple, 1 if job == "simulate" else _LEAST_TIMINGS, even=True)
+        return result | _resample(result, multiple, _LEAST_SAMPLES, even=False)
+    return result | _resample(result, multiple, 1 if job == "simulate" else _LEAST_TIMINGS, even=True)
 
 
-def _resampled(settings: Mapping[str, Any], multiple: float, least: int, even: bool) -> dict[str, Any]:
+def _resample(settings: Mapping[str, Any], multiple: float, least: int, even: bool) -> dict[str, Any]:
     """Return the length and the samples of a run that is `multiple` times as long.
 
     If `even`, all intervals between samples stay as they are, for example between lags and in timings.

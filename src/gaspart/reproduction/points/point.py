@@ -101,7 +101,7 @@ class Point:
     @cached_property
     def engines(self) -> list[Engine]:
         """Engines that the job runs: ``engine``, or one for each value of the scan."""
-        return engine.scanned(self)
+        return engine.scan_engines(self)
 
     @cached_property
     def schedule(self) -> Schedule:
@@ -138,7 +138,7 @@ class Point:
         """The arguments of the job in plain values."""
         return import_module(f"{_JOBS}.arguments").to_plain(self.arguments)
 
-    def refused(self, key: str, rule: str) -> SceneError:
+    def make_error(self, key: str, rule: str) -> SceneError:
         """Return the error that a setting breaks a rule."""
         return SceneError(f"experiments.{self.experiment}.{key}", self.settings.get(key), rule)
 

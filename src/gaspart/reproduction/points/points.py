@@ -19,7 +19,7 @@ from gaspart.errors import SceneError
 from gaspart.keys import TEXT, Kind, choice, count, described, flag, listed, nullable, positive, record
 from gaspart.reproduction.points import point_keys
 from gaspart.reproduction.points.jobs import JOBS
-from gaspart.reproduction.points.lengths import scaled
+from gaspart.reproduction.points.lengths import scale_length
 from gaspart.reproduction.points.point import Point, name_of
 from gaspart.reproduction.points.point_keys import (
     ENGINE,
@@ -194,7 +194,7 @@ def points(config: dict, experiment: str) -> list[Point]:
         name, job = name_of(varying, f"{where}.grid"), block.get("job", "simulate")
         settings = {key: _plain(key, value) for key, value in combined.items() if value is not None}
         if name in multiples:
-            settings = scaled(job, settings, multiples[name])
+            settings = scale_length(job, settings, multiples[name])
         point = _chosen(
             Point(
                 experiment=experiment,

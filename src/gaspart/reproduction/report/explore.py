@@ -99,8 +99,8 @@ def engines(dataset: xr.Dataset) -> dict[str, Any]:
                     "key": str(quantity),
                     "name": panels.TITLES[str(quantity)].replace("$", ""),
                     "fractions": _numbers(of["fraction"].values),
-                    "cost": _nested(np.where(np.isposinf(cost), -1.0, cost)),
-                    "error": _nested(of["error"].transpose(*cost.dims, "part").values),
+                    "cost": _nest(np.where(np.isposinf(cost), -1.0, cost)),
+                    "error": _nest(of["error"].transpose(*cost.dims, "part").values),
                 }
             )
     return {
@@ -115,10 +115,10 @@ def engines(dataset: xr.Dataset) -> dict[str, Any]:
     }
 
 
-def _nested(values: np.ndarray) -> list:
+def _nest(values: np.ndarray) -> list:
     """Convert an array to nested lists of numbers for JSON, with three digits."""
     if values.ndim > 1:
-        return [_nested(part) for part in values]
+        return [_nest(part) for part in values]
     return [float(f"{value:.3g}") if math.isfinite(value) else None for value in values.tolist()]
 
 
@@ -189,25 +189,25 @@ def read_references(path: str | Path) -> dict[str, Reference]:
     }
 
 
-def cited(citation: re.Match[str], references: Mapping[str, Reference]) -> Reference | None:
+def find_reference(citation: re.Match[str], references: Mapping[str, Reference]) -> Reference | None:
     """Return the reference that a match of `CITATION` cites; None for other texts in square brackets."""
     key = " ".join(citation[1].split())
     return references.get(key) or references.get(key[0].lower() + key[1:])
 
 
-def used(texts: Iterable[str], references: Mapping[str, Reference]) -> dict[str, Reference]:
+def cited_references(texts: Iterable[str], references: Mapping[str, Reference]) -> dict[str, Reference]:
     """Return the references that some texts cite, by key, in the same order, numbered from 1."""
-    matches = (cited(citation, references) for text in texts for citation in CITATION.finditer(text))
+    matches = (find_reference(citation, references) for text in texts for citation in CITATION.finditer(text))
     keys = {reference.key for reference in matches if reference is not None}
     kept = (reference for key, reference in references.items() if key in keys)
     return {item.key: replace(item, number=number) for number, item in enumerate(kept, 1)}
 
 
-def linked(text: str, references: Mapping[str, Reference]) -> str:
+def link_citations(text: str, references: Mapping[str, Reference]) -> str:
     """Return HTML in which each citation has become names and a numbered link into the list."""
 
     def link(citation: re.Match[str]) -> str:
-        reference = cited(citation, references)
+        reference = find_reference(citation, references)
         if reference is None:
             return citation[0]
         name = citation[1] if reference.is_source else html.escape(reference.short)

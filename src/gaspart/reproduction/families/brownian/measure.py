@@ -39,7 +39,7 @@ NAMES = {
 """Columns of the numbers that are derived from measured paths; `friction` and `diffusion` are theory's."""
 
 
-def _followed(point: Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+def _read_paths(point: Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Yield times (T,) of each replica, displacements and velocities of its first particle (T, 1, 3)."""
     if not point.settings.get("displacements", False):
         raise SceneError(f"experiments.{point.experiment}.displacements", False, "must be true")
@@ -60,7 +60,7 @@ def brownian_paths(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _ends(point: Point, paths: int) -> dict[str, Any]:
-    motion, trajectories = motion_of(point), list(_followed(point))
+    motion, trajectories = motion_of(point), list(_read_paths(point))
     ends = np.array([moved[-1, 0] for _, moved, _ in trajectories])
     duration = float(trajectories[0][0][-1])
     variance = _end_variance(point, motion, duration)
@@ -106,12 +106,12 @@ def brownian_msd(points: list[Point], settings: dict) -> xr.Dataset:
 
 def _statistics(point: Point) -> dict[str, Any]:
     motion = motion_of(point)
-    curves, estimates = _reduced(point, motion, _followed(point))
+    curves, estimates = _reduce_curves(point, motion, _read_paths(point))
     time, row = curves["time"], _facts(point, motion) | curves
     row |= {NAMES[name]: estimate for name, estimate in estimates.items()}
     if motion.is_light:
         infinite = replace(motion, share=0.0)
-        predicted, expected = _reduced(point, infinite, light_paths(point, motion))
+        predicted, expected = _reduce_curves(point, infinite, light_paths(point, motion))
         row |= {f"expected_{name}": predicted[name][0][: len(time)] for name in ("vacf", "msd")}
     else:
         row |= {"expected_vacf": np.exp(-time), "expected_msd": theory.langevin_msd(time, 1.0 / 6.0, 1.0)}
@@ -120,7 +120,7 @@ def _statistics(point: Point) -> dict[str, Any]:
     return row | {f"expected_{name}": estimate for name, estimate in expected.items()}
 
 
-def _reduced(
+def _reduce_curves(
     point: Point, motion: BrownianMotion, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> tuple[dict[str, Any], dict[str, Estimate]]:
     """Compute the correlations of paths in reduced units, their errors, and derived quantities."""

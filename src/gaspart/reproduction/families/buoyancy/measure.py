@@ -51,7 +51,7 @@ def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
     own = [point for point in points if point not in of_source]
     held = [point for point in own if point.scene.particles[0].fixed]
     moving = [point for point in own if point not in held]
-    fixed = table("fixed", held, _fixed, settings, inner=("place",))
+    fixed = table("fixed", held, _measure_fixed, settings, inner=("place",))
     column, ratio = field(held[0]), float(fixed["size_ratio"][0])
     dataset = prefixed(
         fixed=fixed.drop_vars("fluid"),
@@ -118,7 +118,7 @@ def _fluid(
     return lambda height: packing_fraction_at(np.exp(logarithm - weight * height), 2)
 
 
-def _fixed(point: Point, settings: dict) -> dict:
+def _measure_fixed(point: Point, settings: dict) -> dict:
     """Measure force and effective radius of a fixed disc, and the fluid at its height.
 
     `fluid` is the packing fraction of the undisturbed fluid at `_heights`.

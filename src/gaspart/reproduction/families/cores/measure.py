@@ -30,7 +30,7 @@ def cores(points: list[Point], settings: dict) -> xr.Dataset:
 
     Over run: engine, packing_fraction, count of particles; copies, the number of runs at once, 1 for threads;
     cores used; speed, the work in a time divided by the work of one run on one core, NaN where the machine
-    has too few; same, 1 if all bits are those of one core. Over model, each gas and engine with threads:
+    has too few; same, 1 if all bits equal the bits on one core. Over model, each gas and engine with threads:
     engine, packing_fraction, and serial and overhead of `speed_up`. The attribute cores is the number of the
     machine, for kernels; waiting is the fraction of their time for which runs at once waited for a core, NaN
     if no such runs were timed.

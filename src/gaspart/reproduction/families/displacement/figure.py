@@ -104,7 +104,7 @@ def _running(axis: Axes, points: Table) -> None:
                 until = run.time[1 : integral.size]
                 axis.plot(rate * until, integral[1:] / enskog, color=style.COLOURS[kind], lw=0.8)
             elif dimension == 2:
-                _predicted(axis, run, eta, kind)
+                _draw_prediction(axis, run, eta, kind)
     x = np.geomspace(*axis.get_xlim(), 200)
     enskog, rate = _enskog(fractions[0], dimension)
     decay = 1.0 / (enskog * rate)  # per collision: the same at every packing fraction
@@ -122,7 +122,7 @@ def _enskog(eta: float, dimension: int) -> tuple[float, float]:
     return float(theory.enskog_diffusion(eta, dimension)), float(theory.collision_rate(eta, dimension))
 
 
-def _predicted(axis: Axes, run: Row, eta: float, kind: int) -> None:
+def _draw_prediction(axis: Axes, run: Row, eta: float, kind: int) -> None:
     """Draw the logarithm's predicted slope over the fitted interval, through D(t) in its middle."""
     enskog, rate = _enskog(eta, 2)
     ends, finite = np.array([run.fit_from, run.fit_to]), np.isfinite(run.time)
@@ -180,8 +180,10 @@ def _size(axis: Axes, sizes: Table) -> None:
 
 
 def _slopes(axis: Axes, long: Table) -> None:
-    """Slope of D(t) against ln t over packing fraction, with mode coupling's: of an infinite system, and of
-    the modes that fit into the container."""
+    """Draw the slope of D(t) against ln t over the packing fraction, and mode coupling's predictions.
+
+    They are for an infinite system, and for the modes that fit into the container.
+    """
     eta = long.packing_fraction
     curve = np.linspace(0.5 * eta.min(), 1.1 * eta.max(), 100)
     axis.plot(curve, theory.logarithmic_slope(curve), color=style.REFERENCE, label="infinite system")

@@ -48,17 +48,17 @@ def dsmc_convergence(dataset: xr.Dataset) -> list[Claim]:
     ]
 
 
-def _predicted(gases: Table, quantity: str) -> np.ndarray:
+def _predict(gases: Table, quantity: str) -> np.ndarray:
     """Compute a transport coefficient over the exact one, by cells and steps, shape (points,)."""
     return np.asarray(cell_factor(quantity, gases.width) * step_factor(quantity, gases.step))
 
 
 def _limit(quantity: str, gases: Table) -> Claim:
     """Return the claim on the coefficient of narrow cells and short steps."""
-    fine = gases[_predicted(gases, quantity) < 1.0 + SEEN]
+    fine = gases[_predict(gases, quantity) < 1.0 + SEEN]
     return Claim(
         claim=f"{quantity} over Chapman and Enskog's, with narrow cells and short steps",
-        measured=combine_estimates(getattr(fine, quantity) / _predicted(fine, quantity)),
+        measured=combine_estimates(getattr(fine, quantity) / _predict(fine, quantity)),
         expected=1.0,
         required=0.02,
         source="[Chapman 1970], with the Sonine polynomials that matter",
@@ -102,7 +102,7 @@ def _wide_cells(paths: Table) -> Claim:
     wide = paths[paths.width > WIDE]
     return Claim(
         claim=f"diffusion over Chapman and Enskog's, with cells wider than {WIDE:g} mean free paths",
-        measured=combine_estimates(wide.diffusion / _predicted(wide, "diffusion")),
+        measured=combine_estimates(wide.diffusion / _predict(wide, "diffusion")),
         expected=1.0,
         required=0.01,
         source="a particle's own displacement passes nothing on",

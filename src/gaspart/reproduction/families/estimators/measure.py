@@ -46,12 +46,12 @@ def estimators(points: list[Point], settings: dict) -> xr.Dataset:
 def _row(case: tuple[Point, float]) -> dict[str, Any]:
     point, width = case
     diameter = 2.0 * point.scene.largest_radius
-    replicas = [_compared(run, width * diameter) | pressures_of(run) for run in runs(point)]
+    replicas = [_compare(run, width * diameter) | pressures_of(run) for run in runs(point)]
     rows = {name: mean_of([replica[name] for replica in replicas]) for name in replicas[0]}
     return {"packing_fraction": point.scene.packing_fraction, "width": width, **rows}
 
 
-def _compared(run: Run, width: float) -> dict[str, float]:
+def _compare(run: Run, width: float) -> dict[str, float]:
     """Compare the estimators of one run, in bins of this width."""
     counted, impulses = blocks_of(run, width)
     filled = np.flatnonzero(counted.mean(axis=0) > _FILLED * counted.mean())

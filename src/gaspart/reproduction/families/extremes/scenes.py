@@ -99,7 +99,7 @@ def crystal(packing_fraction: float, dimension: int) -> Scene:
     return Scene(Container(tuple(stretch * length for length in shape), "periodic"), [kind])
 
 
-def jammed() -> Scene:
+def jam_of_four() -> Scene:
     """Return four discs that touch each other and all walls."""
     moves = {(0.5, 0.5): (1.0, 0.5), (1.5, 0.5): (-1.0, 0.5), (0.5, 1.5): (1.0, 0.5), (1.5, 1.5): (1.0, 0.5)}
     return between_walls(
@@ -114,7 +114,7 @@ def touching() -> Scene:
     return Scene(Container((2.0, 2.0), "periodic"), particles=particles)
 
 
-def wedged() -> Scene:
+def tight_disc() -> Scene:
     """Return a disc exactly as wide as its container."""
     return between_walls((1.0, 4.0), Particle((0.5, 2.0), (1.0, 0.5), 0.5))
 

@@ -38,7 +38,7 @@ def _profile(axis: Axes, widest: Row) -> None:
 def _contact(axis: Axes, slits: Table) -> None:
     style.band(axis, -1.0, 1.0)
     style.level(axis, 0.0)
-    style.points(axis, _shown(slits), 100.0 * (contact_ratio(slits) - 1.0), color=style.DATA)
+    style.points(axis, _positions(slits), 100.0 * (contact_ratio(slits) - 1.0), color=style.DATA)
     style.labelled(axis, y=r"$\rho(0)k_\mathrm{B}T/P-1$  (%)")
 
 
@@ -46,7 +46,7 @@ def _solvation(axis: Axes, slits: Table) -> None:
     style.level(axis, 0.0)
     curve = slits.curve - slits.functional_bulk_pressure
     axis.plot(slits.theory_width, curve, color=style.REFERENCE, label="White Bear")
-    widths, excess = _shown(slits), slits.at_bulk - slits.bulk_pressure
+    widths, excess = _positions(slits), slits.at_bulk - slits.bulk_pressure
     style.points(axis, widths, excess, color=style.DATA, label="measured")
     axis.annotate(
         f"{slits.width[-1]:g}", (widths[-1], excess.value[-1]), (-6, 0),
@@ -56,7 +56,7 @@ def _solvation(axis: Axes, slits: Table) -> None:
     style.labelled(axis, *labels, legend="upper right")
 
 
-def _shown(slits: Table) -> np.ndarray:
+def _positions(slits: Table) -> np.ndarray:
     """Return the positions (width,) on the axis.
 
     The widest slit is drawn at its end, and labelled with its width.

@@ -98,13 +98,13 @@ def _loop(axis: Axes, states: Table, starts: dict[str, Table]) -> None:
         if np.isfinite(side.plateau.value):
             ends, level = [side.plateau_low, side.plateau_high], [side.plateau.value] * 2
             axis.plot(ends, level, color=style.COLOURS[LOOKS[start]], linewidth=0.8)
-    _published(axis)
+    _draw_published(axis)
     low, high = np.nanmin(states.pressure.value), np.nanmax(states.pressure.value)
     axis.set_ylim(low - 0.1 * (high - low), high + 0.25 * (high - low))
     style.labelled(axis, y="pressure $P\\sigma^2/k_\\mathrm{B}T$", legend="lower right")
 
 
-def _published(axis: Axes) -> None:
+def _draw_published(axis: Axes) -> None:
     """Draw the published pressures of more discs, and of as many as are compared."""
     published = theory.literature("pressure", 2)
     for count, source, container, dashes in PUBLISHED:

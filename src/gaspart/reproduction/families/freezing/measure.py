@@ -56,7 +56,7 @@ def freezing_discs(points: list[Point], settings: dict) -> xr.Dataset:
     sides = list(Table(dataset.assign(unlike=unlike), "start"))
     parts = [table("start", sides, _plateau), _pictures(_of_start(points, sides[-1].start), settings)]
     if compared:
-        parts.append(_compared(compared))
+        parts.append(_compare(compared))
     return xr.merge([dataset, *parts], join="outer", compat="no_conflicts")
 
 
@@ -179,7 +179,7 @@ def _disagreement(dataset: xr.Dataset) -> xr.DataArray:
     return xr.concat(worst, "what", join="outer", compat="equals").max("what")
 
 
-def _compared(points: list[Point]) -> xr.Dataset:
+def _compare(points: list[Point]) -> xr.Dataset:
     """Return the pressures of points that are compared with published ones."""
     names = [f"pressure{name}" for name in ("", "_error", "_drift", "_drift_error")]
     new = {name: f"compared_{name}" for name in (*names, "packing_fraction")}

@@ -174,14 +174,14 @@ def _clusters(gases: Table) -> list[Claim]:
     for gas in gases[gases.cluster_restitution != 1.0]:
         end = f"in the end, restitution {gas.cluster_restitution:g}"
         claims += [
-            _grown(
+            _claim_growth(
                 f"variance of the number in a cell over the elastic gas's, {end}",
                 gas.variance[-1] / usual,
                 least=3.0,
                 source="[Goldhirsch 1993]: a large inelastic gas forms clusters",
                 fails_if="a gas that stays homogeneous",
             ),
-            _grown(
+            _claim_growth(
                 f"T over Haff's law, {end}",
                 gas.cluster_excess[-1],
                 least=2.0,
@@ -192,7 +192,7 @@ def _clusters(gases: Table) -> list[Claim]:
     return claims
 
 
-def _grown(subject: str, ratio: Estimate, least: float, **others: Any) -> Claim:
+def _claim_growth(subject: str, ratio: Estimate, least: float, **others: Any) -> Claim:
     """Return the claim that a ratio is `least` or more, by its logarithm.
 
     The logarithm is 0 for an unchanged gas.

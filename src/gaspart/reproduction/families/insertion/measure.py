@@ -84,7 +84,7 @@ def fill_failures(points: list[Point], settings: dict) -> xr.Dataset:
     saturation with its error (container, window) and the degrees of freedom of that (container), NaN for
     others than `saturated` ones, and slope of its line in t^(-1/d); approach and its error: exponent p of
     eta_s - eta ~ t^-p with the literature's eta_s (saturated periodic containers only); dilute_failures with
-    error: failures over the expected ones at low density (periodic containers only). Attribute dilute_up_to.
+    error, failures over the expected ones at low density (periodic containers only). Attribute dilute_up_to.
     """
     inner = {
         **dict.fromkeys(("packing_fraction", "failures_per_particle"), ("bin",)),

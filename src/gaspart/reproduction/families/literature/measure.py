@@ -56,7 +56,7 @@ def _values(point: Point) -> Iterator[dict[str, Any]]:
         yield from _of_infinite_system(point, gas)
         return
     for quantity, ours in _of_as_many(point, gas).items():
-        published = _known(gas, quantity)
+        published = _literature_values(gas, quantity)
         for row in published[published.count == gas.count]:
             yield _row(gas, quantity, ours, Estimate(float(row.value), float(row.error)), str(row.source))
 
@@ -73,7 +73,7 @@ def _row(gas: Gas, quantity: str, ours: Estimate, theirs: Estimate, source: str)
     }
 
 
-def _known(gas: Gas, quantity: str) -> np.recarray:
+def _literature_values(gas: Gas, quantity: str) -> np.recarray:
     """Return the values of others at this packing fraction in such a container."""
     rows = theory.literature(quantity, gas.dimension)
     same = np.abs(rows.packing_fraction - gas.packing_fraction) < SAME
@@ -90,7 +90,7 @@ def _of_infinite_system(point: Point, gas: Gas) -> Iterator[dict[str, Any]]:
     eta = gas.packing_fraction
     fluid = eta <= theory.HIGHEST_PACKING_FRACTION[3]
     quantity = "Z" if fluid else "Z_crystal"
-    published = _known(gas, quantity)
+    published = _literature_values(gas, quantity)
     if not len(published):
         return
     z = pressure(point).z

@@ -52,7 +52,7 @@ def mixture_state(dataset: xr.Dataset) -> list[Claim]:
     spheres = gases[gases.dimension == 3]
     if spheres:
         claims.append(_better(spheres))
-    return [*claims, *_reported(gases)]
+    return [*claims, *_report_theories(gases)]
 
 
 def _where(gas: Row) -> str:
@@ -154,7 +154,7 @@ def _better(spheres: Table) -> Claim:
     )
 
 
-def _reported(gases: Table) -> list[Claim]:
+def _report_theories(gases: Table) -> list[Claim]:
     """Return the claims on the largest deviation of each theory."""
     claims = []
     for dimension, names in ((3, tuple(_NAMES)), (2, ("santos",))):

@@ -12,7 +12,7 @@ from gaspart.analysis.observable import Observable
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.analysis.statistics import average
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.sweep_table import mean_of, measured
+from gaspart.reproduction.sweep_table import mean_of, measure_point
 from gaspart.reproduction.table import from_rows
 
 _PARTS = {"value": "", "value_error": "_error", "theory": "_theory", "theory_error": "_theory_error"}
@@ -32,7 +32,7 @@ def observable(points: list[Point], settings: dict) -> xr.Dataset:
     name = settings["observable"]
     rows, source = [], ""
     for point in points:
-        result, refused = measured(point, [name], part=False)
+        result, refused = measure_point(point, [name], part=False)
         if refused:
             raise refused[name]
         replicas = result.observables[name]

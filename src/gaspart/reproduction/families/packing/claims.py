@@ -17,7 +17,9 @@ def densest_fill(dataset: xr.Dataset) -> list[Claim]:
     """
     claims = []
     for packing in Table(dataset, "packing"):
-        claims += _compressed(packing) if packing.rule == "compressed" else [_inserted(packing)]
+        claims += (
+            _claims_on_jammed(packing) if packing.rule == "compressed" else [_claim_on_insertion(packing)]
+        )
     return claims
 
 
@@ -25,7 +27,7 @@ def _packing_fraction(packing: Row) -> Estimate:
     return Estimate(packing.packing_fraction, packing.error, packing.freedom)
 
 
-def _compressed(packing: Row) -> list[Claim]:
+def _claims_on_jammed(packing: Row) -> list[Claim]:
     return [
         Claim.at_least(
             claim="packing fraction of spheres grown until they jam",
@@ -48,7 +50,7 @@ def _compressed(packing: Row) -> list[Claim]:
     ]
 
 
-def _inserted(packing: Row) -> Claim:
+def _claim_on_insertion(packing: Row) -> Claim:
     side = packing.length[0] / (2.0 * packing.radius)
     saturation = theory.insertion_saturation(3, side, packing.rule)
     return Claim.at_most(

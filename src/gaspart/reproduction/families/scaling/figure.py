@@ -175,7 +175,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
     """
     figure, (top, middle, bottom) = style.new((3.0,), (1.9, 1.7))
     gases, naive, lists = Table(ds, "gas"), Table(ds, "naive"), Table(ds, "listed")
-    _extrapolated(top, naive)
+    _extrapolate(top, naive)
     style.points(top, naive.naive_count, naive.naive_seconds, kind=1, label="one box")
     for kind, (radius, own) in enumerate(reversed(list(gases.by("radius")))):
         n, label = own.count, f"cheapest partition, $r = {radius:g}$"
@@ -203,7 +203,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
     return figure
 
 
-def _extrapolated(axis: Axes, naive: Table) -> None:
+def _extrapolate(axis: Axes, naive: Table) -> None:
     """Draw the time of one box with many more particles; nothing if noise makes it negative."""
     far, carried = float(naive.extrapolated_count), naive.extrapolated_seconds.value
     line = np.array([naive.naive_count.min(), far])

@@ -224,7 +224,7 @@ def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
     )
 
 
-def listed(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
+def list_costs(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
     """Return the costs per particle of neighbour lists, over ``listed``.
 
     They are ``list_seconds`` ... as in `per_particle`; ``list_count``, ``list_radius``; and ``list_share``,

@@ -47,17 +47,17 @@ class Choice:
         """The systematic error that a longer run does not reduce."""
         return self.model + self.discretisation
 
-    def measured(self, accuracy: float) -> float:
+    def measuring_time(self, accuracy: float) -> float:
         """Compute the CPU time in s of the measurement alone, for an accuracy.
 
         95 % of all runs have the accuracy. The time is infinite if the systematic error leaves nothing for
         noise.
         """
-        return required(self.unit, accuracy, self.bias, self.least)
+        return required_length(self.unit, accuracy, self.bias, self.least)
 
     def cost(self, accuracy: float) -> float:
         """Compute the CPU time in s, with the equilibration."""
-        return self.measured(accuracy) + self.equilibration
+        return self.measuring_time(accuracy) + self.equilibration
 
     def parts(self, accuracy: float) -> dict[str, float]:
         """Compute the relative error by `PARTS` of a run for an accuracy.
@@ -67,7 +67,7 @@ class Choice:
         The mean of the initial state's trace over the measurement is the part of the decay in that, times the
         remainder after equilibration.
         """
-        length = self.measured(accuracy)
+        length = self.measuring_time(accuracy)
         remainder = 0.0
         if self.decay and math.isfinite(length):
             remainder = self.trace * math.exp(-self.equilibration / self.decay) * self.decay / length
@@ -77,7 +77,7 @@ class Choice:
         )
 
 
-def required(variance: float, accuracy: float, bias: float, least: float = 0.0) -> float:
+def required_length(variance: float, accuracy: float, bias: float, least: float = 0.0) -> float:
     """Return the length of the measurement for an accuracy that 95 % of all runs have.
 
     It is at least `least`. The unit is that in which a measurement has this relative variance; inf if the

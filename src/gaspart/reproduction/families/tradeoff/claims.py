@@ -28,7 +28,7 @@ def speed_accuracy(ds: xr.Dataset) -> list[Claim]:
     """
     errors = Table(ds, "row")
     frontier = [claim for gas in Table(ds, "gas") for claim in _frontier(_of(gas, "Z"))]
-    return [*_orders(errors), *_missed(errors), *frontier, *map(_steady, Table(ds, "steady"))]
+    return [*_orders(errors), *_claims_on_misses(errors), *frontier, *map(_steady, Table(ds, "steady"))]
 
 
 def _of(row: Row, observable: str) -> Row:
@@ -71,7 +71,7 @@ def _orders(errors: Table) -> list[Claim]:
     return claims
 
 
-def _missed(errors: Table) -> list[Claim]:
+def _claims_on_misses(errors: Table) -> list[Claim]:
     """Return the claims on the rate of a dilute gas, at a long step.
 
     It is the longest step that loses 2 % at most.

@@ -70,7 +70,7 @@ def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: l
             "part": list(PARTS),
         },
     )
-    parts = dataset, _compared(measured, fractions), _speeds(timed, cells, fractions)
+    parts = dataset, _compare_flows(measured, fractions), _speeds(timed, cells, fractions)
     return xr.merge(parts, join="outer", compat="no_conflicts")
 
 
@@ -136,7 +136,7 @@ def _solver(setting: str) -> str:
     return "step" if PRECISIONS.get(setting) == "float64" else setting
 
 
-def _compared(measured: list[flows.Flow], fractions: list[float]) -> xr.Dataset:
+def _compare_flows(measured: list[flows.Flow], fractions: list[float]) -> xr.Dataset:
     """Return the measurements of each engine, and theory's bounds on its error."""
     names = ("flow", "flow_error", "flow_freedom", "flow_bound")
     array = np.full((len(names), len(flows.FLOWS), len(fractions), len(ENGINES)), np.nan)

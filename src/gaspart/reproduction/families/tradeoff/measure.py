@@ -21,14 +21,14 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction import table as tables
 from gaspart.reproduction.families.shared.accuracy import costs, setting_name
 from gaspart.reproduction.families.shared.pressure import pressure
-from gaspart.reproduction.families.tradeoff.choices import required
+from gaspart.reproduction.families.tradeoff.choices import required_length
 from gaspart.reproduction.families.tradeoff.frontier import SEEN, frontier
 from gaspart.reproduction.families.tradeoff.maps import maps
 from gaspart.reproduction.families.tradeoff.uniform import (
     OBSERVABLES,
     Cells,
     cells_by_fraction,
-    compared,
+    compare_steps,
     each_of,
 )
 from gaspart.reproduction.points.point import Point
@@ -61,7 +61,7 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     the engine's own, and the time with it, ``dsmc_step_seconds`` with its error.
     """
     timed = [costs(point) for point in points if point.job == "measure_cost"]
-    rows = compared(points, timed)
+    rows = compare_steps(points, timed)
     rows = sorted(rows, key=lambda row: (-row["dimension"], row["packing_fraction"]))
     inner = {name: ("observable", "step")[2 - np.ndim(value) :] for name, value in rows[0].items()}
     dataset = tables.from_rows("row", rows, inner).assign_coords(
@@ -77,7 +77,7 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
         frontier(dataset), join="outer", compat="no_conflicts"
     )
     events = [timing for timing in timed if timing["setting"] == "event"]
-    dataset = dataset.assign(tables.table("timed", events, _timed))
+    dataset = dataset.assign(tables.table("timed", events, _time_per_collision))
     cells = cells_by_fraction(points, settings["cells"])
     models = _models(events, timed, cells)
     steps = dict.fromkeys(("dsmc_step", "dsmc_step_seconds"), ("part",))
@@ -101,8 +101,8 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     """
     uniform = (point for point in points if point.experiment not in settings["plates_cost"])
     timed = [costs(point) for point in uniform if point.job == "measure_cost"]
-    every = compared(points, timed)
-    rows = compared([point for point in points if point.experiment in settings["elsewhere"]], timed)
+    every = compare_steps(points, timed)
+    rows = compare_steps([point for point in points if point.experiment in settings["elsewhere"]], timed)
     speeds = _speeds(timed)
     gases = sorted({(row["dimension"], row["packing_fraction"]) for row in rows})
     shape = (len(gases), len(OBSERVABLES), len(settings["counts"]), len(settings["accuracies"]))
@@ -174,7 +174,7 @@ def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float,
     noise = table.noise(dimension, fraction, name)
 
     def cost(bias: float, each: float) -> float:
-        contacts = required(noise, accuracy, bias, 0.5 * count * LEAST) + 0.5 * count * EQUILIBRATION
+        contacts = required_length(noise, accuracy, bias, 0.5 * count * LEAST) + 0.5 * count * EQUILIBRATION
         return contacts * each if np.isfinite(each) else np.inf
 
     tabulated = table.seconds(dimension, fraction, "event") * speeds["event", "float64"]
@@ -250,7 +250,7 @@ def _model(timings: tuple[dict, dict], cells: dict[float, Cells]) -> dict[str, A
     }
 
 
-def _timed(run: dict) -> dict[str, Any]:
+def _time_per_collision(run: dict) -> dict[str, Any]:
     """Return the time of a collision of the event-driven engine, in the gas of a timing."""
     dimension, fraction = run["gas"]
     return {

@@ -119,7 +119,7 @@ def _nearest(values: xr.DataArray, target: float) -> int:
     return int(np.argmin(np.abs(np.log(values.values / target))))
 
 
-def breakdown(axis: Axes, ds: xr.Dataset) -> None:
+def draw_breakdown(axis: Axes, ds: xr.Dataset) -> None:
     """Draw errors over the required accuracy of every engine at the `PLACES`, by what makes them."""
     rows: list[tuple[float, str]] = []
     for p, at in enumerate(places(ds)):

@@ -203,7 +203,7 @@ def each_of(timed: dict, rate: float) -> Estimate:
     return Estimate(timed["seconds"], timed["error"]) / rate
 
 
-def compared(points: list[Point], timed: list[dict]) -> list[dict]:
+def compare_steps(points: list[Point], timed: list[dict]) -> list[dict]:
     """Return the errors of time steps with their costs, see `shared.accuracy`."""
     rows = [errors(point) for point in points if point.job == "compare"]
     for row in rows:
