@@ -110,7 +110,7 @@ def main(source: str, csv: str, png: str) -> None:
     for path in (csv, png):
         Path(path).parent.mkdir(parents=True, exist_ok=True)
     frame.to_csv(csv, index=False, float_format="%.5g")
-    with style.applied():
+    with style.use_style():
         style.save(draw(frame), png)
 
 

@@ -11,7 +11,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.analysis.observables import ALIASES, OBSERVABLES, known
-from gaspart.public import entries, stated
+from gaspart.public import entries, read_stub
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ["gaspart", "gaspart.analysis", "gaspart.keys", "gaspart.theory", "gaspart.reproduction.claims"]
@@ -29,7 +29,7 @@ def test_every_stub_belongs_to_a_package_that_loads_what_it_states():
     stubs = {path.parent.relative_to(ROOT / "src") for path in (ROOT / "src/gaspart").rglob("*.pyi")}
     assert {".".join(path.parts) for path in stubs} == set(PACKAGES)
     for package in map(import_module, PACKAGES):
-        homes = stated(f"{package.__file__}i")
+        homes = read_stub(f"{package.__file__}i")
         assert package.__all__ == list(homes) and dir(package) == sorted(homes)
         originals, aliases = entries(f"{package.__file__}i")
         for name, home in originals.items():
@@ -86,7 +86,7 @@ def test_an_alias_names_its_observable(name):
 
 def test_an_accuracy_takes_aliases():
     assert gp.Accuracy("compressibility_factor", 1e-2).observable == "Z"
-    with pytest.raises(gp.SceneError, match="temperature.*ends no run.*give a duration, and measure"):
+    with pytest.raises(gp.SceneError, match="temperature.*does not end a run.*give a duration and measure"):
         gp.Accuracy("temperature", 1e-2)
 
 

@@ -100,7 +100,10 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
             id="overlapping particles",
         ),
         pytest.param(
-            GAS.replace("0.5", "7.0"), [], "radius = 7.0: a particle must fit", id="particle too large"
+            GAS.replace("0.5", "7.0"),
+            [],
+            "radius = 7.0: is too large for the container",
+            id="particle too large",
         ),
         pytest.param(
             GAS, ["--boxes-per-side", "13"], "boxes_per_side = 13: boxes must not", id="narrow boxes"
@@ -206,7 +209,7 @@ def test_waiting_is_shown_on_a_terminal_after_a_while(monkeypatch):
     monkeypatch.setattr(sys, "stderr", io.StringIO())
     with progress.waiting("compiling"):
         pass
-    assert progress.counted() is None and sys.stderr.getvalue() == ""
+    assert progress.picture_progress() is None and sys.stderr.getvalue() == ""
 
 
 def test_pictures_are_counted(monkeypatch):
@@ -215,7 +218,7 @@ def test_pictures_are_counted(monkeypatch):
     monkeypatch.setattr(sys, "stderr", terminal)
     clock = iter([100.0, 101.0, 110.0])
     monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
-    show = progress.counted()
+    show = progress.picture_progress()
     show(1, 40)
     show(10, 40)
     assert terminal.getvalue() == "\r\033[Kpicture 10 of 40  0:00:30 left"
@@ -292,7 +295,7 @@ def test_export_prints_the_path(folder, capsys):
     assert capsys.readouterr().out == "state.gsd\n"
     assert main(["export", "run.nc", "-o", "state.pdb"]) == 2
     assert main(["export", "run.nc", "-o", "state.gsd", "--frame", "3"]) == 2
-    assert "frame = 3: the trajectory has 3" in capsys.readouterr().err
+    assert "frame = 3: must be one of 3 frames" in capsys.readouterr().err
 
 
 def test_advice_names_engine_length_cost_and_reason(folder, capsys):

@@ -10,7 +10,7 @@ from gaspart.rendering.legibility import flaws
 @pytest.fixture
 def panel(tmp_path):
     """A panel, and a function that saves its figure and returns what is wrong with it."""
-    with style.applied("journal"):
+    with style.use_style("journal"):
         figure, (axis,) = style.new((2.0,))
 
         def saved():

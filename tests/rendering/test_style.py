@@ -8,7 +8,7 @@ from gaspart.rendering import style
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_the_same_figure_gives_the_same_bytes(tmp_path, suffix):
     def draw(path):
-        with style.applied():
+        with style.use_style():
             figure, (upper, lower) = style.new((2.0, 1.0))
             style.points(upper, [1, 2, 3], [1.0, 4.0, 9.0], [0.1, 0.2, 0.3], label="$\\eta$")
             style.band(lower, -3.0, 3.0)
@@ -32,7 +32,7 @@ def columns(figure):
 def test_a_page_has_two_columns_of_panels_and_a_journal_one(tmp_path):
     drawn = {}
     for layout in style.LAYOUTS:
-        with style.applied(layout):
+        with style.use_style(layout):
             figure, (a, b, c, d) = style.new((2.0, 1.0), (1.5,), (1.0,))
             style.save(figure, tmp_path / "one.png")
         assert figure.get_figwidth() == style.LAYOUTS[layout]
@@ -45,7 +45,7 @@ def test_a_page_has_two_columns_of_panels_and_a_journal_one(tmp_path):
 
 
 def test_the_parts_of_a_split_panel_take_its_place():
-    with style.applied("journal"):
+    with style.use_style("journal"):
         figure, (_, below) = style.new((1.0,), (2.0,))
         parts = style.split(below, 2, 3)
     assert parts.shape == (2, 3) and below not in figure.axes and len(figure.axes) == 7
@@ -60,7 +60,7 @@ def test_letters_are_of_8_points_at_least():
 
 def test_numbers_of_a_short_logarithmic_axis_do_not_run_into_each_other(tmp_path):
     """3 to 40 and 1e-9 to 1: plain numbers on the one, powers of ten on the other, none of another kind."""
-    with style.applied():
+    with style.use_style():
         figure, (axis,) = style.new((2.6,))
         axis.loglog([3.0, 40.0], [1e-9, 1.0])
         style.save(figure, tmp_path / "one.png")
@@ -74,11 +74,11 @@ def test_numbers_of_a_short_logarithmic_axis_do_not_run_into_each_other(tmp_path
 
 
 def test_estimates_are_points_with_error_bars_and_labels_are_those_stated():
-    with style.applied():
+    with style.use_style():
         _, (axis,) = style.new((2.0,))
         x, y = Estimate([1.0, 2.0], [0.1, 0.2]), Estimate([3.0, 4.0], [0.3, 0.4])
         drawn = style.points(axis, x, y, label="seen")
-        style.labelled(axis, "time", legend="upper left", columns=2, xscale="log")
+        style.label_axes(axis, "time", legend="upper left", columns=2, xscale="log")
     across, along = (np.array([path.vertices for path in bars.get_paths()]) for bars in drawn.lines[2])
     np.testing.assert_allclose(across[:, :, 0], [[0.9, 1.1], [1.8, 2.2]])
     np.testing.assert_allclose(along[:, :, 1], [[2.7, 3.3], [3.6, 4.4]])

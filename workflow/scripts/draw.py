@@ -16,7 +16,7 @@ with job(snakemake):
         paths = [output[name] for name in names if name in output]
         if not paths:
             continue
-        with style.applied(layout):
+        with style.use_style(layout):
             picture = draw(dataset)
             for path in paths:
                 style.save(picture, path)

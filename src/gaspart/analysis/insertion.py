@@ -13,6 +13,7 @@ same average, exactly.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -39,6 +40,11 @@ _CELLS = 65536
 _PER_DISTANCE = 8
 """Cells of that grid in the distance within which a particle covers, at most."""
 _MOST_CELLS = 2048  # after a division
+_MARGIN = 1.5
+"""Minimum number of standard deviations of ln P, by frame, between the frames that contribute most to the
+mean of P and the best frame, for an error."""
+_TWO_SIGMA = 0.9772
+"""Probability that a normal variable is at most two standard deviations above its mean."""
 _WORTH = 0.6
 """Fraction of cells left by a division above which no further division follows."""
 
@@ -53,18 +59,18 @@ class Insertions:
         Fraction of the container in which positions were drawn.
     successes : ndarray of int, shape (T,)
         Number of free positions.
-    places : int
+    trials : int
         Number of positions in each frame whose fraction is not 0.
     """
 
     share: np.ndarray
     successes: np.ndarray
-    places: int
+    trials: int
 
     @property
     def probability(self) -> np.ndarray:
         """(T,) chance that a random place is free, by frame."""
-        return self.share * self.successes / self.places
+        return self.share * self.successes / self.trials
 
     @property
     def resolution(self) -> float:
@@ -73,7 +79,7 @@ class Insertions:
         It is one over the number of random positions, drawn in the whole container, which these trials stand
         for.
         """
-        return float(self.share.mean() / (self.places * len(self.share)))
+        return float(self.share.mean() / (self.trials * len(self.share)))
 
 
 Hosts: TypeAlias = Sequence[tuple[np.ndarray | slice, float]]
@@ -84,7 +90,7 @@ def insertions(
     frames: np.ndarray,
     lengths: Sequence[float] | np.ndarray,
     hosts: Hosts,
-    places: int,
+    trials: int,
     seed: int | Sequence[int] = 0,
 ) -> Insertions:
     """Try random positions in each frame of a periodic container.
@@ -97,7 +103,7 @@ def insertions(
         Side lengths of the container.
     hosts : Hosts
         The particles inside and the particle to insert.
-    places : int
+    trials : int
         Number of positions in each frame.
     seed : int or sequence of int, default 0
         Seed of the positions.
@@ -112,12 +118,12 @@ def insertions(
     share, successes = np.zeros(len(frames)), np.zeros(len(frames), dtype=int)
     for n, positions in enumerate(frames):
         groups = [(positions[members] % size, distance) for members, distance in hosts]
-        share[n], successes[n] = _try(groups, size, places, generator)
-    return Insertions(share, successes, places)
+        share[n], successes[n] = _try(groups, size, trials, generator)
+    return Insertions(share, successes, trials)
 
 
 def _try(
-    groups: list[tuple[np.ndarray, float]], lengths: np.ndarray, places: int, generator: np.random.Generator
+    groups: list[tuple[np.ndarray, float]], lengths: np.ndarray, number: int, generator: np.random.Generator
 ) -> tuple[float, int]:
     """Count free trials in the region that cells do not show to be covered.
 
@@ -130,21 +136,21 @@ def _try(
     cells, sides = _remaining(groups, trees, lengths)
     if not len(cells):
         return 0.0, 0
-    chosen = cells[generator.integers(0, len(cells), size=places)]
+    chosen = cells[generator.integers(0, len(cells), size=number)]
     trials = chosen + sides * (generator.random(chosen.shape) - 0.5)
     free = _apart(trees, trials % lengths, 0.0)
     return len(cells) * float(np.prod(sides / lengths)), int(free.sum())
 
 
-def _apart(trees: list[tuple[Any, float]], places: np.ndarray, less: float) -> np.ndarray:
+def _apart(trees: list[tuple[Any, float]], positions: np.ndarray, less: float) -> np.ndarray:
     """Find positions (M, d) that are farther from every particle than its distance less a length."""
-    found = np.ones(len(places), dtype=bool)
+    is_free = np.ones(len(positions), dtype=bool)
     for tree, distance in trees:
         if distance > less:
-            left = np.flatnonzero(found)
-            nearest, _ = tree.query(places[left], distance_upper_bound=distance - less)
-            found[left] = np.isinf(nearest)
-    return found
+            remaining = np.flatnonzero(is_free)
+            nearest, _ = tree.query(positions[remaining], distance_upper_bound=distance - less)
+            is_free[remaining] = np.isinf(nearest)
+    return is_free
 
 
 def _remaining(
@@ -179,16 +185,16 @@ def _covered(groups: list[tuple[np.ndarray, float]], sides: np.ndarray, number: 
     last, strips = int(number[-1]), int(np.prod(number[:-1]))
     ends = np.zeros(strips * last, dtype=int)
     for positions, distance in groups:
-        left, strip = np.full(len(positions), distance**2), np.zeros(len(positions), dtype=int)
-        for place, side, count in zip(positions.T, sides[:-1], number, strict=False):
+        remaining, strip = np.full(len(positions), distance**2), np.zeros(len(positions), dtype=int)
+        for coordinate, side, count in zip(positions.T, sides[:-1], number, strict=False):
             reach = int(distance / side)
-            near = np.floor(place / side).astype(int)[:, None] + np.arange(-reach, reach + 1)
-            furthest = np.abs(place[:, None] - side * (near + 0.5)) + 0.5 * side
-            around = (len(place), *[1] * (left.ndim - 1), -1)
-            left = left[..., None] - (furthest**2).reshape(around)
+            near = np.floor(coordinate / side).astype(int)[:, None] + np.arange(-reach, reach + 1)
+            furthest = np.abs(coordinate[:, None] - side * (near + 0.5)) + 0.5 * side
+            around = (len(coordinate), *[1] * (remaining.ndim - 1), -1)
+            remaining = remaining[..., None] - (furthest**2).reshape(around)
             strip = strip[..., None] * count + (near % count).reshape(around)
-        chosen = np.nonzero(left > 0.0)
-        half, centre = np.sqrt(left[chosen]), positions[chosen[0], -1]
+        chosen = np.nonzero(remaining > 0.0)
+        half, centre = np.sqrt(remaining[chosen]), positions[chosen[0], -1]
         first = np.ceil((centre - half) / sides[-1]).astype(int)
         end = np.maximum(first, np.floor((centre + half) / sides[-1]).astype(int))
         start = last * strip[chosen]
@@ -227,8 +233,11 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
 
     Notes
     -----
-    The error applies to the mean over frames, to first order: it is not to be trusted if few frames have a
-    success. Theory: by the equation of state, for these numbers of particles.
+    The error applies to the mean over frames, to first order. In a dense fluid ln P of a frame has a large
+    standard deviation s: the frames around s deviations above the median contribute most to P. Among n
+    independent frames the best one is about sqrt(2 ln n) deviations above the median. If this is not s + 1.5
+    at least, the frames that contribute most are missing: the result is too large, its error is NaN, and a
+    note states it. Theory: by the equation of state, for these numbers of particles.
 
     Examples
     --------
@@ -240,7 +249,7 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
     >>> gp.analysis.chemical_potential(simulation, places=50).estimate.attrs["units"]
     '1'
     """
-    places = count_of("places", places, least=1)
+    trials = count_of("places", places, least=1)
     with open_run(source, start) as run:
         require_defined("chemical_potential", run.scene)
         run.require_all()
@@ -252,10 +261,13 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
         time = run.time[frames]
         edges = np.append(time, 2.0 * time[-1] - time[-2])
         about = described("chemical_potential", run)
-        tried = [_inserted(run, frames, hosts, places) for hosts in _hosts(run)]
+        tried = [_inserted(run, frames, hosts, trials) for hosts in _hosts(run)]
         if run.scene.alike:
             series, counts = tried[0]
-            return scalar("chemical_potential", series, edges, **about).assign(_variables((), counts))
+            result = scalar("chemical_potential", series, edges, **about)
+            if np.isnan(counts["probability_error"]):
+                result["chemical_potential_error"][()] = np.nan
+            return _with_note(result.assign(_variables((), counts)))
         return _of_species(run, tried, about)
 
 
@@ -271,34 +283,63 @@ def _hosts(run: Run) -> list[Hosts]:
     return [[(each, own + radius) for each, radius in zip(numbers, radii, strict=True)] for own in radii]
 
 
-def _inserted(run: Run, frames: slice, hosts: Hosts, places: int) -> tuple[np.ndarray, dict[str, float]]:
+def _inserted(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.ndarray, dict[str, float]]:
     """Compute the series (T,) of the chemical potential, and the counts of insertions."""
-    found = insertions(run.positions[frames], run.scene.container.lengths, hosts, places)
-    chance = float(found.probability.mean())
+    result = insertions(run.positions[frames], run.scene.container.lengths, hosts, trials)
+    chance = float(result.probability.mean())
     if chance == 0.0:
-        rule = f"of {places} places in each of {len(found.share)} frames none was free: a fluid too dense"
+        rule = f"of {trials} places in each of {len(result.share)} frames none was free: a fluid too dense"
         raise SceneError("packing_fraction", run.scene.packing_fraction, rule)
-    series = -np.log(chance) - (found.probability / chance - 1.0)  # to first order
+    series = -np.log(chance) - (result.probability / chance - 1.0)  # to first order
     error = correlated_mean(series, LEAST_INTERVALS).estimate.error
+    if not _is_sampled(result.probability, error):
+        error = np.nan
     counts = {
         "probability": chance,
         "probability_error": chance * error,
-        "successes": found.successes.sum(),
-        "frames_with_success": np.count_nonzero(found.successes),
-        "resolution": found.resolution,
+        "successes": result.successes.sum(),
+        "frames_with_success": np.count_nonzero(result.successes),
+        "resolution": result.resolution,
     }
     return series, counts
+
+
+def _is_sampled(probability: np.ndarray, error: float) -> bool:
+    """Return True if the frames that contribute most to the mean probability (T,) are known.
+
+    error : standard error of the mean over the mean, with the correlation of the frames.
+    """
+    free = probability[probability > 0.0]
+    if error == 0.0:
+        return True
+    median, high = np.quantile(free, (0.5, _TWO_SIGMA))
+    deviation = 0.5 * math.log(high / median)
+    independent = float(probability.var()) / (error * float(probability.mean())) ** 2
+    best = math.sqrt(2.0 * math.log(max(1.0, min(independent, len(free)))))
+    return deviation + _MARGIN <= best
+
+
+def _with_note(result: Observable) -> Observable:
+    """Add a note to a result whose error is not known."""
+    if np.isnan(result.error).any():
+        frames = int(np.min(result["frames_with_success"].values))
+        result.attrs["note"] = (
+            f"probably too large, by an unknown error: a place was free in {frames} frames, and rarer frames "
+            "contribute most to the mean: a longer run has some"
+        )
+    return result
 
 
 def _of_species(run: Run, tried: list[tuple[np.ndarray, dict[str, float]]], about: dict) -> Observable:
     """Return the result of a mixture."""
     means = [correlated_mean(series, LEAST_INTERVALS).estimate for series, _ in tried]
-    values, errors, freedoms = np.array([[one.value, one.error, one.freedom] for one in means]).T
+    values, errors, freedoms = np.array([[mean.value, mean.error, mean.freedom] for mean in means]).T
+    errors[[np.isnan(each["probability_error"]) for _, each in tried]] = np.nan
     along = {"species": (np.unique(run.species), {"long_name": "number of the species"})}
     result = observable("chemical_potential", along, values, errors, **about)
     result = with_freedom(result, Means(values, errors, freedoms))
-    counts = {name: np.array([one[name] for _, one in tried]) for name in tried[0][1]}
-    return result.assign(_variables(("species",), counts))
+    counts = {name: np.array([each[name] for _, each in tried]) for name in tried[0][1]}
+    return _with_note(result.assign(_variables(("species",), counts)))
 
 
 _MEANINGS = {

@@ -10,13 +10,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from gaspart.analysis.bulk import EXACT
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.expected.equilibrium import described, equation_of
 from gaspart.analysis.impulses import estimator, mixture
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
 from gaspart.analysis.observables import KEPT, require_defined
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
-from gaspart.analysis.statistics import correlated_mean, means_of
+from gaspart.analysis.statistics import correlated_mean, histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
 from gaspart.scene.impulses import FURTHEST
@@ -194,9 +195,9 @@ def mixed_g(counted: np.ndarray, parts: np.ndarray, volumes: np.ndarray) -> np.n
 
     The shells have these volumes (bins,).
     """
-    contacts, found = parts[0].mean(axis=0), parts.sum(axis=0)
-    missing = ((counted - found) @ volumes) / (contacts @ volumes)
-    impulses = found + missing[:, None] * contacts
+    contacts, total = parts[0].mean(axis=0), parts.sum(axis=0)
+    missing = ((counted - total) @ volumes) / (contacts @ volumes)
+    impulses = total + missing[:, None] * contacts
     return counted + mixture(counted, impulses, periodic=False) * (impulses - counted)
 
 
@@ -241,7 +242,8 @@ def rdf(
 
     Impulses of pairs, in shells of which each bin has as many, make g(r) more accurate than counts
     (`gaspart.analysis.pairs`); the attribute `estimator` says so. Theory: the value at contact that
-    belongs to the pressure of N particles, at the first bins beyond the diameter only.
+    belongs to the pressure of N particles, at the first bins beyond the diameter only. The error of an empty
+    bin is NaN, but 0 where hard particles would overlap.
 
     References
     ----------
@@ -278,13 +280,16 @@ def rdf(
         parts = g_by_impulses(run, np.array([part.start for part in stretches]), bins, end)
         if parts is not None:
             each = mixed_g(each, parts, shell_volumes(bins, run.dimension))
-        values, errors = means_of(each)
+        values, errors = histogram_means(each)
         distance = (np.arange(bins) + 0.5) * (end / bins)
+        if equation_of(run) == EXACT:  # the centres of hard particles are never nearer than this
+            within = distance + 0.5 * end / bins <= 2.0 * run.radii[:stored].min()
+            errors[within & (values == 0.0)] = 0.0
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
         about = described("rdf", run, distance, end / bins)
         result = observable("rdf", along, values, errors, **about)
-        asked = PairImpulseTally(float(end), 200, 0.1)
-        result.attrs |= estimator(run, "counts", "counts and impulses", parts is not None, asked)
+        tally = PairImpulseTally(float(end), 200, 0.1)
+        result.attrs |= estimator(run, "counts", "counts and impulses", parts is not None, tally)
         return result
 
 
@@ -428,8 +433,8 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
     3
     """
     with open_run(source, start, pairs=True) as run:
-        found = estimates_of(run, contact_scales(run))
-        return _of_pairs("contact_values", "contact_value", run, found)
+        estimates = estimates_of(run, contact_scales(run))
+        return _of_pairs("contact_values", "contact_value", run, estimates)
 
 
 def rate_scales(run: Run) -> np.ndarray:
@@ -472,10 +477,10 @@ def contact_scales(run: Run) -> np.ndarray:
     scene, d = run.scene, run.dimension
     scales = []
     for i, j in pairs_of(scene):
-        one, other = scene.species[i], scene.species[j]
-        number = one.count * other.count if i != j else one.count * (one.count - 1) / 2.0
-        speed = math.sqrt(run.temperature * (1.0 / one.mass + 1.0 / other.mass) / (2.0 * math.pi))
-        between = (one.radius + other.radius) ** (d - 1)
+        first, second = scene.species[i], scene.species[j]
+        number = first.count * second.count if i != j else first.count * (first.count - 1) / 2.0
+        speed = math.sqrt(run.temperature * (1.0 / first.mass + 1.0 / second.mass) / (2.0 * math.pi))
+        between = (first.radius + second.radius) ** (d - 1)
         scales.append(number * unit_sphere_surface(d) * between * speed / scene.container.volume)
     return np.array(scales) * mean_speed_factor(run.freedom)
 
@@ -510,12 +515,13 @@ def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
         series = (rates / scales).T
     nothing = Estimate(math.nan, math.nan)
     return [
-        correlated_mean(one, LEAST_INTERVALS).estimate if np.ptp(one) > 0.0 else nothing for one in series
+        correlated_mean(values, LEAST_INTERVALS).estimate if np.ptp(values) > 0.0 else nothing
+        for values in series
     ]
 
 
-def _of_pairs(observed: str, name: str, run: Run, found: list[Estimate]) -> Observable:
+def _of_pairs(observed: str, name: str, run: Run, estimates: list[Estimate]) -> Observable:
     """Return the result of an observable of pairs, `observed`, whose variable has a name."""
     along = {"pair": (np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"})}
-    values, errors = np.array([[one.value, one.error] for one in found]).T
+    values, errors = np.array([[estimate.value, estimate.error] for estimate in estimates]).T
     return observable(name, along, values, errors, **described(observed, run))

@@ -17,7 +17,7 @@ from gaspart.analysis.observables import having, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.profiles import Cells, Means, with_freedom
 from gaspart.analysis.run import Run, Source, open_run, selected
-from gaspart.analysis.statistics import means_of
+from gaspart.analysis.statistics import histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 
@@ -62,9 +62,9 @@ def speed_distribution(
     Notes
     -----
     Velocities about the flow (see `gaspart.analysis.flow`) are multiplied by sqrt(M / (M - m)), M the mass of
-    the particles whose mean is subtracted. The error is the scatter of groups of particles. Theory:
-    Maxwell's, of the run's own temperature; of one species at a constant kinetic energy the exact
-    distribution for their number; no theory where the gas flows and has no single temperature.
+    the particles whose mean is subtracted. The error is the scatter of groups of particles, NaN in an empty
+    bin. Theory: Maxwell's, of the run's own temperature; of one species at a constant kinetic energy the
+    exact distribution for their number; no theory where the gas flows and has no single temperature.
 
     Examples
     --------
@@ -82,19 +82,21 @@ def speed_distribution(
         if not temperature > 0.0:
             raise SceneError("temperature", temperature, "particles at rest have no distribution")
         squares, free = run.motion.velocities**2, run.motion.freedom
-        known = np.broadcast_to((free > 0.0).all(axis=2), squares.shape[:2])  # not alone in its cell
+        is_known = np.broadcast_to((free > 0.0).all(axis=2), squares.shape[:2])  # not alone in its cell
         end = FASTEST * np.sqrt(temperature / masses.min())
         if fastest is not None:
             end = number("fastest", fastest, "must be positive and finite", above=0.0)
         grid = Grid.line(0.0, end, bins)
         edges = grid.edges[0]
         speeds = np.sqrt((squares / np.where(free > 0.0, free, 1.0)).sum(axis=2))
-        cells = np.where(known, grid.cells(speeds[..., None]), -1)
+        cells = np.where(is_known, grid.cells(speeds[..., None]), -1)
         # every group has a share of each species, which come one after the other
         groups = [slice(first, None, STRETCHES) for first in range(STRETCHES)]
-        sizes = [int(known[:, group].sum()) for group in groups]
-        found = [grid.sums(cells[:, group]) / n / grid.volume for group, n in zip(groups, sizes, strict=True)]
-        values, errors = means_of(found, sizes)
+        sizes = [int(is_known[:, group].sum()) for group in groups]
+        densities = [
+            grid.sums(cells[:, group]) / n / grid.volume for group, n in zip(groups, sizes, strict=True)
+        ]
+        values, errors = histogram_means(densities, sizes)
         energy = squares.sum(axis=(1, 2))
         fixed = np.ptp(energy) <= _CONSTANT * energy.mean()
         alike = np.ptp(masses) == 0.0 and not run.flow_axes
@@ -180,17 +182,17 @@ def profile(
         by_impulses = None
         if of == "density":
             by_impulses = mixed_density(run, k, bins, species)
-            found = by_impulses or _density(run, k, bins, species)
+            means = by_impulses or _density(run, k, bins, species)
         else:
             members = np.flatnonzero(run.moving)[selected(run, species, None)]
-            found = Cells(run, members, (k,), (bins,)).temperature(local=False)
+            means = Cells(run, members, (k,), (bins,)).temperature(local=False)
         middle = 0.5 * (edges[1:] + edges[:-1])
         attributes = described(of, run, *((k, edges, species) if of == "density" else ()))
         along = {"position": (middle, {"units": "length", "long_name": names[k]})}
-        result = observable(of, along, found.values, found.errors, **attributes)
+        result = observable(of, along, means.values, means.errors, **attributes)
         if of == "density":
             result.attrs |= described_density(run, k, bins, by_impulses is not None)
-        return with_freedom(result, found)
+        return with_freedom(result, means)
 
 
 def density(source: Source, start: float | None = None, **selection: Any) -> Observable:
@@ -324,11 +326,11 @@ def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
     if np.isfinite(run.masses).all():
         return cells.density().times(run.count / stored)
     edges, radii = cells.grid.edges[0], run.radii[members]  # fixed particles leave less room to larger ones
-    left = {radius: left_by_obstacles(run, radius, axis, edges) for radius in np.unique(radii)}
-    shares = np.array([left[radius] for radius in radii])  # (n, bins)
+    fractions = {radius: left_by_obstacles(run, radius, axis, edges) for radius in np.unique(radii)}
+    shares = np.array([fractions[radius] for radius in radii])  # (n, bins)
     here = cells.cells
     part = np.take_along_axis(shares.T, here, axis=0)
     weights = np.divide(1.0, part, out=np.zeros(here.shape), where=part > 0.0)
-    found = cells.density(weights)
+    means = cells.density(weights)
     closed = ~shares.any(axis=0)
-    return Means(*(np.where(closed, np.nan, one) for one in vars(found).values()))
+    return Means(*(np.where(closed, np.nan, values) for values in vars(means).values()))

@@ -20,7 +20,7 @@ from gaspart.cli.arguments import CheckFailed, Parser, UsageError
 from gaspart.cli.progress import clear_line
 from gaspart.errors import SceneError, SimulationError, unknown_word, visible
 from gaspart.files import OVERWRITE
-from gaspart.interruption import interrupted, set_note
+from gaspart.interruption import describe_interruption, set_note
 
 _COMMANDS = {
     "new": ("new", "write a scene file from a template"),
@@ -62,27 +62,27 @@ def main(arguments: Sequence[str] | None = None, without_output: bool = False) -
     If `without_output`, the standard output is closed; a command whose result would be printed there has
     failed.
     """
-    given: argparse.Namespace | None = None
+    options: argparse.Namespace | None = None
     try:
         set_note("")
         try:
             words = sys.argv[1:] if arguments is None else arguments
-            given, unknown = _parser(words).parse_known_args(words)
+            options, unknown = _parser(words).parse_known_args(words)
             if unknown:
-                raise UsageError(_unrecognised(unknown, given.parser))
-            if without_output and getattr(given, "output", None) is None and words[0] not in _WRITE_FILES:
+                raise UsageError(_describe_unrecognised(unknown, options.parser))
+            if without_output and getattr(options, "output", None) is None and words[0] not in _WRITE_FILES:
                 raise OSError(errno.EBADF, os.strerror(errno.EBADF))
-            given.command(given)
+            options.command(options)
         finally:
             sys.stdout.flush()  # here, where a full disk can still be reported
     except (SceneError, UsageError) as error:
-        return _complain(f"error: {_for_command(error, given)}", 2)
+        return _complain(f"error: {_for_command(error, options)}", 2)
     except CheckFailed:
         return 1
     except SimulationError as error:
         return _complain(f"error: {error}", 1)
     except KeyboardInterrupt:
-        return _complain(interrupted(), 130)
+        return _complain(describe_interruption(), 130)
     except MemoryError:
         return _complain("error: there is not enough memory for this", 1)
     except BrokenPipeError:  # the reader of the output has ended, as `head` does
@@ -93,7 +93,7 @@ def main(arguments: Sequence[str] | None = None, without_output: bool = False) -
     return 0
 
 
-def _for_command(error: Exception, given: argparse.Namespace | None) -> str:
+def _for_command(error: Exception, options: argparse.Namespace | None) -> str:
     """Return the text of an error for the given command.
 
     It has the file of its scene, and the option for Python's `overwrite`.
@@ -101,12 +101,12 @@ def _for_command(error: Exception, given: argparse.Namespace | None) -> str:
     if (
         isinstance(error, SceneError)
         and error.file is None
-        and isinstance(getattr(given, "scene", None), str)
+        and isinstance(getattr(options, "scene", None), str)
     ):
-        assert given is not None
+        assert options is not None
         if error.key.partition(".")[0].partition("[")[0] in _scene_keys():
-            error = error.inside("", given.scene)
-    has_option = given is None or "--force" in given.parser.options()
+            error = error.inside("", options.scene)
+    has_option = options is None or "--force" in options.parser.options()
     return str(error).replace(OVERWRITE, f"overwrite it ({'' if has_option else 'gaspart run '}--force)")
 
 
@@ -139,12 +139,12 @@ def show_warnings_in_a_line() -> None:
     """Print the warnings of gaspart without the line of Python, until the process ends."""
     print_with_place = warnings.showwarning
 
-    def show(message: Warning | str, *place: object, **more: object) -> None:
+    def show(message: Warning | str, *location: object, **more: object) -> None:
         text = str(message)
         if text.startswith("gaspart: "):
             _complain(f"warning: {text.removeprefix('gaspart: ')}", 0)
         else:
-            print_with_place(message, *place, **more)  # type: ignore[arg-type]
+            print_with_place(message, *location, **more)  # type: ignore[arg-type]
 
     warnings.showwarning = show
 
@@ -156,9 +156,9 @@ def _discard(stream: TextIO) -> None:
     os.close(null)
 
 
-def _unrecognised(words: list[str], parser: Parser) -> str:
+def _describe_unrecognised(words: list[str], parser: Parser) -> str:
     """Return the message for words of a command line that its command does not accept."""
-    options = [word.partition("=")[0] for word in words if word.startswith("-")]
+    options = [argument.partition("=")[0] for argument in words if argument.startswith("-")]
     if options:
         return f"{options[0]}: {unknown_word(options[0], parser.options(), 'option')}"
     return f"{' '.join(words)}: too many arguments; see `{parser.prog} --help`"
@@ -176,7 +176,7 @@ def _parser(words: Sequence[str]) -> Parser:
         epilog=_EXAMPLES,
     )
     parser.add_argument("--version", action="version", version=f"gaspart {__version__}")
-    named = next((word for word in words if word in _COMMANDS), "")
+    named = next((argument for argument in words if argument in _COMMANDS), "")
     alone = named != "completion" and list(words[:1]) == [named]
     complete = _COMMANDS if named == "completion" else (named,)
     _add_commands(parser, (named,) if alone else _COMMANDS, complete)

@@ -65,12 +65,12 @@ def _seconds(text: str) -> float:
     return real(above=0.0)(text.removesuffix("s"))
 
 
-def _advise(given: argparse.Namespace) -> None:
-    if (given.scene is None) == (given.config is None):
+def _advise(options: argparse.Namespace) -> None:
+    if (options.scene is None) == (options.config is None):
         raise UsageError("give a scene or --config, and not both")
-    if given.config:
+    if options.config:
         with waiting("predicting the cost of every point"):
-            lines = config_command("advise")(given.config)
+            lines = config_command("advise")(options.config)
         print_lines(lines)
         return
     from gaspart.accuracy.plan import plan
@@ -79,11 +79,11 @@ def _advise(given: argparse.Namespace) -> None:
         if sys.stderr.isatty():
             print_note(text)
 
-    scene, request = Scene.from_file(given.scene), (given.observable, given.accuracy, given.budget)
+    scene, request = Scene.from_file(options.scene), (options.observable, options.accuracy, options.budget)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of coarse settings, whose error is stated in the table
-        made = plan(scene, *request, given.pilot, announce)
-    print_lines(_lines(made, given.scene))
+        advice = plan(scene, *request, options.pilot, announce)
+    print_lines(_lines(advice, options.scene))
 
 
 def _lines(plan: Plan, file: str) -> list[str]:
@@ -95,14 +95,14 @@ def _lines(plan: Plan, file: str) -> list[str]:
         lines += _run(plan, file)
     lines += _rarely_visited(plan)
     scatter = plan.scatter
-    lines += _drawn(plan, scatter)
+    lines += _energy_scatter(plan, scatter)
     lines.append(_extra_cost(plan))
     if not plan.affordable:
         lines.append(_shortfall(plan))
     for pilot in plan.pilots:
         cost = f"{pilot.seconds:.2g} s" if pilot.seconds else "kept from before"
-        shown = f"{pilot.value:.4g} to {100.0 * pilot.accuracy:.2g} %" if pilot.measured else pilot.rule
-        lines.append(_line("pilot", f"{pilot.engine.title}, {cost}: {shown}"))
+        outcome = f"{pilot.value:.4g} to {100.0 * pilot.accuracy:.2g} %" if pilot.measured else pilot.rule
+        lines.append(_line("pilot", f"{pilot.engine.title}, {cost}: {outcome}"))
     lines += _differences(plan)
     for other in plan.options[1:]:
         able = other.bias < plan.accuracy and math.isfinite(other.seconds)
@@ -145,8 +145,8 @@ def _run(plan: Plan, file: str) -> list[str]:
         _line("predicted cost", cost),
         _line("standard error", f"{best.error:.2g} of {value}"),
     ]
-    if asked := recipe.correlations:
-        lags = f"{asked.interval:g} apart, up to {asked.lags * asked.interval:.4g}"
+    if correlations := recipe.correlations:
+        lags = f"{correlations.interval:g} apart, up to {correlations.lags * correlations.interval:.4g}"
         lines.append(_line("lags", f"{lags}, the time of about 10 collisions of a particle"))
     return lines
 
@@ -160,16 +160,16 @@ def _bulk(plan: Plan, count: int) -> str:
 
 def _rarely_visited(plan: Plan) -> list[str]:
     """Describe the part of a curve to which the accuracy refers."""
-    known, places = plan.places
-    if known == places:
+    visited, total = plan.points
+    if visited == total:
         return []
     text = (
-        f"{known} of {places}, to which particles come in every part of the pilot: the accuracy is of these"
+        f"{visited} of {total}, to which particles come in every part of the pilot: the accuracy is of these"
     )
     return [f"places            {text}"]
 
 
-def _drawn(plan: Plan, scatter: Scatter) -> list[str]:
+def _energy_scatter(plan: Plan, scatter: Scatter) -> list[str]:
     """Return lines on what the energies of starts add to the error."""
     if not scatter.value:
         return []
@@ -189,10 +189,10 @@ def _drawn(plan: Plan, scatter: Scatter) -> list[str]:
 def _differences(plan: Plan) -> list[str]:
     """Describe pilots that disagree beyond their bounds; the exact one is believed."""
     lines = []
-    for one in plan.differing:
+    for pilot in plan.differing:
         exact = plan.pilots[0]
-        values = f"{one.value:.4g} against {exact.value:.4g} by the {exact.engine.title} engine"
-        text = f"{one.engine.title}: {values}, more than its bound and their noise"
+        values = f"{pilot.value:.4g} against {exact.value:.4g} by the {exact.engine.title} engine"
+        text = f"{pilot.engine.title}: {values}, more than its bound and their noise"
         lines.append(_line("pilots differ", text))
     return lines
 
@@ -215,22 +215,22 @@ def _components(option: Option) -> str:
     of = option.candidate
     parts = {"noise": noise, "model": of.model, "steps and cells": of.discretisation}
     parts["difference of the pilots"] = option.bias if option.bias > of.bias else 0.0
-    shown = [
+    terms = [
         f"{name} {f'{value:.1g}' if value < 1.0 else 'above 1'}"
         for name, value in parts.items()
         if 0.0 < value < math.inf
     ]
-    return ", ".join(shown) or "no systematic error"
+    return ", ".join(terms) or "no systematic error"
 
 
 def _shortfall(plan: Plan) -> str:
     """Return what would reach an accuracy that the budget, a single run or no engine reaches."""
-    able = [one for one in plan.options if one.bias < plan.accuracy]
+    able = [option for option in plan.options if option.bias < plan.accuracy]
     if not able:
         return f"no engine is known to be as accurate as {plan.accuracy:g}"
     if plan.budget is None:
         advice = f"the mean of {plan.runs} runs with other seeds has it" if plan.runs else "no run reaches it"
         return f"one run does not reach {plan.accuracy:g}, however long it is: {advice}"
-    least = min(able, key=lambda one: one.cost(plan.accuracy))
+    least = min(able, key=lambda option: option.cost(plan.accuracy))
     cost, engine = f"{least.cost(plan.accuracy):.3g} s", least.engine.title
     return f"the budget does not suffice for {plan.accuracy:g}, which takes {cost}, {engine} engine"

@@ -17,6 +17,7 @@ from gaspart.cli.arguments import (
 )
 from gaspart.cli.progress import waiting
 from gaspart.errors import SceneError
+from gaspart.yaml_text import read_yaml
 
 _EXAMPLES = """examples:
   gaspart archive results -o archive.zip       # the full reproduction
@@ -41,10 +42,10 @@ def add_archive(parser: Parser) -> None:
     parser.add_argument("--trajectories", action="store_true", help=text)
 
 
-def _archive(given: argparse.Namespace) -> None:
+def _archive(options: argparse.Namespace) -> None:
     write = config_command("archive")
     with waiting("reading the results"):
-        line = write(given.results, given.output, given.config, given.trajectories, given.force)
+        line = write(options.results, options.output, options.config, options.trajectories, options.force)
     print_line(line)
 
 
@@ -74,8 +75,8 @@ def add_verify(parser: Parser) -> None:
     parser.add_argument("--rerun", type=integer(least=0), default=0, metavar="N", help=text)
 
 
-def _verify(given: argparse.Namespace) -> None:
-    checks = iter(config_command("verify")(given.archive, given.rerun))
+def _verify(options: argparse.Namespace) -> None:
+    checks = iter(config_command("verify")(options.archive, options.rerun))
     failed = False
     while True:
         with waiting("reading the archive, or simulating a point; the first time, compiling kernels"):
@@ -109,8 +110,12 @@ def add_budget(parser: Parser) -> None:
     parser.add_argument("-o", "--output", metavar="FILE", help="write a line for each claim (CSV) instead")
 
 
-def _budget(given: argparse.Namespace) -> None:
-    if Path(given.config).suffix not in (".yaml", ".yml"):
+def _budget(options: argparse.Namespace) -> None:
+    if Path(options.config).suffix not in (".yaml", ".yml"):
         rule = "must be a config of the workflow (.yaml); gaspart info reports on a run"
-        raise SceneError("config", given.config, rule)
-    print_lines(config_command("budget")(given.config, given.output))
+        raise SceneError("config", options.config, rule)
+    content = read_yaml(options.config)
+    if isinstance(content, dict) and "container" in content:
+        rule = "is a scene, and must be a config of the workflow; gaspart advise predicts the cost of a scene"
+        raise SceneError("config", options.config, rule)
+    print_lines(config_command("budget")(options.config, options.output))

@@ -29,7 +29,7 @@ class CheckFailed(Exception):
 class Suggested(tuple):
     """Words of which a shell completes one, where others may be given too."""
 
-    def __contains__(self, word: object) -> bool:
+    def __contains__(self, name: object) -> bool:
         return True
 
 
@@ -50,9 +50,9 @@ class Parser(argparse.ArgumentParser):
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Refuse a word that is no choice, with the most similar one."""
         if action.choices is not None and value not in action.choices:
-            what = "command" if action.nargs == argparse.PARSER else "name"
+            kind = "command" if action.nargs == argparse.PARSER else "name"
             option = f"{action.option_strings[0]}: " if action.option_strings else ""
-            raise UsageError(f"{option}{value!r}: {unknown_word(value, map(str, action.choices), what)}")
+            raise UsageError(f"{option}{value!r}: {unknown_word(value, map(str, action.choices), kind)}")
 
 
 def real(**limits: float) -> Callable[[str], float]:
@@ -103,7 +103,7 @@ def set_command(
     parser.set_defaults(command=run, parser=parser)
 
 
-def listed(meanings: dict[str, str]) -> str:
+def list_names(meanings: dict[str, str]) -> str:
     """List names with a line for each, in the layout of options.
 
     A line that is too long is continued.
@@ -117,9 +117,9 @@ def listed(meanings: dict[str, str]) -> str:
     return "\n".join(lines)
 
 
-def add_output(parser: argparse.ArgumentParser, what: str, overwrite: str) -> None:
+def add_output(parser: argparse.ArgumentParser, meaning: str, overwrite: str) -> None:
     """Add the options of a command that writes a result: `-o`, and `--force` to replace one."""
-    parser.add_argument("-o", "--output", required=True, metavar="FILE", help=what)
+    parser.add_argument("-o", "--output", required=True, metavar="FILE", help=meaning)
     parser.add_argument("--force", action="store_true", help=f"replace {overwrite}")
 
 
@@ -146,8 +146,8 @@ def config_command(command: str) -> Callable:
     It is an entry point, since the library does not import the reproduction. An entry point of another
     package is not used.
     """
-    ours = [one for one in entry_points_of("gaspart.configs") if one.value.startswith("gaspart.")]
-    return next(one for one in ours if one.name == command).load()
+    ours = [entry for entry in entry_points_of("gaspart.configs") if entry.value.startswith("gaspart.")]
+    return next(entry for entry in ours if entry.name == command).load()
 
 
 def print_line(text: object) -> None:

@@ -66,21 +66,21 @@ def _corner(text: str) -> str | tuple[float, ...]:
     return text if text.isalpha() else tuple(several(real())(text))
 
 
-def _check(given: argparse.Namespace) -> None:
-    healthy = [_is_healthy(given, file) for file in run_files(given.file)]
+def _check(options: argparse.Namespace) -> None:
+    healthy = [_is_healthy(options, file) for file in run_files(options.file)]
     if not all(healthy):
         raise CheckFailed
 
 
-def _is_healthy(given: argparse.Namespace, file: str) -> bool:
+def _is_healthy(options: argparse.Namespace, file: str) -> bool:
     """Print the checks of a file; return False if one fails."""
     if Path(file).suffix in (".yaml", ".yml"):
         for key in ("radius", "lengths", "boundary", "origin", "time_step"):
-            if getattr(given, key) is not None:
-                raise SceneError(key, getattr(given, key), "has a meaning for trajectories only")
-        checks, scales = _written(file, given.tolerance)
+            if getattr(options, key) is not None:
+                raise SceneError(key, getattr(options, key), "has a meaning for trajectories only")
+        checks, scales = _written(file, options.tolerance)
     else:
-        title, checks = _judged(file, given)
+        title, checks = _check_frames(file, options)
         print_line(title)
         scales = []
     for check in checks:
@@ -89,22 +89,22 @@ def _is_healthy(given: argparse.Namespace, file: str) -> bool:
     return all(check.passed is not False for check in checks)
 
 
-def _judged(file: str, given: argparse.Namespace) -> tuple[str, list]:
+def _check_frames(file: str, options: argparse.Namespace) -> tuple[str, list]:
     """Check a trajectory. Returns a line that names its particles, and the checks."""
     from gaspart.inspection.checks import judge
     from gaspart.inspection.open_runs import judge_open
     from gaspart.inspection.readers import is_open_run, read_frames
 
-    stated = {key: getattr(given, key) for key in ("radius", "lengths", "boundary", "time_step", "origin")}
+    stated = {key: getattr(options, key) for key in ("radius", "lengths", "boundary", "time_step", "origin")}
     if is_open_run(file):
         for key, value in stated.items():
             if value is not None:
                 raise SceneError(key, value, "has no meaning for a run of gaspart with open faces")
-        return judge_open(Path(file), given.tolerance)
+        return judge_open(Path(file), options.tolerance)
     frames = read_frames(file, **stated)
     kind = "discs" if frames.dimension == 2 else "spheres"
     title = f"{file}: {frames.count} {kind} in {len(frames.positions)} frames"
-    return title, judge(frames, given.tolerance)
+    return title, judge(frames, options.tolerance)
 
 
 def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:

@@ -28,13 +28,13 @@ def add_collisions(parser: Parser) -> None:
     add("--seed", type=integer(least=0), default=0, metavar="N", help="default: 0")
 
 
-def _collisions(given: argparse.Namespace) -> None:
+def _collisions(options: argparse.Namespace) -> None:
     from gaspart.analysis.collisions import record_collisions
 
-    scene = Scene.from_file(given.scene)
+    scene = Scene.from_file(options.scene)
     with waiting("recording collisions; the first time, compiling kernels"):
         data = record_collisions(
-            scene, given.output, given.count, given.seed, given.equilibration, overwrite=given.force
+            scene, options.output, options.count, options.seed, options.equilibration, overwrite=options.force
         )
     paths = data["free_path"].mean().item()
-    print_line(f"{given.output}: {data.sizes['collision']} collisions, mean free path {paths:.6g}")
+    print_line(f"{options.output}: {data.sizes['collision']} collisions, mean free path {paths:.6g}")

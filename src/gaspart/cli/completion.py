@@ -19,7 +19,7 @@ def add_completion(parser: Parser) -> None:
     parser.add_argument("shell", choices=SHELLS, metavar="SHELL", help=", ".join(SHELLS))
 
 
-def _completion(given: argparse.Namespace) -> None:
+def _completion(options: argparse.Namespace) -> None:
     import shtab
 
-    print(shtab.complete(given.program, given.shell))
+    print(shtab.complete(options.program, options.shell))

@@ -16,8 +16,8 @@ def conventions(scene: Scene, suffix: str) -> str:
     The suffix is .nc for a trajectory, or the suffix of an exported file.
     """
     state = {".nc": _of_trajectory, ".gsd": _of_gsd, ".xyz": _of_xyz, ".data": _of_data}[suffix]
-    found = "; ".join(state(scene))
-    return f"in other programs: {found}" if found else ""
+    remarks = "; ".join(state(scene))
+    return f"in other programs: {remarks}" if remarks else ""
 
 
 def _as_periodic(scene: Scene) -> list[str]:
@@ -28,14 +28,14 @@ def _as_periodic(scene: Scene) -> list[str]:
 
 
 def _of_trajectory(scene: Scene) -> list[str]:
-    found = _as_periodic(scene)
+    remarks = _as_periodic(scene)
     if scene.dimension == 2:
-        found.append(_SLAB)
+        remarks.append(_SLAB)
     if scene.is_open:
-        found.append("rows of NaN are numbers that no particle has")
+        remarks.append("rows of NaN are numbers that no particle has")
     if scene.has_piston:
-        found.append("positions are in the cell after subtraction of cell_origin")
-    return found
+        remarks.append("positions are in the cell after subtraction of cell_origin")
+    return remarks
 
 
 def _of_gsd(scene: Scene) -> list[str]:
@@ -43,16 +43,16 @@ def _of_gsd(scene: Scene) -> list[str]:
 
 
 def _of_xyz(scene: Scene) -> list[str]:
-    found = ["velocities are the property velo in ASE and chemfiles"]
+    remarks = ["velocities are the property velo in ASE and chemfiles"]
     if not all(scene.container.periodic):
-        found.append("chemfiles has no pbc")
-    return found + ([_SLAB] if scene.dimension == 2 else [])
+        remarks.append("chemfiles has no pbc")
+    return remarks + ([_SLAB] if scene.dimension == 2 else [])
 
 
 def _of_data(scene: Scene) -> list[str]:
     periodic = (*scene.container.periodic, True)[:3]
     flat = ", dimension 2" if scene.dimension == 2 else ""
-    found = [f"LAMMPS needs boundary {' '.join('p' if along else 'f' for along in periodic)}{flat}"]
+    remarks = [f"LAMMPS needs boundary {' '.join('p' if along else 'f' for along in periodic)}{flat}"]
     if not any(scene.container.periodic):
-        found.append("its temp is larger by N / (N - 1)")
-    return found
+        remarks.append("its temp is larger by N / (N - 1)")
+    return remarks

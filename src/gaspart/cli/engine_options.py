@@ -9,7 +9,7 @@ from typing import Any
 
 from gaspart.cli.arguments import alone, several
 from gaspart.engines import ENGINES
-from gaspart.errors import SceneError, shown
+from gaspart.errors import SceneError, short_repr
 from gaspart.keys import Kind, described, schema_of
 
 
@@ -20,8 +20,8 @@ def engine_settings() -> dict[str, Kind]:
     for name, engine in ENGINES.items():
         for key, kind in schema_of(engine)["properties"].items():
             meaning = f"{name} engine: {kind['description']}"
-            known = settings.get(key)
-            settings[key] = described(kind, f"{known['description']}; {meaning}" if known else meaning)
+            previous = settings.get(key)
+            settings[key] = described(kind, f"{previous['description']}; {meaning}" if previous else meaning)
     return settings
 
 
@@ -38,7 +38,7 @@ def add_setting(group: argparse._ArgumentGroup, name: str, kind: Kind) -> None:
         meaning = f"switches off: {meaning}" if default else meaning
         group.add_argument(f"--{option}", dest=name, action=action, default=None, help=meaning)
     elif "enum" in kind:
-        words = one_of(word for word in kind["enum"] if word is not None)
+        words = one_of(choice for choice in kind["enum"] if choice is not None)
         group.add_argument(f"--{option}", metavar="NAME", help=f"{meaning}: {words}{usual}")
     elif types == "string":
         group.add_argument(f"--{option}", dest=name, metavar=kind["title"], help=f"{meaning}{usual}")
@@ -64,10 +64,10 @@ def as_option(error: SceneError, engine: str) -> str:
     name = error.key.removeprefix("engine.")
     option = {"name": "--engine", "rewind": "--no-rewind"}.get(name, f"--{name.replace('_', '-')}")
     rule = f"has no meaning with --engine {engine}" if "unknown key" in error.rule else error.rule
-    return f"{option}: {'is required' if error.value is None else f'{shown(error.value)}: {rule}'}"
+    return f"{option}: {'is required' if error.value is None else f'{short_repr(error.value)}: {rule}'}"
 
 
-def stated(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> list[str]:
+def changed_options(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> list[str]:
     """Return the options for settings of these kinds that differ from their defaults.
 
     Settings without a default have options too.
@@ -79,10 +79,10 @@ def stated(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> list[str]:
             if value != kind["default"]:
                 options.append(f"--no-{option}" if kind["default"] else f"--{option}")
         elif value is not None:
-            options += [f"--{option}", value if isinstance(value, str) else joined(value)]
+            options += [f"--{option}", value if isinstance(value, str) else join_numbers(value)]
     return options
 
 
-def joined(numbers: float | tuple[int, ...] | list[int]) -> str:
+def join_numbers(numbers: float | tuple[int, ...] | list[int]) -> str:
     """Format numbers as an option accepts them."""
     return ",".join(map(repr, numbers)) if isinstance(numbers, tuple | list) else repr(numbers)

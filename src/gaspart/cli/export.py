@@ -38,11 +38,11 @@ def _frame(text: str) -> int | str:
     return text if text == "all" else integer()(text)
 
 
-def _export(given: argparse.Namespace) -> None:
+def _export(options: argparse.Namespace) -> None:
     from gaspart.cli.conventions import conventions
     from gaspart.trajectory.export import export
     from gaspart.trajectory.recipe import read_recipe
 
-    path = export(given.trajectory, given.output, given.frame, given.force)
+    path = export(options.trajectory, options.output, options.frame, options.force)
     print_line(path)
-    print_note(conventions(read_recipe(given.trajectory).scene, path.suffix))
+    print_note(conventions(read_recipe(options.trajectory).scene, path.suffix))

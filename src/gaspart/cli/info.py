@@ -26,26 +26,26 @@ def add_info(parser: Parser) -> None:
     parser.add_argument("--scene", action="store_true", help="print the scene file and nothing else")
 
 
-def _info(given: argparse.Namespace) -> None:
+def _info(options: argparse.Namespace) -> None:
     from gaspart.accuracy.scales import scales
     from gaspart.cli.conventions import conventions
     from gaspart.cli.stated_run import run_options
     from gaspart.inspection.energy import certificate
-    from gaspart.trajectory.opening import PARTIAL, check_frames, opened, partial_path
+    from gaspart.trajectory.opening import PARTIAL, check_frames, open_netcdf_file, partial_path
     from gaspart.trajectory.recipe import read_recipe
 
-    path = Path(run_files(given.trajectory)[0])
+    path = Path(run_files(options.trajectory)[0])
     stored_at = path if path.exists() or not partial_path(path).exists() else partial_path(path)
     recipe = read_recipe(stored_at)
-    with opened(stored_at) as file:
+    with open_netcdf_file(stored_at) as file:
         stored, frames = file.__dict__, len(file.dimensions["frame"])
-    if given.scene:
+    if options.scene:
         print_lines(_lines_of(stored["scene"]))
         return
     check_frames(stored_at)
     scene = recipe.scene
     complete = frames == recipe.frames if recipe.until is None else stored_at.suffix != PARTIAL
-    state = "complete" if complete else _unfinished(stored_at, recipe)
+    state = "complete" if complete else _unfinished_state(stored_at, recipe)
     replica = "" if recipe.replica is None else ", replica {} of {}".format(*recipe.replica)
     of_all = f"{frames} frames" if recipe.until else f"{frames} of {recipe.frames} frames"
     versions = [f"{key.removesuffix('_version')} {stored[key]}" for key in stored if key.endswith("_version")]
@@ -77,7 +77,7 @@ def _info(given: argparse.Namespace) -> None:
     print_lines(f"    {line}" for line in _lines_of(stored["scene"]))
 
 
-def _unfinished(path: Path, recipe: Recipe) -> str:
+def _unfinished_state(path: Path, recipe: Recipe) -> str:
     """State how a run that was cut short goes on."""
     from gaspart.trajectory.recipe import begun_as
 
@@ -98,10 +98,10 @@ def _measurable(recipe: Recipe) -> list[str]:
     """
     from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept
 
-    asked = recipe.correlations
-    kept = ["fluxes"] * bool(asked and asked.stress) + ["pairs"] * recipe.pairs
+    correlations = recipe.correlations
+    kept = ["fluxes"] * bool(correlations and correlations.stress) + ["pairs"] * recipe.pairs
     measured, others = [], []
-    for name, one in OBSERVABLES.items():
+    for name, observable in OBSERVABLES.items():
         try:
             require_defined(name, recipe.scene)
         except SceneError:
@@ -110,7 +110,7 @@ def _measurable(recipe: Recipe) -> list[str]:
             require_kept(name, kept)
             measured.append(name)
         except SceneError:
-            others.append(f"{name} ({one.needs})")
+            others.append(f"{name} ({observable.needs})")
     lines = [f"observables: {', '.join(measured) or 'none'}"]
     return lines + ([f"of another run of this scene: {', '.join(others)}"] if others else [])
 
@@ -121,9 +121,9 @@ def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:
 
     if recipe.until is None:
         return []
-    asked = ", ".join(f"{one.name}={one.accuracy:g}" for one in recipe.until.accuracies)
+    targets = ", ".join(f"{accuracy.name}={accuracy.accuracy:g}" for accuracy in recipe.until.accuracies)
     longest = f", at most until time {recipe.until.at_most:g}" if recipe.until.at_most else ""
-    request = f"runs until {asked} (relative standard errors){longest}"
+    request = f"runs until {targets} (relative standard errors){longest}"
     try:
         return [request, *(accuracy_lines(path) if frames else [])]
     except SceneError as error:

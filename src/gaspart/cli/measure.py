@@ -18,7 +18,7 @@ from gaspart.cli.arguments import (
     Parser,
     UsageError,
     add_trajectory,
-    listed,
+    list_names,
     print_line,
     real,
     run_files,
@@ -60,9 +60,9 @@ def add_measure(parser: Parser) -> None:
     text += "printed. Several files are runs of one scene with other seeds or initial states: their mean and "
     text += "scatter are given."
     set_command(parser, _measure, text, _EXAMPLES)
-    meanings = {name: one.listed for name, one in OBSERVABLES.items()}
+    meanings = {name: observable.listed for name, observable in OBSERVABLES.items()}
     meanings[_FIELD] = "density, flow or temperature in cells along some axes"
-    parser.description = f"{parser.description}\n\nobservables:\n{listed(meanings)}"
+    parser.description = f"{parser.description}\n\nobservables:\n{list_names(meanings)}"
     add = parser.add_argument
     add_trajectory(parser)
     words = (*OBSERVABLES, _FIELD)
@@ -99,43 +99,45 @@ def add_measure(parser: Parser) -> None:
 class _Words(tuple):
     """Names of observables, which a shell completes; files may be among the words too."""
 
-    def __contains__(self, word: object) -> bool:
-        return super().__contains__(word) or word in ALIASES or _is_file(str(word))
+    def __contains__(self, argument: object) -> bool:
+        return super().__contains__(argument) or argument in ALIASES or _is_file(str(argument))
 
 
-def _is_file(word: str) -> bool:
+def _is_file(argument: str) -> bool:
     """Return True if a word with a suffix or a folder names a file.
 
     Names of observables have neither.
     """
-    return "." in word or os.sep in word
+    return "." in argument or os.sep in argument
 
 
-def _sorted(given: argparse.Namespace) -> tuple[list[str], list[str]]:
+def _split_words(options: argparse.Namespace) -> tuple[list[str], list[str]]:
     """Return the files and the names of observables of a command line; raise UsageError.
 
     The files must stand first.
     """
-    names = list(given.words)
-    files = [given.trajectory]
+    names = list(options.words)
+    files = [options.trajectory]
     while names and _is_file(names[0]):
         files.append(names.pop(0))
     if not names:
         raise UsageError(
             f"NAME is missing after the files: one or more of {', '.join((*OBSERVABLES, _FIELD))}"
         )
-    if late := [word for word in names if _is_file(word)]:
+    if late := [argument for argument in names if _is_file(argument)]:
         raise UsageError(f"{late[0]!r}: files stand before the names of observables")
     return files, [name if name == _FIELD else known(name) for name in names]
 
 
-def _measure(given: argparse.Namespace) -> None:
-    stated, names = _sorted(given)
+def _measure(options: argparse.Namespace) -> None:
+    stated, names = _split_words(options)
     files = [file for name in stated for file in run_files(name)]
-    write = _writer(given, names)
-    asked = {key: getattr(given, key) for key in selections()}
-    selection = {key: value for key, value in asked.items() if value is not None}
-    for name, observable in _measured(files, names, (given.start, given.end), selection, _field_of(given)):
+    write = _writer(options, names)
+    selected = {key: getattr(options, key) for key in selections()}
+    selection = {key: value for key, value in selected.items() if value is not None}
+    for name, observable in _measure_each(
+        files, names, (options.start, options.end), selection, _field_of(options)
+    ):
         if name == _FIELD:
             _print_field(observable)
         elif observable.estimate.ndim:
@@ -147,17 +149,19 @@ def _measure(given: argparse.Namespace) -> None:
         write(observable)
 
 
-def _field_of(given: argparse.Namespace) -> dict[str, Any]:
+def _field_of(options: argparse.Namespace) -> dict[str, Any]:
     """Return the arguments of a field; raise UsageError for arguments without a field."""
-    stated = {key: getattr(given, key) for key in ("of", "axes", "cells") if getattr(given, key) is not None}
-    if stated and _FIELD not in given.words:
-        raise UsageError(f"--{next(iter(stated))} is of {_FIELD} only")
+    stated = {
+        key: getattr(options, key) for key in ("of", "axes", "cells") if getattr(options, key) is not None
+    }
+    if stated and _FIELD not in options.words:
+        raise UsageError(f"--{next(iter(stated))} is defined only for {_FIELD}")
     if len(stated.get("cells", [])) == 1:
         (stated["cells"],) = stated["cells"]
     return stated
 
 
-def _measured(
+def _measure_each(
     files: list[str],
     names: list[str],
     times: tuple[float | None, float | None],
@@ -174,21 +178,21 @@ def _measured(
 
     if len(files) > 1:
         if _FIELD in names:
-            raise UsageError(f"{_FIELD} is of one file")
+            raise UsageError(f"{_FIELD}: requires one file; give one file at a time")
         for name in names:
             with waiting(f"measuring {name} of {len(files)} files"):
-                found = replicas(name, files, *times, **selection)
-            yield name, found
+                observable = replicas(name, files, *times, **selection)
+            yield name, observable
         return
     with open_trajectory(files[0]) as trajectory:
         for name in names:
             with waiting(f"measuring {name}"):
                 if name == _FIELD:
-                    found = _measure_field(trajectory, times, selection | field)
+                    observable = _measure_field(trajectory, times, selection | field)
                 else:
-                    found = measure(trajectory, name, *times, **selection)
-                    found.attrs |= _of_seeds(trajectory, name) | _of_drift(trajectory, name, times)
-            yield name, found
+                    observable = measure(trajectory, name, *times, **selection)
+                    observable.attrs |= _of_seeds(trajectory, name) | _of_drift(trajectory, name, times)
+            yield name, observable
 
 
 def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | None]) -> dict[str, str]:
@@ -196,8 +200,8 @@ def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | Non
     from gaspart.analysis.drift import drift_of
 
     with until_time(trajectory, times[1]) as part:
-        found = drift_of(part, times[0], "position" in OBSERVABLES[name].along)
-    return {_DRIFT: f"not steady: {found}"} if found else {}
+        drift = drift_of(part, times[0], "position" in OBSERVABLES[name].along)
+    return {_DRIFT: f"not steady: {drift}"} if drift else {}
 
 
 def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:
@@ -278,8 +282,8 @@ def _print_curve(name: str, observable: Observable) -> None:
         texts = [cell if isinstance(cell, str) else f"{cell:.5g}" for cell in cells]
         print_line("".join(f"{text:>{width}}" for text, width in zip(texts, wide, strict=True)))
     if stride > 1:
-        shown = -(-rows // stride)
-        print_line(f"({shown} of {rows} rows; -o {name}.csv writes all, -o {name}.png draws them)")
+        printed = -(-rows // stride)
+        print_line(f"({printed} of {rows} rows; -o {name}.csv writes all, -o {name}.png draws them)")
 
 
 def _parts(observable: Observable) -> list[tuple[str, Observable]]:
@@ -290,18 +294,18 @@ def _parts(observable: Observable) -> list[tuple[str, Observable]]:
     return [(str(text), observable.sel({over: text})) for text in observable[over].values]
 
 
-def _writer(given: argparse.Namespace, names: list[str]) -> Callable[[Observable], None]:
+def _writer(options: argparse.Namespace, names: list[str]) -> Callable[[Observable], None]:
     """Return the function that writes the result, after a check of the arguments."""
-    if given.output is None:
+    if options.output is None:
         return lambda observable: None
-    path = output_path(given.output)
+    path = output_path(options.output)
     if len(names) > 1:
         raise UsageError("-o takes one observable; give one, or leave -o out")
     if path.suffix == ".csv":
-        return partial(_write_table, path, given.force)
+        return partial(_write_table, path, options.force)
     if path.suffix == ".png":
-        return partial(_write_plot, path, given.force)
-    raise SceneError("output", given.output, "must end in .csv or .png")
+        return partial(_write_plot, path, options.force)
+    raise SceneError("output", options.output, "must end in .csv or .png")
 
 
 def _write_table(path: Any, overwrite: bool, observable: Observable) -> None:
@@ -320,7 +324,7 @@ def _with_columns(observable: Observable) -> Observable:
         return observable
     if not observable.estimate.ndim:  # which has them as `stretches`
         return observable.drop_vars(each).rename(time="replica")
-    columns = {f"{each}_{n}": one for n, one in enumerate(observable[each], 1)}
+    columns = {f"{each}_{n}": replica for n, replica in enumerate(observable[each], 1)}
     return observable.drop_vars(each).assign(columns)
 
 
@@ -328,7 +332,7 @@ def _write_plot(path: Any, overwrite: bool, observable: Observable) -> None:
     from gaspart.rendering import style
     from gaspart.rendering.pictures import PICTURE
 
-    with writing(path, PICTURE, overwrite) as scratch, style.applied("journal"):
+    with writing(path, PICTURE, overwrite) as scratch, style.use_style("journal"):
         figure, (axis,) = style.new((2.6,))
         observable.plot(theory=observable.theory is not None, axis=axis)
         picture = io.BytesIO()

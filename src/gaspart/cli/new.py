@@ -88,18 +88,18 @@ def add_new(parser: Parser) -> None:
     add("--force", action="store_true", help="replace a scene file")
 
 
-def _new(given: argparse.Namespace) -> None:
-    if given.list:
+def _new(options: argparse.Namespace) -> None:
+    if options.list:
         for template in templates().values():
             print_line(f"{template.name:12}{template.title}")
         return
-    if given.scene is None:
+    if options.scene is None:
         raise SceneError("scene", None, "give the name of the file, or --list")
-    output, template = output_path(given.scene), templates()[given.template]
-    if output.suffix not in (".yaml", ".yml") or not given.scene.isprintable():
-        raise SceneError("scene", given.scene, "must be a printable name that ends in .yaml")
-    with writing(output, _SCENE, given.force) as scratch:
-        scratch.write_text(_renamed(template, output), encoding="utf-8")
+    output, template = output_path(options.scene), templates()[options.template]
+    if output.suffix not in (".yaml", ".yml") or not options.scene.isprintable():
+        raise SceneError("scene", options.scene, "must be a printable name that ends in .yaml")
+    with writing(output, _SCENE, options.force) as scratch:
+        scratch.write_text(_scene_text(template, output), encoding="utf-8")
     print_line(f"{output}: {template.title}. Run it:")
     print_line(named_command(template, output))
 
@@ -114,7 +114,7 @@ def named_command(template: Template, path: Path) -> str:
     return command.replace(f"{template.name}.nc", trajectory)
 
 
-def _renamed(template: Template, path: Path) -> str:
+def _scene_text(template: Template, path: Path) -> str:
     """Return the text of the file, without the note on the figure."""
     kept = [line for line in template.text.splitlines(keepends=True) if not line.startswith("#   figure")]
     return "".join(kept).replace(template.command, named_command(template, path))

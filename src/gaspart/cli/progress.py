@@ -50,7 +50,7 @@ def waiting(text: str, quiet: bool = False) -> Iterator[Callable[[], None]]:
         end()
 
 
-def counted() -> Callable[[int, int], None] | None:
+def picture_progress() -> Callable[[int, int], None] | None:
     """Return a function that shows the number of pictures done and the time left.
 
     None without a terminal.
@@ -91,9 +91,9 @@ def progress(
             return
         took = now - begun[0]
         rate = (reached - begun[1]) / took
-        left = f"{clock((duration - reached) / rate)} left" if rate > 0.0 else ""
+        remaining = f"{clock((duration - reached) / rate)} left" if rate > 0.0 else ""
         speed = f"{(collisions - begun[2]) / took:.3g} collisions/s"
-        show_line(f"{reached / duration:6.1%}  {speed}  {left}{remark()}")
+        show_line(f"{reached / duration:6.1%}  {speed}  {remaining}{remark()}")
 
     return show
 

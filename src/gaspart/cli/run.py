@@ -144,42 +144,42 @@ def _add_checkpoints(group: argparse._ActionsContainer) -> None:
     group.add_argument("--quiet", action="store_true", help="show no progress")
 
 
-def _run(given: argparse.Namespace) -> None:
+def _run(options: argparse.Namespace) -> None:
     set_note("no state was saved yet; the same command starts it again")
     from gaspart.accuracy.scales import scales
     from gaspart.runs.entry import run
 
-    scene = Scene.from_file(given.scene)
-    until, correlations = _until(given, scene), _correlations(given.correlations, given.stress)
-    settings, contents = _values(given, engine_settings()), _values(given, OPTIONS)
+    scene = Scene.from_file(options.scene)
+    until, correlations = _until(options, scene), _correlations(options.correlations, options.stress)
+    settings, contents = _values(options, engine_settings()), _values(options, OPTIONS)
     try:
-        engine = engine_from_dict({"name": given.engine, **settings})
+        engine = engine_from_dict({"name": options.engine, **settings})
     except SceneError as error:
-        raise UsageError(as_option(error, given.engine)) from None
+        raise UsageError(as_option(error, options.engine)) from None
     status = _Status()
-    with waiting(_PREPARING, given.quiet) as started:
+    with waiting(_PREPARING, options.quiet) as started:
         load_numba(ours=True)
         path = run(
             scene,
             engine,
-            seed=alone(given.seed),
-            duration=given.duration,
-            sample_interval=given.sample_interval,
-            path=given.output,
+            seed=alone(options.seed),
+            duration=options.duration,
+            sample_interval=options.sample_interval,
+            path=options.output,
             until=until,
-            at_most=given.at_most,
+            at_most=options.at_most,
             correlations=correlations,
-            initial=given.initial,
-            checkpoint_seconds=given.checkpoint_seconds,
-            progress=progress(given.quiet, started, status.remark),
+            initial=options.initial,
+            checkpoint_seconds=options.checkpoint_seconds,
+            progress=progress(options.quiet, started, status.remark),
             examined=status.update,
-            overwrite=given.force,
-            keep_checkpoint=given.keep_checkpoint,
-            replicas=given.replicas,
+            overwrite=options.force,
+            keep_checkpoint=options.keep_checkpoint,
+            replicas=options.replicas,
             **contents,
         )
     _report(path)
-    if not given.quiet:
+    if not options.quiet:
         print_lines(line for line in scales(scene).lines if not line.startswith("suggested"))
 
 
@@ -201,22 +201,25 @@ def _requests(text: str) -> list[tuple[str, float]]:
     return requests
 
 
-def _until(given: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
+def _until(options: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
     """Return the accuracies of --until.
 
     Raises UsageError for options that exclude or need each other; without a duration it suggests one for the
     scene.
     """
-    if given.until is not None:
-        if given.duration is not None:
+    if options.until is not None:
+        if options.duration is not None:
             raise UsageError("--duration: excludes --until; the longest duration is --at-most")
-        return [Accuracy.named(name, value, given.start) for name, value in given.until]
-    for option, value in (("--at-most", given.at_most), ("--start", given.start)):
+        return [Accuracy.named(name, value, options.start) for name, value in options.until]
+    for option, value in (("--at-most", options.at_most), ("--start", options.start)):
         if value is not None:
             raise UsageError(f"{option}: needs --until")
     missing = [
         option
-        for option, value in (("--duration", given.duration), ("--sample-interval", given.sample_interval))
+        for option, value in (
+            ("--duration", options.duration),
+            ("--sample-interval", options.sample_interval),
+        )
         if value is None
     ]
     if missing:
@@ -241,37 +244,37 @@ class _Status:
 
     def remark(self) -> str:
         """Return the error that is largest relative to the required one."""
-        known = [one for one in self._reached if one.accuracy < math.inf]
-        if not known:
+        finite = [status for status in self._reached if status.accuracy < math.inf]
+        if not finite:
             return ""
-        worst = max(known, key=lambda one: one.accuracy / one.asked.accuracy)
+        worst = max(finite, key=lambda status: status.accuracy / status.asked.accuracy)
         error = f"error {worst.accuracy:.2g}, at most {worst.bound:.2g}"
         return f"  {worst.asked.name}: {error}, required {worst.asked.accuracy:g}"
 
 
-def _correlations(given: tuple[float, ...] | None, stress: bool) -> Correlations | None:
-    if given is None:
+def _correlations(numbers: tuple[float, ...] | None, stress: bool) -> Correlations | None:
+    if numbers is None:
         if stress:
             raise UsageError("--stress: needs --correlations")
         return None
-    if len(given) not in (2, 3) or not given[1].is_integer():
+    if len(numbers) not in (2, 3) or not numbers[1].is_integer():
         raise UsageError("--correlations: must be an interval, a whole number of lags and perhaps a start")
     from gaspart.trajectory.correlator import Correlations
 
-    start = given[2] if len(given) > 2 else 0.0
-    return Correlations(given[0], int(given[1]), start, stress)
+    start = numbers[2] if len(numbers) > 2 else 0.0
+    return Correlations(numbers[0], int(numbers[1]), start, stress)
 
 
-def _resume(given: argparse.Namespace) -> None:
+def _resume(options: argparse.Namespace) -> None:
     set_note("nothing was changed; the same command starts it again")
     from gaspart.runs.entry import resume
 
     status = _Status()
-    with waiting(_PREPARING, given.quiet) as started:
+    with waiting(_PREPARING, options.quiet) as started:
         load_numba(ours=True)
-        show = progress(given.quiet, started, status.remark)
-        lasts = {"duration": given.duration, "keep_checkpoint": given.keep_checkpoint}
-        path = resume(given.trajectory, given.checkpoint_seconds, show, status.update, **lasts)
+        show = progress(options.quiet, started, status.remark)
+        lasts = {"duration": options.duration, "keep_checkpoint": options.keep_checkpoint}
+        path = resume(options.trajectory, options.checkpoint_seconds, show, status.update, **lasts)
     _report(path)
 
 

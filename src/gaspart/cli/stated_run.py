@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.cli.engine_options import engine_settings, joined, stated
+from gaspart.cli.engine_options import changed_options, engine_settings, join_numbers
 from gaspart.engines import engine_to_dict
 from gaspart.trajectory.run_options import OPTIONS, stated_options
 
@@ -20,18 +20,18 @@ def accuracy_lines(path: Path) -> list[str]:
     from gaspart.trajectory.opening import PARTIAL
 
     lines, reached = [], reached_accuracy(path)
-    for one in reached:
-        where = f" ({one.component})" if one.component and one.asked.face is None else ""
-        required = f"required {one.asked.accuracy:g}"
-        if one.rule:
-            lines.append(f"{one.asked.name}: {required}, not measured: {one.rule}")
+    for status in reached:
+        where = f" ({status.component})" if status.component and status.asked.face is None else ""
+        required = f"required {status.asked.accuracy:g}"
+        if status.rule:
+            lines.append(f"{status.asked.name}: {required}, not measured: {status.rule}")
             continue
-        low, high = one.interval
-        value = f"{one.value:.6g} +- {one.error:.2g}, 95 % interval {low:.6g} to {high:.6g}"
-        error = f"relative error {one.accuracy:.2g}, by its uncertainty at most {one.bound:.2g}"
-        verdict = "reached" if one.met else "not reached"
-        lines.append(f"{one.asked.name}{where} = {value}{_starts(one)}; {error}; {required}: {verdict}")
-    if path.suffix != PARTIAL and not all(one.met for one in reached):
+        low, high = status.interval
+        value = f"{status.value:.6g} +- {status.error:.2g}, 95 % interval {low:.6g} to {high:.6g}"
+        error = f"relative error {status.accuracy:.2g}, by its uncertainty at most {status.bound:.2g}"
+        verdict = "reached" if status.met else "not reached"
+        lines.append(f"{status.asked.name}{where} = {value}{_starts(status)}; {error}; {required}: {verdict}")
+    if path.suffix != PARTIAL and not all(status.met for status in reached):
         lines.append(_why_ended(path, reached))
     return lines
 
@@ -52,12 +52,12 @@ def _starts(reached: AccuracyStatus) -> str:
 
 def _why_ended(path: Path, reached: list[AccuracyStatus]) -> str:
     """Return the reason why a run with --until ended before it was accurate."""
-    from gaspart.trajectory.replicas import found
+    from gaspart.trajectory.replicas import find_run
 
-    if limited := [one for one in reached if one.excess <= 1.0 and not one.met]:
+    if limited := [status for status in reached if status.excess <= 1.0 and not status.met]:
         remedy = f"no longer run makes the mean of {limited[0].replicas} replicas as accurate"
         return f"{remedy}: the energies of their starts scatter; exact_temperature: true, or more replicas"
-    until = found(path)[1].until
+    until = find_run(path)[1].until
     if until is not None and until.at_most is None:
         return "the run was given up: nothing that could be measured has happened; --at-most makes it longer"
     return "the longest duration (--at-most) ended the run before all were reached"
@@ -69,22 +69,22 @@ def run_options(path: Path, recipe: Recipe) -> list[str]:
 
     path, (recipe, replicas) = path_of_all(path, recipe), of_all(recipe)
     settings = engine_to_dict(recipe.engine)
-    options = ["-o", str(path), "--engine", settings["name"], "--seed", joined(recipe.seed)]
+    options = ["-o", str(path), "--engine", settings["name"], "--seed", join_numbers(recipe.seed)]
     if recipe.until is None:
         options += ["--duration", repr(recipe.duration)]
     else:
-        asked = recipe.until.accuracies
-        options += ["--until", ",".join(f"{one.name}={one.accuracy!r}" for one in asked)]
-        options += [] if asked[0].start is None else ["--start", repr(asked[0].start)]
+        accuracies = recipe.until.accuracies
+        options += ["--until", ",".join(f"{accuracy.name}={accuracy.accuracy!r}" for accuracy in accuracies)]
+        options += [] if accuracies[0].start is None else ["--start", repr(accuracies[0].start)]
         options += [] if recipe.until.at_most is None else ["--at-most", repr(recipe.until.at_most)]
     options += ["--sample-interval", repr(recipe.sample_interval)]
     options += ["--replicas", str(replicas)] if replicas > 1 else []
-    options += stated(engine_settings(), settings)
+    options += changed_options(engine_settings(), settings)
     if recipe.initial is not None:
         options += ["--from", "OTHER.nc"]  # whose last state the file holds
-    options += stated(OPTIONS, stated_options(recipe))
+    options += changed_options(OPTIONS, stated_options(recipe))
     if recipe.correlations is not None:
-        asked = recipe.correlations
-        options += ["--correlations", f"{asked.interval!r},{asked.lags},{asked.start!r}"]
-        options += ["--stress"] if asked.stress else []
+        correlations = recipe.correlations
+        options += ["--correlations", f"{correlations.interval!r},{correlations.lags},{correlations.start!r}"]
+        options += ["--stress"] if correlations.stress else []
     return options

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.analysis.observables import OBSERVABLES
-from gaspart.cli.arguments import Parser, listed, real, set_command, several
+from gaspart.cli.arguments import Parser, list_names, real, set_command, several
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas
 
@@ -46,7 +46,7 @@ def _formula(name: str, takes: tuple[str, ...]) -> Callable[[Gas, str], float]:
         from gaspart import theory
 
         if equation != "exact":
-            raise SceneError("equation", equation, "this quantity is that of particles that touch")
+            raise SceneError("equation", equation, "must be exact for this quantity")
         properties = {key: gas.particle[key] for key in takes}
         return float(getattr(theory, name)(gas.packing_fraction, gas.dimension, **properties))
 
@@ -68,14 +68,14 @@ _ENSKOG = "Enskog's theory (Chapman and Cowling 1970; discs Gass 1971), with g(s
 _RATE = "exact in equilibrium, with g(sigma) from: {state}"
 _QUANTITIES = {
     name: _Quantity(
-        _observable(one.bulk),
-        _PARTICLE if any(one.powers(3)) else (),
-        one.definition,
-        one.source,
-        one.mixture,
+        _observable(observable.bulk),
+        _PARTICLE if any(observable.powers(3)) else (),
+        observable.definition,
+        observable.source,
+        observable.mixture,
     )
-    for name, one in OBSERVABLES.items()
-    if one.bulk
+    for name, observable in OBSERVABLES.items()
+    if observable.bulk
 }
 _QUANTITIES |= {
     "contact_value": _Quantity(
@@ -112,7 +112,7 @@ def add_theory(parser: Parser) -> None:
     """Add the arguments of the command to its parser."""
     set_command(parser, _theory, "A value of theory, with its source. Units: k_B = 1.", _EXAMPLES)
     meanings = {name: quantity.meaning for name, quantity in _QUANTITIES.items()}
-    parser.description = f"{parser.description}\n\nquantities:\n{listed(meanings)}"
+    parser.description = f"{parser.description}\n\nquantities:\n{list_names(meanings)}"
     add = parser.add_argument
     add("quantity", choices=tuple(_QUANTITIES), metavar="QUANTITY", help="one of the above")
     add("--eta", type=several(real(least=0.0)), required=True, metavar="X[,X...]", help="packing fraction")
@@ -134,70 +134,67 @@ def add_theory(parser: Parser) -> None:
     add("--masses", type=several(real(above=0.0)), metavar="X[,X...]", help="likewise; default: 1")
 
 
-def _theory(given: argparse.Namespace) -> None:
+def _theory(options: argparse.Namespace) -> None:
     from gaspart import theory
 
-    if given.diameters is not None:
-        _of_mixture(given)
+    if options.diameters is not None:
+        _of_mixture(options)
         return
     for key in ("fractions", "masses"):
-        if getattr(given, key) is not None:
-            raise SceneError(key, getattr(given, key), "needs the --diameters of a mixture")
-    quantity, dimension = _QUANTITIES[given.quantity], given.dimension
-    properties = {key: getattr(given, key) for key in _PARTICLE}
+        if getattr(options, key) is not None:
+            raise SceneError(key, getattr(options, key), "needs the --diameters of a mixture")
+    quantity, dimension = _QUANTITIES[options.quantity], options.dimension
+    properties = {key: getattr(options, key) for key in _PARTICLE}
     properties = {key: value for key, value in properties.items() if value is not None}
     for key in properties:
         if key not in quantity.takes:
-            raise SceneError(key, properties[key], f"{given.quantity} does not depend on it")
-    for eta in given.eta:
+            raise SceneError(key, properties[key], f"{options.quantity} does not depend on it")
+    for eta in options.eta:
         spread = theory.compressibility_uncertainty(eta, dimension)  # first: it refuses any other eta
         gas = Gas(dimension, eta, 1, **{key: properties.get(key, 1.0) for key in _PARTICLE})
-        value = quantity.value(gas, given.equation)
+        value = quantity.value(gas, options.equation)
         if math.isnan(value):
             raise SceneError(
-                "quantity", given.quantity, f"is not known for {_FLUID[dimension]} at eta = {eta:g}"
+                "quantity", options.quantity, f"is not known for {_FLUID[dimension]} at eta = {eta:g}"
             )
-        about = f" +- {float(spread):.1g}" if given.quantity == "Z" and given.equation == "exact" else ""
-        print(f"{given.quantity}(eta = {eta:g}, dimension = {dimension}) = {value:.10g}{about}")
+        about = f" +- {float(spread):.1g}" if options.quantity == "Z" and options.equation == "exact" else ""
+        print(f"{options.quantity}(eta = {eta:g}, dimension = {dimension}) = {value:.10g}{about}")
     highest = theory.HIGHEST_PACKING_FRACTION[dimension]
     exact = quantity.source.format(state=_STATE[dimension])
-    print(f"{quantity.meaning}, {exact if given.equation == 'exact' else f'{given.equation} equation'}")
+    print(f"{quantity.meaning}, {exact if options.equation == 'exact' else f'{options.equation} equation'}")
     print(f"holds for eta from 0 to {highest:g}, {_FLUID[dimension]}")
 
 
-def _of_mixture(given: argparse.Namespace) -> None:
+def _of_mixture(options: argparse.Namespace) -> None:
     """Print a line for each theory, density and, for properties of pairs, pair of species."""
     from gaspart import theory
 
-    name = _QUANTITIES[given.quantity].mixture
+    name = _QUANTITIES[options.quantity].mixture
     if not name:
         able = (key for key, quantity in _QUANTITIES.items() if quantity.mixture)
-        raise SceneError("quantity", given.quantity, f"of mixtures there are {', '.join(able)}")
-    if given.equation != "exact":
-        raise SceneError(
-            "equation", given.equation, "of mixtures there is the theory of particles that touch"
-        )
-    takes = ("temperature",) if _QUANTITIES[given.quantity].takes else ()
-    properties = {key: getattr(given, key) for key in _PARTICLE if getattr(given, key) is not None}
+        raise SceneError("quantity", options.quantity, f"is not defined for mixtures; use {', '.join(able)}")
+    if options.equation != "exact":
+        raise SceneError("equation", options.equation, "must be exact for mixtures")
+    takes = ("temperature",) if _QUANTITIES[options.quantity].takes else ()
+    properties = {key: getattr(options, key) for key in _PARTICLE if getattr(options, key) is not None}
     for key in properties:
         if key not in takes:
-            raise SceneError(key, properties[key], f"{given.quantity} of a mixture does not depend on it")
-    if given.masses is not None:
+            raise SceneError(key, properties[key], f"{options.quantity} of a mixture does not depend on it")
+    if options.masses is not None:
         if not takes:
-            raise SceneError("masses", given.masses, f"{given.quantity} does not depend on them")
-        properties["masses"] = given.masses
-    state = given.dimension, given.diameters, given.fractions
+            raise SceneError("masses", options.masses, f"{options.quantity} does not depend on them")
+        properties["masses"] = options.masses
+    state = options.dimension, options.diameters, options.fractions
     of_first = ", of a particle of the first of the pair with all of the second"
-    for eta in given.eta:
+    for eta in options.eta:
         for kind, dimensions in theory.MIXTURE_THEORIES.items():
-            if given.dimension in dimensions:
+            if options.dimension in dimensions:
                 value = getattr(theory, name)(eta, *state, theory=kind, **properties)
-                print(
-                    f"{given.quantity}(eta = {eta:g}, dimension = {given.dimension}), {kind}: {_pairs(value)}"
-                )
-    print(f"{_QUANTITIES[given.quantity].meaning}{of_first if takes else ''}")
+                state_text = f"eta = {eta:g}, dimension = {options.dimension}"
+                print(f"{options.quantity}({state_text}), {kind}: {_pairs(value)}")
+    print(f"{_QUANTITIES[options.quantity].meaning}{of_first if takes else ''}")
     print("; ".join(f"{kind}: {source}" for kind, source in _MIXTURE_SOURCES.items()))
-    highest = theory.HIGHEST_PACKING_FRACTION[given.dimension]
+    highest = theory.HIGHEST_PACKING_FRACTION[options.dimension]
     print(f"approximations, for eta from 0 to {highest:g}; their differences are a measure of their errors")
 
 

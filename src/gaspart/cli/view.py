@@ -23,7 +23,7 @@ from gaspart.cli.arguments import (
     several,
 )
 from gaspart.cli.new import Template, named_command, templates
-from gaspart.cli.progress import clear_line, counted, waiting
+from gaspart.cli.progress import clear_line, picture_progress, waiting
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import output_path, writing
 
@@ -48,11 +48,11 @@ def add_view(parser: Parser) -> None:
     parser.add_argument("--order", action="store_true", help=text)
 
 
-def _view(given: argparse.Namespace) -> None:
+def _view(options: argparse.Namespace) -> None:
     from gaspart.rendering.view import view
 
     with waiting("writing the page"):
-        path = view(given.trajectory, given.frames, given.order).save(given.output, given.force)
+        path = view(options.trajectory, options.frames, options.order).save(options.output, options.force)
     print_line(path)
 
 
@@ -128,25 +128,25 @@ def _add_options(parser: Parser) -> None:
     add("--camera", type=several(real()), metavar="A,E", help=text)
 
 
-def _render(given: argparse.Namespace) -> None:
-    output = output_path(given.output)
+def _render(options: argparse.Namespace) -> None:
+    output = output_path(options.output)
     named = ("size", "colour", "frame", *_OF_FILMS, "clock", "camera")
-    options = {key: getattr(given, key) for key in named if getattr(given, key) is not None}
-    if output.suffix in PICTURES and not given.film:
+    keywords = {key: getattr(options, key) for key in named if getattr(options, key) is not None}
+    if output.suffix in PICTURES and not options.film:
         for key in _OF_FILMS:
-            if key in options:
-                raise SceneError(key, options[key], "has no meaning for a picture")
-        _picture(given.trajectory, output, options, given.force)
+            if key in keywords:
+                raise SceneError(key, keywords[key], "has no meaning for a picture")
+        _picture(options.trajectory, output, keywords, options.force)
     else:
         from gaspart.rendering.films import FILM_FORMATS, film
 
-        endings = FILM_FORMATS if given.film else (*PICTURES, *FILM_FORMATS)
+        endings = FILM_FORMATS if options.film else (*PICTURES, *FILM_FORMATS)
         if output.suffix not in endings:
-            raise SceneError("output", given.output, f"must end in {', '.join(endings)}")
-        if "frame" in options:
-            raise SceneError("frame", given.frame, "has no meaning for a film, which shows all frames")
-        options["clock"] = not options.pop("plain", False)
-        film(given.trajectory, output, **options, overwrite=given.force, progress=counted())
+            raise SceneError("output", options.output, f"must end in {', '.join(endings)}")
+        if "frame" in keywords:
+            raise SceneError("frame", options.frame, "has no meaning for a film, which shows all frames")
+        keywords["clock"] = not keywords.pop("plain", False)
+        film(options.trajectory, output, **keywords, overwrite=options.force, progress=picture_progress())
         print(clear_line(), end="", file=sys.stderr)
     print_line(output)
 
@@ -203,32 +203,32 @@ def run_template(template: Template, folder: Path) -> Path:
     scene = folder / f"{template.name}.yaml"
     scene.write_text(template.text, encoding="utf-8")
     _, name, *arguments = shlex.split(named_command(template, scene))
-    given = commands()[name].parse_args([*arguments, "--quiet"])
+    options = commands()[name].parse_args([*arguments, "--quiet"])
     with open(os.devnull, "w") as null, contextlib.redirect_stdout(null):
-        given.command(given)
+        options.command(options)
     return scene.with_suffix(".nc")
 
 
-def _films(given: argparse.Namespace) -> None:
+def _films(options: argparse.Namespace) -> None:
     from gaspart.rendering.films import FILM_FORMATS, film
 
-    known = templates()
-    for name in given.names:
-        if name not in known:
-            raise SceneError("name", name, unknown_word(name, known, "name"))
-    folder = Path(given.folder)
+    gallery = templates()
+    for name in options.names:
+        if name not in gallery:
+            raise SceneError("name", name, unknown_word(name, gallery, "name"))
+    folder = Path(options.folder)
     if folder.suffix in (".nc", *FILM_FORMATS):
         of_one = f"gaspart film {folder.stem}.nc -o {folder.stem}.mp4"
         rule = f"must be a folder, for films of the gallery; of one trajectory: {of_one}"
-        raise SceneError("folder", given.folder, rule)
+        raise SceneError("folder", options.folder, rule)
     folder.mkdir(parents=True, exist_ok=True)
-    for name in given.names or known:
-        output = folder / f"{name}.{'gif' if given.gif else 'mp4'}"
+    for name in options.names or gallery:
+        output = folder / f"{name}.{'gif' if options.gif else 'mp4'}"
         if not output.exists():
             with tempfile.TemporaryDirectory() as scratch:
                 with waiting(f"running {name}"):
-                    trajectory = run_template(known[name], Path(scratch))
-                colour = colour_of(known[name])
-                film(trajectory, output, size=given.size, colour=colour, progress=counted())
+                    trajectory = run_template(gallery[name], Path(scratch))
+                colour = colour_of(gallery[name])
+                film(trajectory, output, size=options.size, colour=colour, progress=picture_progress())
                 print(clear_line(), end="", file=sys.stderr)
         print_line(output)

@@ -84,7 +84,7 @@ def camera_for(
     corners = (np.array(list(product((0.0, 1.0), repeat=3))) - 0.5) * (np.asarray(lengths) + 2.0 * reach)
     depth = corners @ forward
 
-    def seen(distance: float) -> np.ndarray:
+    def slope_range(distance: float) -> np.ndarray:
         """Return the lowest and highest slope of the corners, to the right and upwards."""
         slopes = np.array([corners @ right, corners @ up]) / (distance + depth)
         return np.array([slopes.min(axis=1), slopes.max(axis=1)])
@@ -92,9 +92,11 @@ def camera_for(
     near, far = -depth.min() * 1.001, 1e3 * float(np.linalg.norm(lengths))
     for _ in range(60):
         distance = 0.5 * (near + far)
-        fits = (0.5 * MARGIN * np.ptp(seen(distance), axis=0) <= half).all()
+        fits = (0.5 * MARGIN * np.ptp(slope_range(distance), axis=0) <= half).all()
         near, far = (near, distance) if fits else (distance, far)
-    aside, above = seen(far).mean(axis=0) * far  # the container in the middle, whatever the perspective
+    aside, above = (
+        slope_range(far).mean(axis=0) * far
+    )  # the container in the middle, whatever the perspective
     light = 0.9 * outward - 0.55 * right + np.array([0.0, 0.0, 1.2])
     return Camera(
         eye=0.5 * np.asarray(lengths) - far * forward + aside * right + above * up,

@@ -76,17 +76,17 @@ class Canvas:
         corners = np.array([[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]])
         for side in pairwise(corners):
             ends = np.array(sorted(side, key=tuple))
-            if not any(np.allclose(sorted(one.ends, key=tuple), ends) for one in surfaces):
+            if not any(np.allclose(sorted(surface.ends, key=tuple), ends) for surface in surfaces):
                 self.line(ends)
 
     def shade_behind(self, surface: DrawnSurface) -> None:
         """Shade the part of the container behind a surface that has moved in."""
         if surface.depth > 0.0:
             corners = np.vstack([surface.ends, surface.ends - surface.depth * surface.inward])
-            (left, right), (top, bottom) = (
+            (first, right), (top, bottom) = (
                 (int(np.rint(ends.min())), int(np.rint(ends.max()))) for ends in self._pixels(corners).T
             )
-            self.image[max(top, 0) : bottom, max(left, 0) : right] = _SHADE
+            self.image[max(top, 0) : bottom, max(first, 0) : right] = _SHADE
 
     def surface(self, surface: DrawnSurface) -> None:
         """Draw a surface: its line, dashes, hatching, arrows and the edge of its well."""
@@ -105,8 +105,10 @@ class Canvas:
                 foot = start + part * (end - start)
                 self.line(np.array([foot, foot - 2.5 * unit * (surface.inward + along)]), INK)
         arrows = [(0.5, surface.motion)] if surface.motion is not None else []
-        places = np.linspace(0.0, 1.0, 2 * len(surface.through) + 3)[1:-1]
-        arrows += [(p, sign * surface.inward) for p, sign in zip(places, 2 * surface.through, strict=False)]
+        fractions = np.linspace(0.0, 1.0, 2 * len(surface.through) + 3)[1:-1]
+        arrows += [
+            (p, sign * surface.inward) for p, sign in zip(fractions, 2 * surface.through, strict=False)
+        ]
         for part, direction in arrows:
             middle = start + part * (end - start) + 5.0 * unit * surface.inward  # the margin is narrow
             self._arrow(middle - 8.0 * unit * direction, middle + 8.0 * unit * direction, colour)

@@ -14,7 +14,7 @@ import numpy as np
 from gaspart.errors import SceneError, optional
 from gaspart.files import FileKind, begins_with, output_path, whole_file, writing
 from gaspart.keys.values import count_of, number
-from gaspart.rendering.frames import Film, opened, particles_of, scene_of
+from gaspart.rendering.frames import Film, open_source, particles_of, scene_of
 from gaspart.rendering.particles import FASTEST, Labels, colours_of, legend_of, time_format
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.scene.open_faces import refuse_open
@@ -22,7 +22,7 @@ from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
 from gaspart.system import path_for_others
-from gaspart.trajectory.opening import no_run
+from gaspart.trajectory.opening import not_a_trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -113,9 +113,9 @@ def film(
         size = (size[0] // 2 * 2, size[1] // 2 * 2)
         _ffmpeg()  # before a picture is drawn
     to = _gif if path.suffix == ".gif" else _mp4
-    with opened(trajectory) as source:
+    with open_source(trajectory) as source:
         if isinstance(source, Scene):
-            raise no_run(source)
+            raise not_a_trajectory(source)
         if isinstance(source, Simulation | State):
             raise SceneError(
                 "trajectory",
@@ -124,12 +124,12 @@ def film(
                 "writes them",
             )
         source = _part(source, start, stop, every)
-        direction = _checked(source, colour, trail, camera)
-        shown = _pictures(source, size, colour, trail, clock, direction)
+        direction = _check_arguments(source, colour, trail, camera)
+        images = _pictures(source, size, colour, trail, clock, direction)
         if progress is not None:
-            shown = _reported(shown, source.sizes["frame"], progress)
+            images = _report_progress(images, source.sizes["frame"], progress)
         with writing(path, FILM_FORMATS[path.suffix], overwrite) as scratch:
-            to(scratch, shown, size, rate)
+            to(scratch, images, size, rate)
     return Film(path)
 
 
@@ -159,10 +159,10 @@ def poster(source: str | Path, path: str | Path) -> None:
         Image.frombytes("RGB", size, image).save(partial, "JPEG", quality=85)
 
 
-def _reported(
-    shown: Iterator[np.ndarray], total: int, progress: Callable[[int, int], None]
+def _report_progress(
+    images: Iterator[np.ndarray], total: int, progress: Callable[[int, int], None]
 ) -> Iterator[np.ndarray]:
-    for done, image in enumerate(shown, start=1):
+    for done, image in enumerate(images, start=1):
         yield image
         progress(done, total)
 
@@ -173,13 +173,13 @@ def _part(source: xr.Dataset, start: float | None, stop: float | None, every: in
     first = -np.inf if start is None else number("start", start, "must be a finite number")
     last = np.inf if stop is None else number("stop", stop, "must be a finite number")
     slack = 1e-9 * abs(float(time[-1]))
-    shown = np.flatnonzero((time >= first - slack) & (time <= last + slack))
-    if not shown.size:
-        raise SceneError("start", start, f"there is no frame from it until {last:g}")
-    return source.isel(frame=shown[:: count_of("every", every, least=1)])
+    frames = np.flatnonzero((time >= first - slack) & (time <= last + slack))
+    if not frames.size:
+        raise SceneError("start", start, f"must have a frame between it and {last:g}")
+    return source.isel(frame=frames[:: count_of("every", every, least=1)])
 
 
-def _checked(
+def _check_arguments(
     trajectory: xr.Dataset,
     colour: str | np.ndarray,
     trail: int | None,
@@ -194,9 +194,9 @@ def _checked(
     if trail is not None:
         refuse_open(scene_of(trajectory), "changes the particles: a trail is of one that stays")
         if count_of("trail", trail) >= len(first.radii):
-            raise SceneError("trail", trail, f"the trajectory has {len(first.radii)} particles")
+            raise SceneError("trail", trail, f"must be below {len(first.radii)}, the number of particles")
         if first.dimension != 2:
-            raise SceneError("trail", trail, "is drawn among discs only")
+            raise SceneError("trail", trail, "requires discs")
     return direction
 
 
@@ -225,7 +225,7 @@ def _pictures(
             path.append(particles.positions[trail])
         paths = pieces(path, particles.lengths)
         image = picture(particles, inner, colours_of(particles, colour, fastest), paths, direction)
-        yield labels.around(image, f"{time:{decimals}}", scale) if labels else image
+        yield labels.add_to(image, f"{time:{decimals}}", scale) if labels else image
 
 
 def pieces(path: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:
@@ -237,10 +237,10 @@ def pieces(path: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:
     return [part for part in np.split(points, np.flatnonzero(jumps) + 1) if len(part) > 1]
 
 
-def _gif(scratch: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate: float) -> None:
+def _gif(scratch: Path, pictures: Iterator[np.ndarray], size: tuple[int, int], rate: float) -> None:
     from PIL import Image
 
-    images = (Image.fromarray(image) for image in shown)
+    images = (Image.fromarray(image) for image in pictures)
     first = next(images)
     first.save(scratch, "GIF", save_all=True, append_images=images, duration=1000.0 / rate, loop=0)
 
@@ -249,7 +249,7 @@ def _ffmpeg() -> ModuleType:
     return optional("imageio_ffmpeg", "film", "films as .mp4 (.gif needs nothing more)")
 
 
-def _mp4(scratch: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate: float) -> None:
+def _mp4(scratch: Path, images: Iterator[np.ndarray], size: tuple[int, int], rate: float) -> None:
     options = ["-f", "mp4", "-fflags", "+bitexact", "-flags:v", "+bitexact"]  # no date, no program in it
     quiet = {"ffmpeg_log_level": "quiet"}  # gaspart prints the one line of an error
     write_frames = _ffmpeg().write_frames
@@ -259,7 +259,7 @@ def _mp4(scratch: Path, shown: Iterator[np.ndarray], size: tuple[int, int], rate
         writer = write_frames(path, size, fps=rate, macro_block_size=2, output_params=options, **quiet)
         try:
             writer.send(None)
-            for image in shown:
+            for image in images:
                 writer.send(np.ascontiguousarray(image))
         finally:
             writer.close()  # returns when ffmpeg has ended, without its exit code

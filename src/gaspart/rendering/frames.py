@@ -142,17 +142,17 @@ def render(
     (60, 80, 3)
     """
     size = checked_size(size)
-    with opened(source) as open_source:
-        particles = particles_of(open_source, frame)
-        time = _time_of(open_source, frame)
+    with open_source(source) as opened:
+        particles = particles_of(opened, frame)
+        time = _time_of(opened, frame)
     direction = checked_camera(camera, particles.dimension)
     if not clock:
         colours = colours_of(particles, colour, fastest)
         return picture(particles, size, colours, direction=direction).view(Picture)
-    return labelled(particles, time, size, colour, fastest, direction)
+    return draw_labelled(particles, time, size, colour, fastest, direction)
 
 
-def labelled(
+def draw_labelled(
     particles: DrawnParticles,
     time: float,
     size: tuple[int, int],
@@ -165,11 +165,11 @@ def labelled(
     labels = Labels(size, particles.parameters, legend_of(particles, colour, fastest), particles.surfaces)
     image = picture(particles, labels.inner, colours_of(particles, colour, fastest), paths, direction)
     scale = pixels_per_length(particles, labels.inner, direction)
-    return labels.around(image, f"{time:.4g}", scale).view(Picture)
+    return labels.add_to(image, f"{time:.4g}", scale).view(Picture)
 
 
 @contextmanager
-def opened(source: Source) -> Iterator[xr.Dataset | Simulation | State | Scene]:
+def open_source(source: Source) -> Iterator[xr.Dataset | Simulation | State | Scene]:
     """Yield an open source; close a trajectory that was given as a path.
 
     Parameters
@@ -218,14 +218,14 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
         return _of_state(initial_state(source, 0), source)
     frames = source.sizes["frame"]
     if not -frames <= count_of("frame", frame, least=-frames) < frames:
-        raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
+        raise SceneError("frame", frame, f"must be one of {frames} frames, counted from 0")
     names = ("coordinates", "velocities", "time", "piston_position")
     # Of these alone: xarray takes milliseconds for a frame of the whole.
-    shown = {name: source.variables[name][frame].values for name in names if name in source.variables}
+    variables = {name: source.variables[name][frame].values for name in names if name in source.variables}
     if "keep" in source.attrs:
         raise SceneError("keep", source.attrs["keep"], "a picture needs positions and velocities")
-    inside = np.isfinite(shown["coordinates"]).all(axis=1)  # of particles that come and go
-    positions, velocities = (shown[name][inside].astype(float) for name in ("coordinates", "velocities"))
+    inside = np.isfinite(variables["coordinates"]).all(axis=1)  # of particles that come and go
+    positions, velocities = (variables[name][inside].astype(float) for name in ("coordinates", "velocities"))
     scene, stored = scene_of(source), len(inside)
     return DrawnParticles(
         positions=positions,
@@ -233,12 +233,12 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
         species=source["type"].values[inside],
         speeds=np.sqrt((velocities**2).sum(axis=1)),
         lengths=np.array(scene.container.lengths),
-        walls=_walls(scene, float(shown["time"]), shown.get("piston_position")),
+        walls=_walls(scene, float(variables["time"]), variables.get("piston_position")),
         masses=np.resize(per_particle(scene, "mass"), scene.capacity)[:stored][inside].astype(float),
         fixed=np.resize(per_particle(scene, "fixed"), scene.capacity)[:stored][inside].astype(bool),
         periodic=scene.image_axes,
         parameters=parameters_of(scene),
-        surfaces=surfaces_of(scene, float(shown["time"]), _place(shown.get("piston_position"))),
+        surfaces=surfaces_of(scene, float(variables["time"]), _place(variables.get("piston_position"))),
     )
 
 
@@ -306,15 +306,15 @@ def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.n
             corner, second, third, fourth = wall.corners.values()
             segments += pairwise((corner, second, fourth, third, corner))
     lengths = np.array(scene.container.lengths)
-    places = [(moving.axis, moving.place if piston is None else float(piston))] if moving else []
+    positions = [(moving.axis, moving.position if piston is None else float(piston))] if moving else []
     for name, face in scene.faces.items():
         axis, upper = "xyz".index(name[0]), "high" in name
         if isinstance(face, Vibrating):
             inwards = float(face.places(np.array(time)))
-            places.append((axis, lengths[axis] - inwards if upper else inwards))
+            positions.append((axis, lengths[axis] - inwards if upper else inwards))
         elif isinstance(face, Piston) and piston is not None:
-            places.append((axis, float(piston)))
-    for axis, place in places:
+            positions.append((axis, float(piston)))
+    for axis, position in positions:
         corners = np.array(_CORNERS[scene.dimension]) * np.delete(lengths, axis)
-        segments += pairwise(np.insert(corners, axis, place, axis=1))
+        segments += pairwise(np.insert(corners, axis, position, axis=1))
     return np.array(segments, dtype=float).reshape(-1, 2, scene.dimension)

@@ -52,31 +52,31 @@ def place_legends(figure: Figure) -> None:
     assert layout
     for _ in range(_PASSES):
         layout.execute(figure)
-        moved = [_moved(axis) for axis in figure.axes if axis.get_legend()]
+        moved = [_move_legend(axis) for axis in figure.axes if axis.get_legend()]
         if not any(moved):
             break
     layout.execute(figure)  # ticks follow the size of a panel, and the layout follows them
     figure.set_layout_engine(None)  # with "none", each file would be drawn twice, first to lay it out
 
 
-def _moved(axis: Axes) -> bool:
+def _move_legend(axis: Axes) -> bool:
     """Return True if the legend of this panel covered data, and was moved."""
     legend, frame = axis.get_legend(), axis.bbox
     assert legend
     box, everything = legend.get_window_extent(), _marks(axis, lines=True)
-    data = np.concatenate([_seen(axis, everything), *map(_filled, axis.texts)])
+    data = np.concatenate([_inside_panel(axis, everything), *map(_text_points, axis.texts)])
     if not _inside(data, box.x0, box.y0, box.x1, box.y1).any():
         return False
-    room = np.array([frame.width - box.width, frame.height - box.height]) - 2.0 * _GAP
-    if (room > 0.0).all():
-        for place, part in _PLACES.items():
-            x, y = np.array(part) * room + (frame.x0 + _GAP, frame.y0 + _GAP)
+    free = np.array([frame.width - box.width, frame.height - box.height]) - 2.0 * _GAP
+    if (free > 0.0).all():
+        for location, part in _PLACES.items():
+            x, y = np.array(part) * free + (frame.x0 + _GAP, frame.y0 + _GAP)
             far = x + box.width + _CLEAR, y + box.height + _CLEAR
             if not _inside(data, x - _CLEAR, y - _CLEAR, *far).any():
                 legend.set_bbox_to_anchor(None)
-                legend.set_loc(place)
+                legend.set_loc(location)
                 return True
-        if _extended(axis, everything, box, room[0]):
+        if _extend_axis(axis, everything, box, free[0]):
             return True
     above = 1.0 if box.width < _NARROW * frame.width else 1.0 + _LETTER / frame.height
     legend.set_bbox_to_anchor((1.0, above), transform=axis.transAxes)
@@ -84,48 +84,50 @@ def _moved(axis: Axes) -> bool:
     return True
 
 
-def _filled(text: Text) -> np.ndarray:
+def _text_points(text: Text) -> np.ndarray:
     """Return positions (n, 2) in pixels all over a text."""
     box = text.get_window_extent()
     x, y = np.linspace(box.x0, box.x1, 9), np.linspace(box.y0, box.y1, 9)
     return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
 
 
-def _extended(axis: Axes, data: np.ndarray, box: Bbox, free: float) -> bool:
+def _extend_axis(axis: Axes, data: np.ndarray, box: Bbox, free: float) -> bool:
     """Return True if the vertical axis was extended so that the legend fits at the top.
 
     `free` is the width of the panel, in pixels, that the legend leaves.
     """
     legend, frame = axis.get_legend(), axis.bbox
     assert legend
-    left = {place: frame.x0 + _GAP + _PLACES[place][0] * free for place in _PLACES if place[0] == "u"}
+    starts = {
+        location: frame.x0 + _GAP + _PLACES[location][0] * free for location in _PLACES if location[0] == "u"
+    }
     tops = {
-        place: data[_inside(data, x - _CLEAR, -np.inf, x + box.width + _CLEAR, np.inf), 1].max(
+        location: data[_inside(data, x - _CLEAR, -np.inf, x + box.width + _CLEAR, np.inf), 1].max(
             initial=frame.y0
         )
-        for place, x in left.items()
+        for location, x in starts.items()
     }
-    place = min(tops, key=tops.__getitem__)
-    factor = (tops[place] - frame.y0) / (frame.height - box.height - 3.0 * _GAP)
+    location = min(tops, key=tops.__getitem__)
+    factor = (tops[location] - frame.y0) / (frame.height - box.height - 3.0 * _GAP)
     if not 1.0 < factor <= _MOST_ROOM:
         return False
     top = axis.transData.inverted().transform((frame.x0, frame.y0 + factor * frame.height))[1]
     axis.set_ylim(top=top)
     legend.set_bbox_to_anchor(None)
-    legend.set_loc(place)
+    legend.set_loc(location)
     return True
 
 
-def _inside(places: np.ndarray, left: float, below: float, right: float, above: float) -> np.ndarray:
+def _inside(positions: np.ndarray, x_min: float, y_min: float, x_max: float, y_max: float) -> np.ndarray:
     """Return True for each of the positions (n, 2) in a rectangle."""
-    x, y = places.T
-    return (x > left) & (x < right) & (y > below) & (y < above)
+    x, y = positions.T
+    return (x > x_min) & (x < x_max) & (y > y_min) & (y < y_max)
 
 
-def _seen(axis: Axes, places: np.ndarray) -> np.ndarray:
+def _inside_panel(axis: Axes, positions: np.ndarray) -> np.ndarray:
     """Return the positions (n, 2) that are inside a panel."""
     frame = axis.bbox
-    return places[_inside(places, frame.x0 - 1.0, frame.y0 - 1.0, frame.x1 + 1.0, frame.y1 + 1.0)]
+    return positions[_inside(positions, frame.x0 - 1.0, frame.y0 - 1.0, frame.x1 + 1.0, frame.y1 + 1.0)]
 
 
 def _marks(axis: Axes, lines: bool) -> np.ndarray:
@@ -139,11 +141,11 @@ def _marks(axis: Axes, lines: bool) -> np.ndarray:
     for line in axis.lines:
         if line.get_transform() is not axis.transData or not line.get_visible():
             continue
-        places = axis.transData.transform(np.asarray(line.get_xydata(), dtype=float))
+        positions = axis.transData.transform(np.asarray(line.get_xydata(), dtype=float))
         if line.get_marker() not in ("None", None, "", " "):
-            marks.append(places)
+            marks.append(positions)
         if lines and line.get_linestyle() != "None":
-            marks.append(_along(places))
+            marks.append(_along(positions))
     for collection in axis.collections:
         if isinstance(collection, LineCollection) and collection.get_transform() is axis.transData:
             marks += [_along(axis.transData.transform(part)) for part in collection.get_segments()]
@@ -151,16 +153,16 @@ def _marks(axis: Axes, lines: bool) -> np.ndarray:
         if patch.get_data_transform() is axis.transData:
             outline = patch.get_transform().transform_path(patch.get_path()).vertices
             marks.append(_along(np.asarray(outline, dtype=float)))
-    places = np.concatenate(marks)
-    return places[np.isfinite(places).all(axis=1)]
+    positions = np.concatenate(marks)
+    return positions[np.isfinite(positions).all(axis=1)]
 
 
-def _along(places: np.ndarray) -> np.ndarray:
+def _along(positions: np.ndarray) -> np.ndarray:
     """Return positions (m, 2) along the line through positions (n, 2), a few pixels apart."""
-    places = np.reshape(places, (-1, 2))  # an error bar without a value has none
-    begin, way = places[:-1], np.diff(places, axis=0)
-    known = np.isfinite(way).all(axis=1)
-    begin, way = begin[known], way[known]
+    positions = np.reshape(positions, (-1, 2))  # an error bar without a value has none
+    begin, way = positions[:-1], np.diff(positions, axis=0)
+    finite = np.isfinite(way).all(axis=1)
+    begin, way = begin[finite], way[finite]
     steps = 1 + np.minimum(np.hypot(*way.T) / _STEP, 1000.0).astype(int)
     part = (np.arange(steps.sum()) - np.repeat(np.cumsum(steps) - steps, steps)) / np.repeat(steps, steps)
     return np.repeat(begin, steps, axis=0) + part[:, None] * np.repeat(way, steps, axis=0)
@@ -188,11 +190,13 @@ def flaws(figure: Figure) -> list[str]:
         if box.x0 < -1.0 or box.y0 < -1.0 or box.x1 > width + 1.0 or box.y1 > height + 1.0
     ]
     for axis in figure.axes:
-        legend, points = axis.get_legend(), _seen(axis, _marks(axis, lines=False))
+        legend, points = axis.get_legend(), _inside_panel(axis, _marks(axis, lines=False))
         # Without the arrow of an annotation, which points at data.
         covers = [(repr(text.get_text()), Text.get_window_extent(text), points) for text in axis.texts]
         if legend:
-            covers.append(("a legend", legend.get_window_extent(), _seen(axis, _marks(axis, lines=True))))
+            covers.append(
+                ("a legend", legend.get_window_extent(), _inside_panel(axis, _marks(axis, lines=True)))
+            )
         sentences += [
             f"{text} lies on data"
             for text, box, data in covers
@@ -206,15 +210,15 @@ def _texts(figure: Figure) -> Iterator[tuple[str, Bbox]]:
     from matplotlib.legend import Legend
     from matplotlib.text import Text
 
-    drawn = [one for one in figure.findobj(Text) if one.get_visible() and one.get_text().strip()]
+    drawn = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
     ticks = {text for panel in figure.axes for axis in (panel.xaxis, panel.yaxis) for text in _ticks(axis)}
-    shown = {text for text, seen in ticks if seen}
+    labels = {text for text, seen in ticks if seen}
     others = {text for text, _ in ticks}
     for legend in figure.findobj(Legend):
         yield "legend", _smaller(legend.get_window_extent())
         others |= set(legend.get_texts()) | {legend.get_title()}
     for text in drawn:
-        if text in shown or text not in others:
+        if text in labels or text not in others:
             yield text.get_text(), _smaller(text.get_window_extent())
 
 
@@ -223,11 +227,11 @@ def _ticks(axis: Axis) -> Iterator[tuple[object, bool]]:
     low, high = sorted(map(float, axis.get_view_interval()))
     panel = axis.axes.axison and axis.axes.get_visible()
     for minor in (False, True):
-        places = axis.get_ticklocs(minor=minor)
+        positions = axis.get_ticklocs(minor=minor)
         ticks = axis.get_minor_ticks() if minor else axis.get_major_ticks()
-        for tick, place in zip(ticks, places, strict=False):
+        for tick, position in zip(ticks, positions, strict=False):
             for label in (tick.label1, tick.label2):
-                yield label, bool(panel and label.get_visible() and low <= place <= high)
+                yield label, bool(panel and label.get_visible() and low <= position <= high)
 
 
 def _smaller(box: Bbox) -> Bbox:

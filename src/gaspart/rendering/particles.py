@@ -61,8 +61,10 @@ class DrawnParticles:
 
         It is the radius of the largest particle that does.
         """
-        places, radii = self.positions, self.radii[:, None]
-        out = (np.maximum(radii - places, places + radii - self.lengths) > 1e-9 * self.lengths).any(axis=1)
+        positions, radii = self.positions, self.radii[:, None]
+        out = (np.maximum(radii - positions, positions + radii - self.lengths) > 1e-9 * self.lengths).any(
+            axis=1
+        )
         return float(self.radii[out].max(initial=0.0))
 
     @property
@@ -159,12 +161,12 @@ def colours_of(
         if particles.fixed is not None:
             colours[particles.fixed] = FIXED
         return colours
-    given = np.asarray(colour, dtype=float)
-    if given.shape != (len(particles.radii), 3):
+    values = np.asarray(colour, dtype=float)
+    if values.shape != (len(particles.radii), 3):
         raise SceneError(
-            "colour", f"an array of shape {given.shape}", "must have three columns, and a row per particle"
+            "colour", f"an array of shape {values.shape}", "must have three columns, and a row per particle"
         )
-    return given
+    return values
 
 
 # The parameters, the meaning of the colours, the time and the scale, written above and below a picture.
@@ -291,7 +293,7 @@ class Labels:
         """(W, H) of the picture itself."""
         return self.size[0], self.size[1] - self.top - self.line - self.letters // 3
 
-    def around(self, image: np.ndarray, time: str, pixels_per_length: float) -> np.ndarray:
+    def add_to(self, image: np.ndarray, time: str, pixels_per_length: float) -> np.ndarray:
         """Add the labels (H, W, 3) to a picture (h, W, 3) of the size `inner`."""
         from PIL import Image, ImageDraw
 
@@ -311,12 +313,12 @@ class Labels:
         self._write(draw, (gap, base), f"t = {time}")
         length = round_length(0.25 * width / pixels_per_length)
         right = width - gap
-        left = right - length * pixels_per_length
+        start = right - length * pixels_per_length
         y = base - round(0.35 * self.letters)
-        draw.line([(left, y), (right, y)], _INK, max(2, self.letters // 8))
-        for end in (left, right):
+        draw.line([(start, y), (right, y)], _INK, max(2, self.letters // 8))
+        for end in (start, right):
             draw.line([(end, y - gap // 2), (end, y + gap // 2)], _INK, 1)
-        self._write(draw, (left - gap, base), f"length {length:g}", "rs")
+        self._write(draw, (start - gap, base), f"length {length:g}", "rs")
         return np.asarray(paper)
 
     def _draw_surfaces(self, draw: ImageDraw, row: list[DrawnSurface], base: float) -> None:
@@ -326,9 +328,9 @@ class Labels:
             count = 5 if surface.dashed else len(surface.colours)
             for n in range(0, count, 2 if surface.dashed else 1):
                 colour = surface.colours[n * len(surface.colours) // count]
-                left, right = (x + self._sample * part / count for part in (n, n + 1))
+                start, end = (x + self._sample * part / count for part in (n, n + 1))
                 fill = tuple(np.rint(255.0 * colour).astype(int).tolist())
-                draw.line([(left, y), (right, y)], fill, thick)
+                draw.line([(start, y), (end, y)], fill, thick)
             for tick in range(5) if surface.hatched else ():
                 at = x + self._sample * (tick + 0.5) / 5
                 draw.line([(at, y), (at - thick, y + 1.5 * thick)], _INK, 1)
@@ -337,10 +339,10 @@ class Labels:
                 + self.letters // 2
             )
 
-    def _write(self, draw: ImageDraw, place: tuple[float, float], text: str, anchor: str = "ls") -> float:
+    def _write(self, draw: ImageDraw, position: tuple[float, float], text: str, anchor: str = "ls") -> float:
         """Write a text; returns where it ends, to the right."""
-        draw.text(place, text, _INK, self.font, anchor)
-        return draw.textbbox(place, text, self.font, anchor)[2]
+        draw.text(position, text, _INK, self.font, anchor)
+        return draw.textbbox(position, text, self.font, anchor)[2]
 
     def _draw_legend(self, draw: ImageDraw, legend: Legend, base: float) -> None:
         """Draw the title, and a bar with numbers at its ends, or colours with texts."""

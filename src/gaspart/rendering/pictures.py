@@ -104,8 +104,8 @@ def _plane(
     canvas = Canvas(particles.lengths, size)
     for surface in particles.surfaces:
         canvas.shade_behind(surface)
-    shown, shifts = _images(particles)
-    canvas.discs(particles.positions[shown] + shifts, particles.radii[shown], colours[shown])
+    indices, shifts = _images(particles)
+    canvas.discs(particles.positions[indices] + shifts, particles.radii[indices], colours[indices])
     canvas.cut(particles.periodic[:2])
     canvas.outline(particles.surfaces)
     for wall in particles.walls:
@@ -127,8 +127,8 @@ def _images(particles: DrawnParticles) -> tuple[np.ndarray, np.ndarray]:
     indices, shifts = [], []
     for step in product(*steps):
         shift = np.array(step) * lengths
-        places = particles.positions + shift
-        inside = ((places > -radii) & (places < lengths + radii)).all(axis=1)
+        positions = particles.positions + shift
+        inside = ((positions > -radii) & (positions < lengths + radii)).all(axis=1)
         chosen = np.flatnonzero(inside) if any(step) else np.arange(len(radii))
         indices.append(chosen)
         shifts.append(np.broadcast_to(shift, (len(chosen), len(lengths))))

@@ -77,7 +77,7 @@ RULES: dict[Any, Any] = {
 
 
 @contextmanager
-def applied(layout: str = "page") -> Iterator[None]:
+def use_style(layout: str = "page") -> Iterator[None]:
     """Draw in this style and one of LAYOUTS, without a display, inside the ``with`` block."""
     import matplotlib
     from cycler import cycler
@@ -135,10 +135,10 @@ def _columns(groups: Sequence[Sequence[float]]) -> list[Sequence[Sequence[float]
 
 def split(axis: Axes, rows: int, columns: int) -> np.ndarray:
     """Replace a panel by panels (rows, columns)."""
-    figure, place = axis.get_figure(), axis.get_subplotspec()
+    figure, position = axis.get_figure(), axis.get_subplotspec()
     axis.remove()
-    assert figure and place
-    parts = place.subgridspec(rows, columns)
+    assert figure and position
+    parts = position.subgridspec(rows, columns)
     return np.array([[figure.add_subplot(parts[n, k]) for k in range(columns)] for n in range(rows)])
 
 
@@ -168,7 +168,9 @@ def points(
     return axis.errorbar(x, y, yerr=error, color=colour, markerfacecolor=face, markeredgewidth=0.8, **options)
 
 
-def labelled(axis: Axes, x: str = "", y: str = "", legend: str = "", columns: int = 1, **limits: Any) -> None:
+def label_axes(
+    axis: Axes, x: str = "", y: str = "", legend: str = "", columns: int = 1, **limits: Any
+) -> None:
     """Label the axes of a panel, and add a legend, if its position is given.
 
     `limits` are arguments of `Axes.set`.
@@ -176,8 +178,8 @@ def labelled(axis: Axes, x: str = "", y: str = "", legend: str = "", columns: in
     labels = {"xlabel": x, "ylabel": y}
     axis.set(**{key: text for key, text in labels.items() if text}, **limits)
     if legend:
-        place: dict[str, Any] = {"loc": legend, "ncols": columns}
-        axis.legend(**place)
+        position: dict[str, Any] = {"loc": legend, "ncols": columns}
+        axis.legend(**position)
 
 
 def band(axis: Axes, low: float, high: float, **options: Any) -> Rectangle:
@@ -252,14 +254,18 @@ def _show_positive_ends(panel: Axes, axis: Axis, number: int) -> None:
     automatic = panel.get_autoscaley_on() if number else panel.get_autoscalex_on()
     if axis.get_scale() != "log" or not automatic:
         return
-    bars = [one for one in panel.containers if isinstance(one, ErrorbarContainer) and one.lines[0]]
+    bars = [
+        container
+        for container in panel.containers
+        if isinstance(container, ErrorbarContainer) and container.lines[0]
+    ]
     ends = [
         np.asarray(path.vertices)[:, number]
-        for one in bars
-        for part in one.lines[2]
+        for container in bars
+        for part in container.lines[2]
         for path in part.get_paths()
     ]
-    values = [np.asarray(one.lines[0].get_data()[number], dtype=float) for one in bars]
+    values = [np.asarray(container.lines[0].get_data()[number], dtype=float) for container in bars]
     end, value = (
         float(np.min(part, where=part > 0.0, initial=np.inf))
         for part in (np.concatenate([[np.inf], *parts]) for parts in (ends, values))

@@ -82,17 +82,19 @@ def surfaces_of(scene: Scene, time: float = 0.0, piston: float | None = None) ->
             continue  # its images slide; there is no surface
         axis, upper = "xyz".index(name[0]), "high" in name
         side = float(lengths[axis]) if upper else 0.0
-        place = side
+        position = side
         if isinstance(face, Vibrating):
             inwards = float(face.places(np.array(time)))
-            place = side - inwards if upper else inwards
+            position = side - inwards if upper else inwards
         elif isinstance(face, Piston) and piston is not None:
-            place = float(piston)
+            position = float(piston)
         inward = np.eye(scene.dimension)[axis] * (-1.0 if upper else 1.0)
         look = _look_of(face, scene, inward)
         text = f"{name.replace('_', ' ')}: {look.pop('text')}"
         drawn.append(
-            DrawnSurface(_outline(lengths, axis, place), inward, text=text, depth=abs(place - side), **look)
+            DrawnSurface(
+                _outline(lengths, axis, position), inward, text=text, depth=abs(position - side), **look
+            )
         )
     return (*drawn, *_warm_walls(scene))
 
@@ -131,7 +133,9 @@ def _thermal_look(face: Thermal, scene: Scene) -> dict[str, Any]:
     low, high = face.temperatures[0], face.temperatures[-1]
     text = f"T = {low:.3g}" if low == high else f"T = {low:.3g} to {high:.3g}"
     temperatures = np.linspace(low, high, 1 if low == high else _PIECES)
-    look: dict[str, Any] = {"colours": np.array([colour_of(float(one), scene) for one in temperatures])}
+    look: dict[str, Any] = {
+        "colours": np.array([colour_of(float(temperature), scene) for temperature in temperatures])
+    }
     if face.accommodation is not None:
         text += f", accommodation {face.accommodation:.3g}"
         look["dashed"] = True
@@ -170,7 +174,7 @@ def _one(colour: Colour) -> np.ndarray:
     return np.array([colour], dtype=float)
 
 
-def _outline(lengths: np.ndarray, axis: int, place: float) -> np.ndarray:
+def _outline(lengths: np.ndarray, axis: int, position: float) -> np.ndarray:
     """Return the ends of a face in the plane, or the corners around it in space."""
     corners = {2: ((0,), (1,)), 3: ((0, 0), (1, 0), (1, 1), (0, 1))}[len(lengths)]
-    return np.insert(np.array(corners) * np.delete(lengths, axis), axis, place, axis=1).astype(float)
+    return np.insert(np.array(corners) * np.delete(lengths, axis), axis, position, axis=1).astype(float)

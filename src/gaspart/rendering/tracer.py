@@ -48,18 +48,18 @@ def trace(
     spheres = np.column_stack([positions, radii]).astype(float)
     grid = cells(spheres, np.asarray(lengths, dtype=float))
     width, height = size
-    image, shown = np.empty((height, width, 3)), np.empty((height, width), dtype=np.int64)
+    image, objects = np.empty((height, width, 3)), np.empty((height, width), dtype=np.int64)
     view = np.array([camera.eye, camera.forward, camera.right, camera.up, camera.light])
     scales = (camera.half_width, camera.half_height, camera.near, camera.far)
     edges = edges_of(lengths)
     if lines is not None and len(lines):
         edges = np.vstack([edges, segments(lines)])
     scene = (spheres, np.asarray(colours, dtype=float) ** _GAMMA, edges, np.array(lengths, float))
-    render_once(image, shown, view, scales, scene, grid)
-    around = sliding_window_view(np.pad(shown, 1, mode="edge"), (3, 3))
-    mixed = (around != shown[..., None, None]).any(axis=(2, 3))
+    render_once(image, objects, view, scales, scene, grid)
+    around = sliding_window_view(np.pad(objects, 1, mode="edge"), (3, 3))
+    mixed = (around != objects[..., None, None]).any(axis=(2, 3))
     refine(image, np.argwhere(mixed), view, scales, scene, grid)
-    return np.clip(image, 0.0, 1.0) ** (1.0 / _GAMMA), shown
+    return np.clip(image, 0.0, 1.0) ** (1.0 / _GAMMA), objects
 
 
 def cells(spheres: np.ndarray, lengths: np.ndarray) -> tuple:

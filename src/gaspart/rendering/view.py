@@ -17,7 +17,7 @@ from gaspart.errors import SceneError
 from gaspart.files import FileKind, output_path, writing
 from gaspart.keys.values import count_of
 from gaspart.rendering.camera import edges_of
-from gaspart.rendering.frames import opened, particles_of, scene_of
+from gaspart.rendering.frames import open_source, particles_of, scene_of
 from gaspart.rendering.particles import FASTEST, FIXED, DrawnParticles
 from gaspart.rendering.style import COLOURS
 from gaspart.rendering.surfaces import DrawnSurface
@@ -25,7 +25,7 @@ from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
-from gaspart.trajectory.opening import no_run
+from gaspart.trajectory.opening import not_a_trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -132,19 +132,19 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
     'gas.html'
     """
     count_of("frames", frames, least=1)
-    with opened(source) as found:
-        if isinstance(found, Scene):
-            raise no_run(found)
-        if isinstance(found, State):
+    with open_source(source) as opened:
+        if isinstance(opened, Scene):
+            raise not_a_trajectory(opened)
+        if isinstance(opened, State):
             raise SceneError(
                 "source",
-                f"a {type(found).__name__}",
+                f"a {type(opened).__name__}",
                 "must be a trajectory or a simulation: a view needs frames",
             )
-        scene = found.scene if isinstance(found, Simulation) else scene_of(found)
+        scene = opened.scene if isinstance(opened, Simulation) else scene_of(opened)
         if order:
             refuse_open(scene, "changes the particles: bond order is of those that stay")
-        data = _with_names(found) if isinstance(found, Simulation) else found
+        data = _with_names(opened) if isinstance(opened, Simulation) else opened
         last = data.sizes["frame"] - 1
         if last < 0:
             raise SceneError("frame", 0, "the trajectory has no frame yet")
@@ -169,35 +169,39 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
     """Return what the page draws: numbers as base64, positions as 16-bit fractions of the sides."""
     import matplotlib
 
-    shown = [particles_of(data, int(n)) for n in chosen]
-    first, d = max(shown, key=lambda one: len(one.radii)), shown[0].dimension
-    fastest = FASTEST * max(one.root_mean_square_speed for one in shown) or 1.0
-    places = np.zeros((len(shown), len(first.radii), 3), dtype="<u2")
-    speeds = np.zeros(places.shape[:2], dtype=np.uint8)
-    for n, one in enumerate(shown):  # of open faces as many as are inside, in no order, since all are alike
-        count = len(one.radii)
-        places[n, :count, :d] = np.rint(65535.0 * np.clip(one.positions / one.lengths, 0.0, 1.0))
-        speeds[n, :count] = np.rint(_HIGHEST * np.clip(one.speeds / fastest, 0.0, 1.0))
-        if one.fixed is not None:
-            speeds[n, :count][one.fixed] = _HIGHEST + 1
+    drawn = [particles_of(data, int(n)) for n in chosen]
+    first, d = max(drawn, key=lambda particles: len(particles.radii)), drawn[0].dimension
+    fastest = FASTEST * max(particles.root_mean_square_speed for particles in drawn) or 1.0
+    positions = np.zeros((len(drawn), len(first.radii), 3), dtype="<u2")
+    speeds = np.zeros(positions.shape[:2], dtype=np.uint8)
+    for n, particles in enumerate(
+        drawn
+    ):  # of open faces as many as are inside, in no order, since all are alike
+        count = len(particles.radii)
+        positions[n, :count, :d] = np.rint(
+            65535.0 * np.clip(particles.positions / particles.lengths, 0.0, 1.0)
+        )
+        speeds[n, :count] = np.rint(_HIGHEST * np.clip(particles.speeds / fastest, 0.0, 1.0))
+        if particles.fixed is not None:
+            speeds[n, :count][particles.fixed] = _HIGHEST + 1
     lengths = np.zeros(3)
     lengths[:d] = first.lengths
-    lines = _lines(lengths, [one.walls for one in shown])
+    lines = _lines(lengths, [particles.walls for particles in drawn])
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 1.0, _HIGHEST + 1))[:, :3]
     return {
         "dimension": d,
         "count": len(first.radii),
-        "inside": [len(one.radii) for one in shown],
+        "inside": [len(particles.radii) for particles in drawn],
         "time": data["time"].values[chosen].tolist(),
         "lengths": lengths.tolist(),
         "periodic": [int(n < d and first.periodic[n]) for n in range(3)],
-        "places": _text(places),
+        "places": _text(positions),
         "speeds": _text(speeds),
         "fastest": fastest,
-        "order": _order(shown) if order else None,
+        "order": _order(drawn) if order else None,
         "radii": _text(first.radii.astype("<f4")),
         "species": _text((first.species % 256).astype(np.uint8)),
-        **_looks([one.surfaces for one in shown]),
+        **_looks([particles.surfaces for particles in drawn]),
         "lines": _text(lines.astype("<f4")),
         "ends": lines.shape[1],
         "map": _text(np.rint(255.0 * np.vstack([colours, [FIXED]])).astype(np.uint8)),
@@ -206,48 +210,51 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
     }
 
 
-def _order(shown: list[DrawnParticles]) -> dict:
+def _order(drawn: list[DrawnParticles]) -> dict:
     """Return the local bond order of every particle in every frame.
 
     It is in units of the largest value on the scale.
     """
-    first = shown[0]
+    first = drawn[0]
     if not all(first.periodic[: first.dimension]):
         raise SceneError("order", True, "bond order needs a periodic container")
     if len(first.radii) <= NEIGHBOURS:
         raise SceneError("order", True, f"bond order needs more than {NEIGHBOURS} particles")
     measure, name, highest = (hexatic, "|ψ6|", 1.0) if first.dimension == 2 else (local_steinhardt, "q6", 0.6)
-    values = np.array([np.abs(measure(one.positions, one.lengths)) for one in shown])
+    values = np.array([np.abs(measure(particles.positions, particles.lengths)) for particles in drawn])
     parts = np.rint(_HIGHEST * np.clip(values / highest, 0.0, 1.0)).astype(np.uint8)
     return {"values": _text(parts), "name": name, "highest": highest}
 
 
-def _looks(shown: list[tuple[DrawnSurface, ...]]) -> dict:
+def _looks(surfaces: list[tuple[DrawnSurface, ...]]) -> dict:
     """Return the looks of faces and walls, and their corners in each frame.
 
     If nothing moves, the corners are returned once.
     """
     frames = [
         [
-            {"corners": np.pad(one.ends, ((0, 0), (0, 3 - one.ends.shape[1]))).tolist(), "depth": one.depth}
-            for one in row
+            {
+                "corners": np.pad(surface.ends, ((0, 0), (0, 3 - surface.ends.shape[1]))).tolist(),
+                "depth": surface.depth,
+            }
+            for surface in row
         ]
-        for row in shown
+        for row in surfaces
     ]
     if all(row == frames[0] for row in frames):
         frames = frames[:1]
     looks = [
         {
-            "text": one.text,
-            "colours": one.colours.round(3).tolist(),
-            "inward": _in_space(one.inward),
-            "dashed": one.dashed,
-            "hatched": one.hatched,
-            "motion": None if one.motion is None else _in_space(one.motion),
-            "through": one.through,
-            "band": one.band,
+            "text": surface.text,
+            "colours": surface.colours.round(3).tolist(),
+            "inward": _in_space(surface.inward),
+            "dashed": surface.dashed,
+            "hatched": surface.hatched,
+            "motion": None if surface.motion is None else _in_space(surface.motion),
+            "through": surface.through,
+            "band": surface.band,
         }
-        for one in shown[0]
+        for surface in surfaces[0]
     ]
     return {"surfaces": looks, "surface_ends": frames}
 
@@ -263,7 +270,7 @@ def _lines(lengths: np.ndarray, walls: list[np.ndarray]) -> np.ndarray:
     The shape is (frames, 2M, 3). Walls have the shape (M, 2, d). There is one frame if they have the same
     positions in all frames.
     """
-    if all(np.array_equal(walls[0], one) for one in walls):
+    if all(np.array_equal(walls[0], segments) for segments in walls):
         walls = walls[:1]
     edges = edges_of(lengths)
     ends = np.stack([edges[:, :3], edges[:, :3] + edges[:, 3:6] * edges[:, 6:]], axis=1)

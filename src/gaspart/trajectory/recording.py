@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
-from gaspart.interruption import Deferral, deferred, set_note
+from gaspart.interruption import Deferral, defer_signals, set_note
 from gaspart.simulation import Simulation
 from gaspart.state.state import State, by_number
 from gaspart.trajectory import amber
@@ -61,8 +61,8 @@ class Recording:
         self._recipe, self._simulation, self._frames = recipe, simulation, frames
         self._path, self._every, self._progress = path, every, progress
         self._origin = simulation.initial_state.unwrapped
-        asked = recipe.correlations
-        self._correlator = asked and correlator_for(asked, simulation, recipe.displacements)
+        correlations = recipe.correlations
+        self._correlator = correlations and correlator_for(correlations, simulation, recipe.displacements)
         self._pairs = PairCounter(simulation) if recipe.pairs else None
         self._examine = examine
         self._duration = recipe.longest if examine is None else self._estimate(0, math.inf)
@@ -86,7 +86,7 @@ class Recording:
         next to the trajectory, in `.failed.npz`. A signal takes effect after a checkpoint was written.
         """
         try:
-            with deferred() as signals:
+            with defer_signals() as signals:
                 self._estimate_again()
                 while not self._is_complete(signals):
                     self._finish_frame(signals)
@@ -132,8 +132,8 @@ class Recording:
 
         excess : present error divided by the required error
         """
-        needed = frames * excess**2 if math.isfinite(excess) else 0.0
-        expected = examined_from(min(max(needed, frames + 1.0), self._recipe.frames))
+        required_frames = frames * excess**2 if math.isfinite(excess) else 0.0
+        expected = examined_from(min(max(required_frames, frames + 1.0), self._recipe.frames))
         return min((expected - 1) * self._recipe.sample_interval, self._recipe.longest)
 
     def _estimate_again(self) -> None:

@@ -15,7 +15,7 @@ HIGHEST = 1.8
 def draw(function, dataset):
     """The figure of a data set as drawn for a page, and legible there. (The smoke run draws each for a column
     of a journal too.)"""
-    with style.applied("page"):
+    with style.use_style("page"):
         figure = function(dataset)
         style.finish(figure)
     assert not flaws(figure)

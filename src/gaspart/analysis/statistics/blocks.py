@@ -164,6 +164,11 @@ def autocorrelation_time(series: ArrayLike) -> float:
     return 0.5 * spectrum / float(series.var()) if spectrum > 0.0 else 0.5
 
 
+def count_changes(series: np.ndarray) -> int:
+    """Count the changes from one sample to the next that are larger than rounding."""
+    return int(np.count_nonzero(np.abs(np.diff(series)) > _ROUNDING * np.abs(series).max()))
+
+
 def _spectrum(series: np.ndarray) -> tuple[float, float]:
     """Compute the sum of a series' autocovariances over all lags.
 
@@ -175,12 +180,12 @@ def _spectrum(series: np.ndarray) -> tuple[float, float]:
     number = series.size
     order = round(ORDER * number ** (1.0 / 3.0))
     centred = series - series.mean()
-    changes = np.count_nonzero(np.abs(np.diff(series)) > _ROUNDING * np.abs(series).max())
+    changes = count_changes(series)
     if not changes:
         return 0.0, 1.0
-    found = np.array([centred[: number - lag] @ centred[lag:] for lag in range(order + 1)]) / number
-    first, _ = _autoregression(found)
-    total, variance = _autoregression(found + first / number)
+    covariances = np.array([centred[: number - lag] @ centred[lag:] for lag in range(order + 1)]) / number
+    first, _ = _autoregression(covariances)
+    total, variance = _autoregression(covariances + first / number)
     return total, min(number / (1.0 + 2.0 * variance), float(changes))
 
 
@@ -196,13 +201,13 @@ def _autoregression(covariances: np.ndarray) -> tuple[float, float]:
     unpredicted, rest, inverse = float(covariances[0]), 1.0, 0.0
     for order in range(1, covariances.size):
         inverse += rest**2 / unpredicted
-        known = coefficients @ covariances[order - 1 : 0 : -1]
-        partial = (covariances[order] - known) / unpredicted
-        left = unpredicted * (1.0 - partial**2)
-        if left <= 1e-12 * covariances[0]:  # to rounding, the earlier values predict all
+        predicted = coefficients @ covariances[order - 1 : 0 : -1]
+        partial = (covariances[order] - predicted) / unpredicted
+        remaining = unpredicted * (1.0 - partial**2)
+        if remaining <= 1e-12 * covariances[0]:  # to rounding, the earlier values predict all
             break
         coefficients = np.append(coefficients - partial * coefficients[::-1], partial)
-        unpredicted, rest = left, rest * (1.0 - partial)
+        unpredicted, rest = remaining, rest * (1.0 - partial)
     return unpredicted / rest**2, unpredicted * inverse / rest**2
 
 

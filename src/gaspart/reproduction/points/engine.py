@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from gaspart import engines
-from gaspart.engines.engine import required
+from gaspart.engines.engine import required_settings
 from gaspart.errors import SceneError
 from gaspart.keys.values import LARGEST, SMALLEST
 from gaspart.reproduction.points import point_keys
@@ -88,7 +88,7 @@ def _made(point: Point, settings: dict) -> Engine:
 
 def _check(point: Point, name: str, settings: dict) -> None:
     """Refuse keys that the engine lacks or does not know."""
-    for key in required(engines.ENGINES[name]):
+    for key in required_settings(engines.ENGINES[name]):
         if key not in settings:
             raise point.make_error(key, f"must be given with engine: {name}")
     for key in {key: None for keys in ENGINE_KEYS.values() for key in keys}:
@@ -107,14 +107,14 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     The choice is made for the table's machine, so that a config means the same everywhere. A length is set
     only if none is given. Raises SceneError.
     """
-    from gaspart.accuracy.plan import tabulated
+    from gaspart.accuracy.plan import plan_from_table
     from gaspart.accuracy.table import EQUILIBRATION
 
     if "accuracy" not in settings:
         raise SceneError(f"{where}.accuracy", None, "is required with engine: auto")
     observable, accuracy = settings.get("observable", "Z"), settings["accuracy"]
     try:
-        advice = tabulated(scene, observable, accuracy)
+        advice = plan_from_table(scene, observable, accuracy)
     except SceneError as error:
         raise error.inside(where) from None
     merged = {key: value for key, value in settings.items() if key not in point_keys.ENGINE_KEYS["auto"]}
@@ -221,6 +221,6 @@ def _mean_rate(mixture: Mixture) -> float:
     """Compute the mean collision rate of its particles; of many sizes by a part of them."""
     from gaspart import theory
 
-    few = mixture.thinned(_SIZES)
+    few = mixture.thin(_SIZES)
     rates = theory.mixture_collision_rates(*few.sizes, temperature=few.temperature, masses=few.masses)
     return math.fsum(rates.sum(axis=1) * few.counts) / sum(few.counts)  # by BLAS it depends on the processor

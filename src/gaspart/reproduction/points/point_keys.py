@@ -163,7 +163,7 @@ def ending(point: Point) -> dict[str, Any]:
     accuracies = tuple(Accuracy.named(name, value, start) for name, value in settings["until"].items())
     for accuracy in accuracies:
         require_measurable(accuracy, point.scene, point.engine)
-        require_end(accuracy, point.scene, times.duration, given=False)
+        require_end(accuracy, point.scene, times.duration, from_state=False)
     interval = times.sample_interval
     if "samples" not in settings:
         interval = default_sample_interval(point.scene, point.engine, None)

@@ -48,9 +48,9 @@ def _ratios(top: Axes, bottom: Axes, wells: Table) -> None:
             bottom, inverse_temperature + 0.02 * (kind - 1), 100.0 * deviation, kind=kind, hollow=True
         )
     top.set_yscale("log")
-    style.labelled(top, y=r"$N_\mathrm{ads}/N_\mathrm{gas}$", legend="upper left")
+    style.label_axes(top, y=r"$N_\mathrm{ads}/N_\mathrm{gas}$", legend="upper left")
     labels = r"inverse temperature $1/kT$", "deviation from\nexact (%)"
-    style.labelled(bottom, *labels, xlim=(inverse[0], inverse[-1]))
+    style.label_axes(bottom, *labels, xlim=(inverse[0], inverse[-1]))
 
 
 def _lengths(axis: Axes, wells: Table) -> None:
@@ -63,7 +63,7 @@ def _lengths(axis: Axes, wells: Table) -> None:
     axis.set_xscale("log")
     axis.set_xticks([0.5, 1.0, 2.0], ["0.5", "1", "2"])
     axis.minorticks_off()
-    style.labelled(axis, r"temperature $kT$", r"length $\lambda/w$", "upper right")
+    style.label_axes(axis, r"temperature $kT$", r"length $\lambda/w$", "upper right")
 
 
 def _isotherm(axis: Axes, layers: Table) -> None:
@@ -77,7 +77,7 @@ def _isotherm(axis: Axes, layers: Table) -> None:
     style.points(axis, *spheres, color=style.DATA, hollow=True, zorder=4, label="spheres")
     axis.set_xscale("log")
     pressure = r"$(P/kT)\, w\, e^{\epsilon/kT}\, \pi\sigma^2/4$"
-    style.labelled(axis, pressure, r"coverage $\eta$", "lower right", xlim=(0.02, 60.0), ylim=(0.0, 0.6))
+    style.label_axes(axis, pressure, r"coverage $\eta$", "lower right", xlim=(0.02, 60.0), ylim=(0.0, 0.6))
 
 
 def _sticky_coverage(axis: Axes, walls: Table) -> None:
@@ -91,7 +91,7 @@ def _sticky_coverage(axis: Axes, walls: Table) -> None:
     axis.set_xticks([0.01, 0.02, 0.05], ["0.01", "0.02", "0.05"])
     axis.minorticks_off()
     labels = r"density of the gas $\rho\sigma^3$", r"coverage $\eta$"
-    style.labelled(axis, *labels, legend="lower right", xlim=(line[0], line[-1]))
+    style.label_axes(axis, *labels, legend="lower right", xlim=(line[0], line[-1]))
 
 
 def _leaving(axis: Axes, wells: Table, walls: Table) -> None:
@@ -103,4 +103,4 @@ def _leaving(axis: Axes, wells: Table, walls: Table) -> None:
         style.points(axis, walls.speed, row.flux, kind=kind, hollow=not kind, label=label)
     axis.axvline(dense.slow_speed, color=style.GREY, ls=":")
     labels = r"normal speed $v\sqrt{m/kT}$", "share leaving"
-    style.labelled(axis, *labels, legend="upper right", ylim=(0.0, None))
+    style.label_axes(axis, *labels, legend="upper right", ylim=(0.0, None))

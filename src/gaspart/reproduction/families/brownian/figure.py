@@ -35,7 +35,7 @@ def brownian_paths(ds: xr.Dataset) -> Figure:
         axis.plot(0.0, 0.0, color=style.DATA, marker="o", ms=2.5, zorder=5)
         widest = 1.08 * np.nanmax(np.abs(sphere.way[..., :2]))
         axis.set(xlim=(-widest, widest), ylim=(-widest, widest), aspect="equal")
-        style.labelled(axis, "$x$ (length)", "$y$ (length)")
+        style.label_axes(axis, "$x$ (length)", "$y$ (length)")
         mass, collisions = sphere.mass / sphere.gas_mass, sphere.duration * sphere.friction
         style.letter(axis, f"({letter}) $M={mass:g}\\,m$, {collisions:.0f} friction times")
     return figure
@@ -60,11 +60,11 @@ def brownian_msd(ds: xr.Dataset) -> Figure:
         look: dict[str, Any] = {"kind": kind, "hollow": kind > 0}
         _displacement(far, ratio, sphere, label, look)
         _memory(memory, difference, sphere, label, look)
-    style.labelled(far, y=r"$\langle\Delta r^2\rangle\,M\gamma^2/6k_\mathrm{B}T$", legend="lower right")
+    style.label_axes(far, y=r"$\langle\Delta r^2\rangle\,M\gamma^2/6k_\mathrm{B}T$", legend="lower right")
     correlation = r"$\langle V(0)\!\cdot\!V(t)\rangle\,M/3k_\mathrm{B}T$"
-    style.labelled(memory, y=correlation, legend="lower left", ylim=(0.02, 1.4))
+    style.label_axes(memory, y=correlation, legend="lower left", ylim=(0.02, 1.4))
     for residual, name in ((ratio, "ratio $-$ 1"), (difference, "difference")):
-        style.labelled(residual, r"time $\gamma t$", name, ylim=(-0.25, 0.25))
+        style.label_axes(residual, r"time $\gamma t$", name, ylim=(-0.25, 0.25))
     for axis in (far, ratio):
         axis.set(xscale="log", xlim=(0.07, t[-1]))
     for axis in (memory, difference):

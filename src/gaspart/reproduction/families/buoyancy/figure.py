@@ -44,9 +44,9 @@ def _draw_displacement(top: Axes, middle: Axes, discs: Table, ratio: float) -> N
     style.points(top, packing, discs.missing, kind=1, hollow=True, label="small discs missing")
     style.points(middle, packing, discs.force_radius)
     style.points(middle, packing, discs.count_radius, kind=1, hollow=True)
-    style.labelled(top, y=r"mass displaced $F/mg$", legend="upper left")
+    style.label_axes(top, y=r"mass displaced $F/mg$", legend="upper left")
     labels = r"packing fraction $\eta$ of the fluid at that height", r"$(R_\mathrm{eff} - R)/r$"
-    style.labelled(middle, *labels, ylim=(-0.15, 1.35))
+    style.label_axes(middle, *labels, ylim=(-0.15, 1.35))
 
 
 def _heights(axis: Axes, discs: Table, fluid: Table) -> None:
@@ -59,7 +59,7 @@ def _heights(axis: Axes, discs: Table, fluid: Table) -> None:
     style.points(axis, discs.mass, discs.height, label="mean height")
     style.points(axis, discs.mass, discs.expected, kind=1, label="theory", marker="_", markersize=11)
     labels = "mass $M/m$ of a free disc", "height $z$ (length)"
-    style.labelled(axis, *labels, legend="upper right", ylim=(0.0, discs.top))
+    style.label_axes(axis, *labels, legend="upper right", ylim=(0.0, discs.top))
     axis.set_xlim(0.0, 1.08 * discs.mass.max())
 
 
@@ -75,4 +75,4 @@ def _source(axis: Axes, discs: Table) -> None:
     style.points(axis, density, discs.height, label="source's discs")
     axis.axvline(1.0, color=style.GREY, ls="--", lw=0.8, zorder=1)
     labels = "density of the disc over the fluid's mean", "height $z$ (length)"
-    style.labelled(axis, *labels, legend="upper right")
+    style.label_axes(axis, *labels, legend="upper right")

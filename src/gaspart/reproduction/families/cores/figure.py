@@ -32,7 +32,7 @@ def cores(dataset: xr.Dataset) -> Figure:
         highest = np.nanmax([2.36, *own.speed.value])
         axis.set(xscale="log", xlim=(0.6 * runs.count.min(), 1.6 * runs.count.max()))
         axis.set_ylim(0.0, 1.1 * highest)
-        style.labelled(axis, "number of particles $N$", f"{short}: {_LABEL}", legend="lower right")
+        style.label_axes(axis, "number of particles $N$", f"{short}: {_LABEL}", legend="lower right")
     _by_cores(axes[-1], runs, models, dataset.cores)
     style.letters(*axes)
     return figure
@@ -77,7 +77,9 @@ def _by_cores(axis: Axes, runs: Table, models: Table, available: int) -> None:
                 speed = _model_speed(models, widest, fine[part], widest.count)
                 axis.plot(fine[part], speed, dashes, color=style.COLOURS[kind], linewidth=0.8)
     cores = f"cores (dotted: beyond the {available} of this machine)"
-    style.labelled(axis, cores, _LABEL, legend="upper left", xlim=(0.8, _MOST + 0.2), ylim=(0.0, _MOST + 0.5))
+    style.label_axes(
+        axis, cores, _LABEL, legend="upper left", xlim=(0.8, _MOST + 0.2), ylim=(0.0, _MOST + 0.5)
+    )
 
 
 def _once(label: str, named: set[str]) -> str:

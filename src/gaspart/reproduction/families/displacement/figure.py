@@ -83,7 +83,7 @@ def _displacement(axis: Axes, points: Table) -> None:
     axis.plot([], [], color=style.GREY, lw=0.8, label="Enskog")
     axis.set_ylim(top=top)
     square = r"$\langle|\Delta\mathbf{r}|^2\rangle\ (\sigma^2)$"
-    style.labelled(axis, r"time $t\ (\sigma\sqrt{m/k_\mathrm{B}T})$", square, "lower right")
+    style.label_axes(axis, r"time $t\ (\sigma\sqrt{m/k_\mathrm{B}T})$", square, "lower right")
 
 
 def _running(axis: Axes, points: Table) -> None:
@@ -113,7 +113,7 @@ def _running(axis: Axes, points: Table) -> None:
     if dimension == 2:
         axis.plot([], [], color=style.GREY, lw=1.6, alpha=0.5, label="mode coupling")
     labels = r"collisions per particle $\nu t$", r"$D(t)/D_\mathrm{Enskog}$"
-    style.labelled(axis, *labels, legend="lower right", columns=1 + (len(fractions) > 3))
+    style.label_axes(axis, *labels, legend="lower right", columns=1 + (len(fractions) > 3))
     axis.set_ylim(0.0)
 
 
@@ -144,7 +144,7 @@ def _density(axis: Axes, largest: Table) -> None:
     style.points(axis, eta, largest.diffusion / enskog, kind=1, hollow=True, label="as measured")
     style.points(axis, eta, infinite(largest) / enskog, color=style.DATA, label="infinite container")
     axis.set(xlim=(0.0, curve[-1]), ylim=(0.93, 1.72))
-    style.labelled(axis, r"packing fraction $\eta$", r"$D/D_\mathrm{Enskog}$", "upper right")
+    style.label_axes(axis, r"packing fraction $\eta$", r"$D/D_\mathrm{Enskog}$", "upper right")
 
 
 def _size(axis: Axes, sizes: Table) -> None:
@@ -176,7 +176,7 @@ def _size(axis: Axes, sizes: Table) -> None:
         at = (abscissa, size.diffusion.value)
         axis.annotate(f"{size.count:.0f}", at, (3, 5), textcoords="offset points")
     axis.set_xlim(0.0, x[-1])
-    style.labelled(axis, r"$\sigma/L$", r"$D_L\ (\sigma\sqrt{k_\mathrm{B}T/m})$", "upper right")
+    style.label_axes(axis, r"$\sigma/L$", r"$D_L\ (\sigma\sqrt{k_\mathrm{B}T/m})$", "upper right")
 
 
 def _slopes(axis: Axes, long: Table) -> None:
@@ -193,4 +193,4 @@ def _slopes(axis: Axes, long: Table) -> None:
     style.points(axis, eta, long.logarithmic_slope, color=style.DATA, label="measured")
     axis.set_ylim(0.0)
     slope = r"$\mathrm{d}D/\mathrm{d}\ln t\ (\sigma\sqrt{k_\mathrm{B}T/m})$"
-    style.labelled(axis, r"packing fraction $\eta$", slope, "lower left")
+    style.label_axes(axis, r"packing fraction $\eta$", slope, "lower left")

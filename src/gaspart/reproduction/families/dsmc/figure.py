@@ -26,9 +26,9 @@ def dsmc_convergence(dataset: xr.Dataset) -> Figure:
     cells, steps, plates, dense = axes
     gases = Table(dataset, "point")
     _coarse(cells, gases, "width", "step")
-    style.labelled(cells, r"width of a cell $w/\lambda$")
+    style.label_axes(cells, r"width of a cell $w/\lambda$")
     _coarse(steps, gases, "step", "width")
-    style.labelled(steps, r"time step $\sqrt{2k_\mathrm{B}T/m}\,\Delta t/\lambda$")
+    style.label_axes(steps, r"time step $\sqrt{2k_\mathrm{B}T/m}\,\Delta t/\lambda$")
     _plates(plates, gases)
     _dense(dense, gases[gases.part == "dense"], gases[gases.part == "event_paths"])
     style.letters(*axes)
@@ -53,7 +53,7 @@ def _coarse(axis: Axes, gases: Table, along: str, other: str) -> None:
         style.points(axis, own.width, 1.0 + own.transfer, hollow=True, label="1 + transfer")
     predicted = "predicted, first order" if along == "width" else "predicted"
     axis.plot([], [], color=style.GREY, lw=0.8, label=predicted)
-    style.labelled(axis, y="over the exact value", legend="upper left", xlim=(0.0, None))
+    style.label_axes(axis, y="over the exact value", legend="upper left", xlim=(0.0, None))
 
 
 def _plates(axis: Axes, gases: Table) -> None:
@@ -63,7 +63,9 @@ def _plates(axis: Axes, gases: Table) -> None:
         style.points(axis, own.knudsen, own.flux, kind=kind, hollow=kind == 1, label=title)
     axis.axhline(1.0, color=style.GREY, lw=0.8, label="free flight")
     axis.set(xscale="log", yscale="log")
-    style.labelled(axis, r"Knudsen number $\lambda/L$", "heat flux over free flight's", legend="lower right")
+    style.label_axes(
+        axis, r"Knudsen number $\lambda/L$", "heat flux over free flight's", legend="lower right"
+    )
 
 
 def _dense(axis: Axes, model: Table, spheres: Table) -> None:
@@ -79,4 +81,4 @@ def _dense(axis: Axes, model: Table, spheres: Table) -> None:
     axis.plot(curve, ratio, color=style.GREY, lw=0.8, label="Erpenbeck & Wood")
     axis.axhline(1.0, color=style.GREY, lw=0.8, ls=":")
     room = (0.95, 1.7)  # for the legend
-    style.labelled(axis, r"packing fraction $\eta$", "over Enskog's", legend="upper left", ylim=room)
+    style.label_axes(axis, r"packing fraction $\eta$", "over Enskog's", legend="upper left", ylim=room)

@@ -27,6 +27,6 @@ def estimators(dataset: xr.Dataset) -> Figure:
     for axis, where in zip(axes, ("all bins", "bins at the walls", "pressure"), strict=True):
         style.level(axis, 1.0)
         axis.set_yscale("log")
-        style.labelled(axis, "packing fraction", f"variance ratio, {where}", legend="upper right")
+        style.label_axes(axis, "packing fraction", f"variance ratio, {where}", legend="upper right")
     style.letters(*axes)
     return figure

@@ -32,14 +32,14 @@ def _profile(axis: Axes, widest: Row) -> None:
     style.level(axis, widest.bulk_density)
     labels = r"distance of centres from contact $z/\sigma$", r"density $\rho\sigma^3$"
     limits = -0.3, min(4.0, widest.place.max())
-    style.labelled(axis, *labels, legend="upper right", xlim=limits, ylim=(0.0, None))
+    style.label_axes(axis, *labels, legend="upper right", xlim=limits, ylim=(0.0, None))
 
 
 def _contact(axis: Axes, slits: Table) -> None:
     style.band(axis, -1.0, 1.0)
     style.level(axis, 0.0)
     style.points(axis, _positions(slits), 100.0 * (contact_ratio(slits) - 1.0), color=style.DATA)
-    style.labelled(axis, y=r"$\rho(0)k_\mathrm{B}T/P-1$  (%)")
+    style.label_axes(axis, y=r"$\rho(0)k_\mathrm{B}T/P-1$  (%)")
 
 
 def _solvation(axis: Axes, slits: Table) -> None:
@@ -53,7 +53,7 @@ def _solvation(axis: Axes, slits: Table) -> None:
         textcoords="offset points", ha="right", va="center",
     )  # fmt: skip
     labels = r"width of the slit $H/\sigma$", r"$(P-P_\mathrm{bulk})\sigma^3/k_\mathrm{B}T$"
-    style.labelled(axis, *labels, legend="upper right")
+    style.label_axes(axis, *labels, legend="upper right")
 
 
 def _positions(slits: Table) -> np.ndarray:

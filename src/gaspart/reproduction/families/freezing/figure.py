@@ -31,7 +31,7 @@ def freezing_discs(dataset: xr.Dataset) -> Figure:
     starts = _starts(dataset)
     _loop(loop, Table(dataset, "packing_fraction"), starts)
     _order(order, starts, 2)
-    style.labelled(order, y=r"$|\langle\psi_6\rangle|$", ylim=(0.0, 1.0))
+    style.label_axes(order, y=r"$|\langle\psi_6\rangle|$", ylim=(0.0, 1.0))
     pairs = style.split(below, len(pictures), 2)
     for k, (picture, (snapshot, scattering)) in enumerate(zip(pictures, pairs, strict=True)):
         label = f"{picture.shown:.3g}"
@@ -39,7 +39,7 @@ def freezing_discs(dataset: xr.Dataset) -> Figure:
         _snapshot(snapshot, picture, label)
         _scattering(scattering, picture)
     end = pictures.distance.max()
-    style.labelled(shells, r"distance $r/\sigma$", "$g(r)$, shifted by 2", xlim=(0.0, end))
+    style.label_axes(shells, r"distance $r/\sigma$", "$g(r)$, shifted by 2", xlim=(0.0, end))
     shells.legend(ncols=len(pictures), loc="upper right", title=r"$\eta$")
     style.letters(loop, order, shells, pairs[0, 0])
     return figure
@@ -54,7 +54,7 @@ def freezing_spheres(dataset: xr.Dataset) -> Figure:
     _coexistence(upper, Row(dataset))
     _residuals(middle, starts)
     _order(order, starts, 3)
-    style.labelled(order, y="global $Q_6$", ylim=(0.0, 0.6), xlim=upper.get_xlim())
+    style.label_axes(order, y="global $Q_6$", ylim=(0.0, 0.6), xlim=upper.get_xlim())
     _profiles(slab, Table(dataset, "half"))
     style.letters(*axes)
     return figure
@@ -101,7 +101,7 @@ def _loop(axis: Axes, states: Table, starts: dict[str, Table]) -> None:
     _draw_published(axis)
     low, high = np.nanmin(states.pressure.value), np.nanmax(states.pressure.value)
     axis.set_ylim(low - 0.1 * (high - low), high + 0.25 * (high - low))
-    style.labelled(axis, y="pressure $P\\sigma^2/k_\\mathrm{B}T$", legend="lower right")
+    style.label_axes(axis, y="pressure $P\\sigma^2/k_\\mathrm{B}T$", legend="lower right")
 
 
 def _draw_published(axis: Axes) -> None:
@@ -168,7 +168,7 @@ def _coexistence(axis: Axes, slab: Row) -> None:
     """Draw the pressure of crystal coexisting with fluid, at the mean of their densities."""
     pressure = Estimate([slab.slab_pressure], [slab.slab_error])
     style.points(axis, [slab.slab_packing_fraction], pressure, kind=6, label="coexistence")
-    style.labelled(axis, y="pressure $P\\sigma^3/k_\\mathrm{B}T$", legend="upper left")
+    style.label_axes(axis, y="pressure $P\\sigma^3/k_\\mathrm{B}T$", legend="upper left")
 
 
 def _residuals(axis: Axes, starts: dict[str, Table]) -> None:
@@ -177,7 +177,7 @@ def _residuals(axis: Axes, starts: dict[str, Table]) -> None:
         finite = side[np.isfinite(side.reference)]
         _points(axis, finite, 100.0 * (finite.Z / finite.reference - 1.0), LOOKS[start])
     labels = r"packing fraction $\eta$", "$Z/Z_\\mathrm{branch}-1$  (%)"
-    style.labelled(axis, *labels, ylim=(-0.5, 0.5))
+    style.label_axes(axis, *labels, ylim=(-0.5, 0.5))
 
 
 def _profiles(axis: Axes, halves: Table) -> None:

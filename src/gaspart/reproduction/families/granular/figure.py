@@ -36,7 +36,7 @@ def _temperatures(axis: Axes, gases: Table) -> None:
         style.points(axis, gas.collisions, gas.translation, kind=kind, label=f"$q={gas.inertia:g}$")
         style.points(axis, gas.collisions, gas.rotation, kind=kind, hollow=True)
     both = r"$T_\mathrm{tr}$ (filled), $T_\mathrm{rot}$ (hollow)"
-    style.labelled(axis, y=both, legend="lower right", xlim=(0.0, s[-1]), ylim=(0.0, 1.05))
+    style.label_axes(axis, y=both, legend="lower right", xlim=(0.0, s[-1]), ylim=(0.0, 1.05))
 
 
 def _differences(axis: Axes, gases: Table) -> None:
@@ -50,7 +50,7 @@ def _differences(axis: Axes, gases: Table) -> None:
         expected = np.exp(-3.0 * q / (1.0 + q) ** 2 * s)
         excess = gas.translation.value - gas.rotation.value - expected
         style.points(axis, s, 100.0 * excess, 100.0 * DIFFERENCE * gas.rotation.error, kind=kind)
-    style.labelled(axis, "collisions per particle $s$", "minus theory (%)")
+    style.label_axes(axis, "collisions per particle $s$", "minus theory (%)")
 
 
 def _ratios(axis: Axes, cooling: Table, equilibrium: Table) -> None:
@@ -68,7 +68,7 @@ def _ratios(axis: Axes, cooling: Table, equilibrium: Table) -> None:
     axis.plot(computed[:, 1], computed[:, 3], "x", color=style.DATA, zorder=5, label="Boltzmann equation")
     axis.set(xlim=(-1.0, 1.0), xticks=np.linspace(-1.0, 1.0, 5), ylim=(0.0, 1.08))
     x, y = r"tangential restitution $\epsilon_\mathrm{t}$", r"steady $T_\mathrm{rot}/T_\mathrm{tr}$"
-    style.labelled(axis, x, y, legend="upper left")
+    style.label_axes(axis, x, y, legend="upper left")
 
 
 def _at_walls(axis: Axes, gases: Table) -> None:
@@ -86,7 +86,7 @@ def _at_walls(axis: Axes, gases: Table) -> None:
         style.points(axis, gas.wall_time, gas.wall_rotation, kind=kind, hollow=True)
     x = r"time $t\,\sqrt{k_\mathrm{B}T/m}/h$ between rough walls"
     y = r"$T_\parallel$ (filled), $T_\mathrm{rot}$ (hollow)"
-    style.labelled(axis, x, y, legend="upper right", xlim=(0.0, fine[-1]), ylim=(0.0, 1.05))
+    style.label_axes(axis, x, y, legend="upper right", xlim=(0.0, fine[-1]), ylim=(0.0, 1.05))
 
 
 def cooling(dataset: xr.Dataset) -> Figure:
@@ -119,7 +119,7 @@ def _haff(axis: Axes, gases: Table) -> None:
                 axis, since, gas.temperature * since**2, kind=kind, hollow=dimension == 3, label=label
             )
     x, y = r"$1+t/t_\mathrm{H}$", r"$T/T_\mathrm{Haff}$"
-    style.labelled(axis, x, y, legend="lower left", columns=2, xscale="log")
+    style.label_axes(axis, x, y, legend="lower left", columns=2, xscale="log")
 
 
 def _rates(axis: Axes, gases: Table) -> None:
@@ -135,7 +135,7 @@ def _rates(axis: Axes, gases: Table) -> None:
         maxwell = (1.0 - own.restitution**2) / dimension
         style.points(axis, own.restitution, own.rate / maxwell, kind=kind, label=PARTICLES[dimension])
     x, y = r"restitution $\epsilon$", r"$-(\mathrm{d}\ln T/\mathrm{d}s)\; d/(1-\epsilon^2)$"
-    style.labelled(axis, x, y, legend="upper right")
+    style.label_axes(axis, x, y, legend="upper right")
 
 
 def _leaving(axis: Axes, gases: Table) -> None:
@@ -155,7 +155,7 @@ def _leaving(axis: Axes, gases: Table) -> None:
         style.points(axis, lost[::4], variance[::4], kind=kind, label=label)
     axis.axvline(10.0, color=style.GREY, linestyle=":", linewidth=0.8, zorder=1)
     axis.set(yscale="log", ylim=(0.6, 300.0), xlim=(0.0, None))
-    style.labelled(axis, r"$(1-\epsilon^2)\, s$", "over the homogeneous gas", legend="upper left")
+    style.label_axes(axis, r"$(1-\epsilon^2)\, s$", "over the homogeneous gas", legend="upper left")
 
 
 def _picture(axis: Axes, particles: Table) -> None:
@@ -171,4 +171,4 @@ def _picture(axis: Axes, particles: Table) -> None:
     )  # fmt: skip
     axis.add_collection(discs)
     axis.set_aspect("equal")
-    style.labelled(axis, r"$x/\sigma$", r"$y/\sigma$", xlim=(0.0, side), ylim=(0.0, side))
+    style.label_axes(axis, r"$x/\sigma$", r"$y/\sigma$", xlim=(0.0, side), ylim=(0.0, side))

@@ -41,12 +41,12 @@ def barometric(ds: xr.Dataset) -> Figure:
     style.points(state, eta, dense.compressibility[dense.used], kind=1, hollow=True, label=label)
     _percent(off, eta, dense.pressure_ratio[dense.used], 1)
     top.set_yscale("log")
-    style.labelled(top, y=r"density $\rho/\bar\rho$", ylim=(0.04, 12.0))
+    style.label_axes(top, y=r"density $\rho/\bar\rho$", ylim=(0.04, 12.0))
     top.legend(loc="upper right", ncol=2, columnspacing=0.8)
-    style.labelled(ratio, y=r"$\rho/\rho_\mathrm{th} - 1$ (%)")
-    style.labelled(warm, "height $z$ (length)", r"$T(z)/T - 1$ (%)")
-    style.labelled(state, y=r"$Z = P/\rho kT$", legend="upper left")
-    style.labelled(off, r"packing fraction $\eta$", r"$Z/Z_\mathrm{ref} - 1$ (%)")
+    style.label_axes(ratio, y=r"$\rho/\rho_\mathrm{th} - 1$ (%)")
+    style.label_axes(warm, "height $z$ (length)", r"$T(z)/T - 1$ (%)")
+    style.label_axes(state, y=r"$Z = P/\rho kT$", legend="upper left")
+    style.label_axes(off, r"packing fraction $\eta$", r"$Z/Z_\mathrm{ref} - 1$ (%)")
     if of_source:
         _source_columns(axes[5], axes[6], of_source)
     style.letters(top, ratio, warm, state, *axes[5:6])
@@ -60,9 +60,9 @@ def _source_columns(top: Axes, bottom: Axes, columns: list[Row]) -> None:
         _density(top, row, kind, None if kind > 2 else "hydrostatics", name)
         _temperature(bottom, row, kind)
     top.set_ylim(0.0)
-    style.labelled(top, y=r"density $\rho/\bar\rho$", legend="upper right")
+    style.label_axes(top, y=r"density $\rho/\bar\rho$", legend="upper right")
     label = "height $z$ (length) in the source's column"
-    style.labelled(bottom, label, r"$T(z)/T - 1$ (%)", ylim=(-6.0, 12.0))
+    style.label_axes(bottom, label, r"$T(z)/T - 1$ (%)", ylim=(-6.0, 12.0))
 
 
 def separation(ds: xr.Dataset) -> Figure:
@@ -81,7 +81,7 @@ def separation(ds: xr.Dataset) -> Figure:
                 ideal = _ideal(row, kind) / row.mean_density
                 axis.plot(row.height, ideal, color=style.COLOURS[kind], ls=":", label=f"{name} if ideal")
         axis.set_yscale("log")
-        style.labelled(axis, "height $z$ (length)", r"density $\rho_i/\bar\rho$", ylim=(0.01, 20.0))
+        style.label_axes(axis, "height $z$ (length)", r"density $\rho_i/\bar\rho$", ylim=(0.01, 20.0))
         axis.legend(loc="upper right", ncol=2, columnspacing=0.8)
     _exchange(axes[2], axes[3], columns)
     for axis, row in zip(axes[4:], of_source, strict=True):
@@ -103,8 +103,10 @@ def _exchange(top: Axes, bottom: Axes, columns: list[Row]) -> None:
         style.points(top, height, ratio, kind=kind, hollow=True, label=row.column)
         top.plot(height, expected, color=style.COLOURS[kind], zorder=4)
         style.points(bottom, height, (ratio.value - expected) / ratio.error, kind=kind, markersize=2.5)
-    style.labelled(top, y=r"$\ln(\rho_\mathrm{heavy}/\rho_\mathrm{light})$", legend="upper right")
-    style.labelled(bottom, "height $z$ (length)", r"residual ($\sigma$)", ylim=(-4.5, 4.5), yticks=[-3, 0, 3])
+    style.label_axes(top, y=r"$\ln(\rho_\mathrm{heavy}/\rho_\mathrm{light})$", legend="upper right")
+    style.label_axes(
+        bottom, "height $z$ (length)", r"residual ($\sigma$)", ylim=(-4.5, 4.5), yticks=[-3, 0, 3]
+    )
 
 
 def _shares(axis: Axes, row: Row) -> None:
@@ -119,7 +121,7 @@ def _shares(axis: Axes, row: Row) -> None:
     light, heavy = row.hydrostatic
     axis.plot(row.height, light / (light + heavy), color=style.REFERENCE, label="equilibrium at its $T$")
     label = "height $z$ (length) in the source's mixture"
-    style.labelled(axis, label, "share of light discs", "upper left", ylim=(0.0, 1.0))
+    style.label_axes(axis, label, "share of light discs", "upper left", ylim=(0.0, 1.0))
 
 
 def _select_columns(ds: xr.Dataset, *names: str) -> list[Row]:
@@ -171,9 +173,9 @@ def heat_capacity(ds: xr.Dataset) -> Figure:
         look: dict = {"kind": kind, "hollow": bool(kind)}
         style.points(top, at, capacity, **look, label=label)
         style.points(bottom, at, 100.0 * (capacity / expected - 1.0), **look)
-    style.labelled(top, y=r"heat capacity $C_V/Nk$", legend="lower right", ylim=(0.9, 2.1))
+    style.label_axes(top, y=r"heat capacity $C_V/Nk$", legend="lower right", ylim=(0.9, 2.1))
     height, deviation = r"height of the box $x = mgH/kT$", "deviation from\nexact (%)"
-    style.labelled(bottom, height, deviation, xlim=(-0.03 * end, end), ylim=(-4.5, 4.5))
+    style.label_axes(bottom, height, deviation, xlim=(-0.03 * end, end), ylim=(-4.5, 4.5))
     style.letters(top, bottom)
     return figure
 

@@ -38,9 +38,9 @@ def heat_conduction_gas(ds: xr.Dataset) -> Figure:
     style.level(off, 0.0)
     for wall in (gases.hot[0], gases.cold[0]):
         warm.axhline(wall, color=style.GREY, lw=0.6, ls=":")
-    style.labelled(warm, y="temperature $T$", legend="upper right")
-    style.labelled(off, y=r"$T/T_\mathrm{th}-1$ (%)", ylim=(-2.5, 2.5))
-    style.labelled(dense, "position between the walls $x/L$", r"density $n/\bar n$")
+    style.label_axes(warm, y="temperature $T$", legend="upper right")
+    style.label_axes(off, y=r"$T/T_\mathrm{th}-1$ (%)", ylim=(-2.5, 2.5))
+    style.label_axes(dense, "position between the walls $x/L$", r"density $n/\bar n$")
     style.letters(flux, share, start, warm, dense)
     return figure
 
@@ -63,7 +63,7 @@ def _fluxes(axis: Axes, gases: Table) -> None:
     axis.set(xscale="log", yscale="log", ylim=(0.2, 12.0))
     axis.tick_params(axis="x", which="minor", labelbottom=False)
     labels = r"number density $n\sigma^3$", r"heat flux $q$ ($10^{-3}$ reduced units)"
-    style.labelled(axis, *labels)
+    style.label_axes(axis, *labels)
     axis.legend(loc="lower right", ncol=2, columnspacing=0.8)
 
 
@@ -89,7 +89,7 @@ def _shares(axis: Axes, gases: Table) -> None:
     axis.set(xscale="log", xlim=(0.02, 40.0))
     axis.set_xticks([0.1, 1.0, end], ["0.1", "1", r"$\infty$"])
     axis.set_yticks([0.0, 0.5, 2.0 / 3.0, 1.0], ["0", "1/2", "2/3", "1"])
-    style.labelled(axis, r"Knudsen number $l/L$", "flux / that of free flight", ylim=(0.0, 1.6))
+    style.label_axes(axis, r"Knudsen number $l/L$", "flux / that of free flight", ylim=(0.0, 1.6))
     axis.legend(loc="upper right", ncol=2, columnspacing=0.8)
 
 
@@ -100,7 +100,7 @@ def _approach(axis: Axes, gas: Row) -> None:
     theory: dict[str, Any] = {"color": style.DATA, "zorder": 4, "label": "heat equation"}
     axis.plot(gas.approach_time, gas.expected_approach, **theory)
     difference = r"$T_\mathrm{hot\,half}-T_\mathrm{cold\,half}$"
-    style.labelled(axis, "time $t$ (reduced units)", difference, "lower right")
+    style.label_axes(axis, "time $t$ (reduced units)", difference, "lower right")
 
 
 def _profiles(warm: Axes, off: Axes, dense: Axes, gas: Row, kind: int) -> None:
@@ -133,17 +133,17 @@ def heat_conduction_metal(ds: xr.Dataset) -> Figure:
         for wall in (metal.hot, metal.cold):
             top.axhline(wall, color=style.GREY, lw=0.6, ls=":")
     labels = "position between the walls $x/L$", r"$T$ of electrons, $\langle E\rangle$ of modes"
-    style.labelled(top, *labels, legend="upper right")
+    style.label_axes(top, *labels, legend="upper right")
     still = points[points.hot == points.cold]
     warm, electrons = still.hot, points.electrons_part[0]
     line = np.array([0.0, 1.1 * warm.max()])
     bottom.plot(line, line, color=style.REFERENCE, label=r"$(N_e d/2 + N_s)\,kT$")
     style.points(bottom, warm, still.energy_ratio * warm, kind=1, label="electrons and modes")
     bottom.plot(line, electrons * line, color=style.GREY, ls="--", label="frozen modes")
-    style.labelled(bottom, y=rf"energy / {points.expected[0]:g}", legend="upper left")
+    style.label_axes(bottom, y=rf"energy / {points.expected[0]:g}", legend="upper left")
     style.level(off, 0.0)
     style.points(off, warm, 100.0 * (still.energy_ratio - 1.0), kind=1)
     style.points(off, 1.02 * warm, 100.0 * (still.mode_ratio - 1.0), kind=0, hollow=True)
-    style.labelled(off, "temperature of both walls $kT$", "deviation (%)", ylim=(-3.5, 3.5))
+    style.label_axes(off, "temperature of both walls $kT$", "deviation (%)", ylim=(-3.5, 3.5))
     style.letters(top, bottom)
     return figure

@@ -43,7 +43,7 @@ def fill_failures(dataset: xr.Dataset) -> Figure:
         *upper.get_legend_handles_labels(), loc="outside upper center", ncols=columns, columnspacing=1.0
     )
     axes = "(attempts $\\times\\ v/V)^{-1/d}$", "packing fraction $\\eta$"
-    style.labelled(lower, *axes, xlim=(-0.008, 0.47), ylim=(0.2, 0.58))
+    style.label_axes(lower, *axes, xlim=(-0.008, 0.47), ylim=(0.2, 0.58))
     style.letters(upper, middle, lower)
     return figure
 
@@ -66,7 +66,7 @@ def _limits(axis: Axes) -> None:
         axis.text(fraction + shift, 0.013, text, color=colour, rotation=90, ha=side, va="bottom")
     axis.set_yscale("log")
     labels = "packing fraction $\\eta$", "failed attempts per particle"
-    style.labelled(axis, *labels, xlim=(0.0, 0.59), ylim=(0.01, 6e6))
+    style.label_axes(axis, *labels, xlim=(0.0, 0.59), ylim=(0.01, 6e6))
 
 
 def _low_density(axis: Axes) -> None:
@@ -77,7 +77,7 @@ def _low_density(axis: Axes) -> None:
     axis.text(0.036, 0.48, "$2^3\\eta+\\ldots$", ha="right")
     axis.text(0.058, 0.03, "$2^2\\eta+\\ldots$", ha="right")
     labels = "packing fraction $\\eta$", "failures per particle"
-    style.labelled(axis, *labels, xlim=(0.0, 0.06), ylim=(0.0, 0.85))
+    style.label_axes(axis, *labels, xlim=(0.0, 0.06), ylim=(0.0, 0.85))
 
 
 def _saturation(axis: Axes, fill: Row, kind: int) -> None:

@@ -50,4 +50,4 @@ def _ratios(axis: Axes, values: Table) -> None:
             alpha=0.35,
         )
         style.points(axis, eta, 100.0 * (part.ours / theirs - 1.0), kind=kind, label=label)
-    style.labelled(axis, r"packing fraction $\eta$", "ours over others' $-1$  (%)", legend="best")
+    style.label_axes(axis, r"packing fraction $\eta$", "ours over others' $-1$  (%)", legend="best")

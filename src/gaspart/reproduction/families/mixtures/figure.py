@@ -39,9 +39,9 @@ def mixture_state(dataset: xr.Dataset) -> Figure:
     _by_ratio(discs, two, 2)
     _by_polydispersity(many, gases[np.isfinite(gases.polydispersity)])
     _pairs(contact, two, "contact", theory.mixture_contact_values)
-    style.labelled(contact, y=r"contact value $g_{ij}$, spheres")
+    style.label_axes(contact, y=r"contact value $g_{ij}$, spheres")
     _pairs(rate, two, "rate", theory.mixture_collision_rates)
-    style.labelled(rate, y=r"rate $\nu_{ij}\,\sigma_1\sqrt{m/k_\mathrm{B}T}$, spheres", yscale="log")
+    style.label_axes(rate, y=r"rate $\nu_{ij}\,\sigma_1\sqrt{m/k_\mathrm{B}T}$, spheres", yscale="log")
     style.letters(*axes)
     return figure
 
@@ -86,7 +86,7 @@ def _by_ratio(axis: Axes, two: Table, dimension: int) -> None:
             _theories(axis, _RATIOS, spheres, kind, named=kind == 0)
     axis.axhline(0.0, color=style.GREY, lw=0.8, label="BMCSL" if dimension == 3 else "SYH 1999, 2002")
     over = f"{_OVER[dimension]}, {PARTICLES[dimension]}"
-    style.labelled(axis, r"size ratio $\sigma_2/\sigma_1$", over, legend="best")
+    style.label_axes(axis, r"size ratio $\sigma_2/\sigma_1$", over, legend="best")
 
 
 def _by_density(axis: Axes, two: Table) -> None:
@@ -101,7 +101,7 @@ def _by_density(axis: Axes, two: Table) -> None:
             _theories(axis, eta, [(fraction, (1.0, 0.5), (0.5, 0.5)) for fraction in eta], kind)
     axis.axhline(0.0, color=style.GREY, lw=0.8)
     x = r"packing fraction $\eta$, size ratio 0.5"
-    style.labelled(axis, x, "$Z$ over theory $-1$ (%)", legend="best", xlim=(0.0, None))
+    style.label_axes(axis, x, "$Z$ over theory $-1$ (%)", legend="best", xlim=(0.0, None))
 
 
 def _by_polydispersity(axis: Axes, many: Table) -> None:
@@ -119,7 +119,7 @@ def _by_polydispersity(axis: Axes, many: Table) -> None:
             ]
             _theories(axis, spread, spheres, kind)
     axis.axhline(0.0, color=style.GREY, lw=0.8)
-    style.labelled(axis, "polydispersity of the radii", "$Z$ over theory $-1$ (%)", legend="best")
+    style.label_axes(axis, "polydispersity of the radii", "$Z$ over theory $-1$ (%)", legend="best")
 
 
 def _pairs(axis: Axes, two: Table, name: str, predicted: Callable[..., np.ndarray]) -> None:
@@ -139,4 +139,4 @@ def _pairs(axis: Axes, two: Table, name: str, predicted: Callable[..., np.ndarra
             axis.plot(_RATIOS, curves[:, i, j], dashes, color=style.COLOURS[n], lw=0.9, label=label)
     for n, pair in enumerate(gases.pair):
         style.points(axis, gases.size_ratio, getattr(gases, name)[:, n], kind=n, label=pair)
-    style.labelled(axis, r"size ratio $\sigma_2/\sigma_1$", legend="best")
+    style.label_axes(axis, r"size ratio $\sigma_2/\sigma_1$", legend="best")

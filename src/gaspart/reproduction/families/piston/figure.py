@@ -29,13 +29,13 @@ def piston(ds: xr.Dataset) -> Figure:
     for gas in gases[:1]:
         style.points(upper, _DOUBLED, mean_of(gas.speed**2), kind=4, label="free expansion")
     labels = r"volume $V/V_0$", r"temperature $T/T_0$"
-    style.labelled(upper, *labels, legend="best", xscale="log", yscale="log")
+    style.label_axes(upper, *labels, legend="best", xscale="log", yscale="log")
     style.level(lower, 1.0)
     for dimension, part in states.by("dimension"):
         _draw_states(middle, lower, part, dimension)
-    style.labelled(middle, y=r"$P/nk_{\mathrm{B}}T$ / reference", legend="best")
+    style.label_axes(middle, y=r"$P/nk_{\mathrm{B}}T$ / reference", legend="best")
     labels = r"packing fraction $\eta$", r"variance of $V$ / theory"
-    style.labelled(lower, *labels, legend="best", xlim=(0.0, None))
+    style.label_axes(lower, *labels, legend="best", xlim=(0.0, None))
     style.letters(upper, middle, lower)
     return figure
 

@@ -32,10 +32,10 @@ def radius_grid(dataset: xr.Dataset) -> Figure:
         style.points(middle, own.radius, sigmas, np.ones(sigmas.size), kind=kind)
         _event_costs(lower, own, kind)
         _step_costs(lower, step[step.series == name], kind)
-    style.labelled(upper, y="compressibility factor $Z$", legend="upper left")
+    style.label_axes(upper, y="compressibility factor $Z$", legend="upper left")
     half = max(4.0, widest + 1.5)
-    style.labelled(middle, RADIUS, "$(Z-Z_\\mathrm{ref})/\\sigma$", ylim=(-half, half))
-    style.labelled(lower, RADIUS, "counted work", yscale="log", ylim=(0.2, 6e2))
+    style.label_axes(middle, RADIUS, "$(Z-Z_\\mathrm{ref})/\\sigma$", ylim=(-half, half))
+    style.label_axes(lower, RADIUS, "counted work", yscale="log", ylim=(0.2, 6e2))
     _labels(lower, event, step)
     style.letters(upper, middle, lower)
     return figure

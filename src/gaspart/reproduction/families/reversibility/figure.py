@@ -42,7 +42,7 @@ def _echoes(axis: Axes, runs: Table) -> None:
     for name, line in LINES_OF_ENGINES.values():
         axis.plot([], [], color=style.GREY, ls=line, label=name)
     labels = "collisions per particle before the reversal", r"echo: distance / $\sigma$"
-    style.labelled(axis, *labels, xscale="log", yscale="log", ylim=(1e-20, 1e3))
+    style.label_axes(axis, *labels, xscale="log", yscale="log", ylim=(1e-20, 1e3))
     axis.legend(title=r"$\eta$", ncols=2, loc="lower right", columnspacing=0.6, handletextpad=0.4)
 
 
@@ -54,7 +54,7 @@ def _growth(axis: Axes, exact: Table) -> None:
         label = "tangent space" if kind else None
         exponent = runs.exponent
         axis.errorbar(eta, exponent.value, exponent.error, color=style.GREY, zorder=1, label=label)
-    style.labelled(axis, ETA, "growth per collision", xscale="log", yscale="log")
+    style.label_axes(axis, ETA, "growth per collision", xscale="log", yscale="log")
     if exact:
         eta = exact.packing_fraction
         axis.set_xlim(0.5 * eta.min(), 2.0 * eta.max())
@@ -68,5 +68,5 @@ def _memory(axis: Axes, runs: Table) -> None:
             part = of_engine[of_engine.dimension == dimension]
             look: dict[str, Any] = {"hollow": dimension == 2, "label": name if dimension == 3 else None}
             style.points(axis, part.packing_fraction, part.memory, kind=kind, **look)
-    style.labelled(axis, ETA, "memory (collisions)", xscale="log", yscale="log")
+    style.label_axes(axis, ETA, "memory (collisions)", xscale="log", yscale="log")
     axis.legend(title="spheres; discs hollow")

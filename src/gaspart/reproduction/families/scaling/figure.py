@@ -27,12 +27,12 @@ def naive_scaling(ds: xr.Dataset) -> Figure:
     top.plot(line, law * _MS, color=style.REFERENCE, label=r"$\frac{1}{2}N(N-1)$ tests, each once")
     style.points(top, count, gases.seconds * _MS, color=style.DATA, label="measured")
     top.set(xscale="log", yscale="log")
-    style.labelled(top, y="time per step (ms)", legend="upper left")
+    style.label_axes(top, y="time per step (ms)", legend="upper left")
     each = gases.seconds * (_NS / gases.pair_tests)
     style.level(bottom, test * _NS)
     style.points(bottom, count, each, color=style.DATA)
     high = 1.6 * each.value.max()
-    style.labelled(bottom, "number of particles $N$", "per test (ns)", ylim=(0.0, high))
+    style.label_axes(bottom, "number of particles $N$", "per test (ns)", ylim=(0.0, high))
     style.letters(top, bottom)
     return figure
 
@@ -70,7 +70,7 @@ def _scan_time(axis: Axes, scan: Table, near: Table) -> None:
     source = scan.source_boxes_per_particle * particles
     axis.axvline(source, color=_SOURCE, linestyle="--", ymax=0.45, label="F & M")
     axis.set(xscale="log", yscale="log")
-    style.labelled(axis, y="time per particle and step (ns)", legend="upper right")
+    style.label_axes(axis, y="time per particle and step (ns)", legend="upper right")
 
 
 def _scan_work(axis: Axes, scan: Table, near: Table) -> None:
@@ -105,7 +105,7 @@ def _round_widths(axis: Axes, containers: Table) -> None:
     style.points(axis, positions[is_round], ratio[is_round], kind=1, label=f"boxes of width {widths}")
     axis.set_xticks(positions, [str(int(n)) for n in per_side])
     axis.tick_params(axis="x", top=False)
-    style.labelled(axis, "boxes per side", f"time, side {first:g} / {second:g}", "upper left")
+    style.label_axes(axis, "boxes per side", f"time, side {first:g} / {second:g}", "upper left")
 
 
 def _sectors(axis: Axes, scan: Table) -> None:
@@ -135,14 +135,14 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
     plateaus = gases.plateau_boxes, gases.plateau_low, gases.plateau_high
     top.hlines(*plateaus, color=_SOURCE, lw=2.0, label="F & M: plateaus")
     top.set(xscale="log", yscale="log", ylim=(2e3, 1e8))
-    style.labelled(top, "number of particles $N$", "ideal number of boxes", "lower right")
+    style.label_axes(top, "number of particles $N$", "ideal number of boxes", "lower right")
     for kind, gas in enumerate(gases[[1, *map(int, gases.source_gas)]]):
         label = f"$N = {_thousands(gas.count)}$, $r = {gas.radius:g}$"
         time = gas.seconds / np.nanmin(gas.seconds.value)
         style.points(bottom, gas.boxes_per_particle, time, kind=kind, linestyle="-", label=label)
     bottom.axvspan(7.0, 10.0, **source)
     bottom.set(xscale="log", ylim=(0.9, 4.5))
-    style.labelled(bottom, "boxes per particle", "time over the least", "upper center")
+    style.label_axes(bottom, "boxes per particle", "time over the least", "upper center")
     style.letters(top, bottom)
     return figure
 
@@ -194,7 +194,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
     top.set(xscale="log", yscale="log")
     top.set_xlim(right=50.0 * naive.extrapolated_count)  # room for the times at the ends of the lines
     number = "number of particles $N$"
-    style.labelled(top, number, "time per step (s)", "upper left")
+    style.label_axes(top, number, "time per step (s)", "upper left")
     middle.set(xscale="log", yscale="log", ylabel="time per particle (ns)", ylim=(1.0, None))
     bottom.set(yscale="log", ylabel="per particle", xlabel=number, ylim=(0.02, 100.0))
     bottom.text(0.02, 0.85, "boxes searched", transform=bottom.transAxes)

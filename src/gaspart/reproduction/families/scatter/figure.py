@@ -43,7 +43,7 @@ def _distribution(axis: Axes, alone: np.ndarray, mean: Estimate) -> None:
             alpha=0.5,
             label=f"{alone.size}, rms {rms:.2f},\nmean {mean}",
         )
-    style.labelled(axis, "deviation / standard deviations", "density", "upper right", ylim=(0.0, 0.6))
+    style.label_axes(axis, "deviation / standard deviations", "density", "upper right", ylim=(0.0, 0.6))
 
 
 def _figures(axis: Axes, claims: Table, figures: Table) -> None:
@@ -65,4 +65,4 @@ def _figures(axis: Axes, claims: Table, figures: Table) -> None:
             )  # fmt: skip
     axis.set_yticks(range(len(figures)), figures.name)
     axis.set_ylim(max(1, len(figures)) - 0.5, -0.5)
-    style.labelled(axis, "deviation / standard deviations", xlim=(-FURTHEST - 0.2, FURTHEST + 0.2))
+    style.label_axes(axis, "deviation / standard deviations", xlim=(-FURTHEST - 0.2, FURTHEST + 0.2))

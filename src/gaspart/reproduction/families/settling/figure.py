@@ -38,15 +38,15 @@ def _piles(energies: Axes, contacts: Axes, piles: Table) -> None:
         contacts.plot(pile.time, pile.contacts, color=colour)
     energies.set_yscale("log")
     limits = 0.0, np.nanmax(piles.time)
-    style.labelled(energies, TIME, "kinetic energy of a disc", "upper right", xlim=limits)
-    style.labelled(contacts, TIME, "contacts per disc", xlim=limits, ylim=(0.0, 2.4))
+    style.label_axes(energies, TIME, "kinetic energy of a disc", "upper right", xlim=limits)
+    style.label_axes(contacts, TIME, "contacts per disc", xlim=limits, ylim=(0.0, 2.4))
 
 
 def _discs_left(axis: Axes, flows: Table) -> None:
     for kind, flow in enumerate(flows):
         label = rf"$D={flow.width:.3g}\,d$"
         axis.plot(flow.flow_time, flow.left, color=style.COLOURS[kind], label=label)
-    style.labelled(
+    style.label_axes(
         axis, TIME, "discs left in the hopper", "upper right",
         xlim=(0.0, np.nanmax(flows.flow_time)), ylim=(0.0, 1.15 * np.nanmax(flows.left)),
     )  # fmt: skip
@@ -64,4 +64,4 @@ def _rates(axis: Axes, flows: Table) -> None:
     axis.plot(line, law, color=style.REFERENCE, zorder=1, label="slope 3/2 (Beverloo)")
     style.points(axis, apart, flows.rate, color=style.DATA, label="measured")
     axis.set(xscale="log", yscale="log")
-    style.labelled(axis, rf"$D/d-k$, $k={offset:.2f}$", r"rate of flow / $\sqrt{g/d}$", "upper left")
+    style.label_axes(axis, rf"$D/d-k$, $k={offset:.2f}$", r"rate of flow / $\sqrt{g/d}$", "upper left")

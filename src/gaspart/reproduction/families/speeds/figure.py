@@ -40,8 +40,8 @@ def speed_relaxation(dataset: xr.Dataset) -> Figure:
     for axis in axes[1:]:
         axis.set_xlim(0.0, longest)
     y = r"kurtosis $\langle v^4\rangle/\langle v^2\rangle^2$"
-    style.labelled(kurtosis, y=y, legend="lower right", ylim=(0.97, 1.76))
-    style.labelled(unhit, y="fraction never hit", legend="lower left")
+    style.label_axes(kurtosis, y=y, legend="lower right", ylim=(0.97, 1.76))
+    style.label_axes(unhit, y="fraction never hit", legend="lower left")
     style.letters(histograms, kurtosis, unhit)
     return figure
 
@@ -66,7 +66,7 @@ def _histograms(axis: Axes, engines: Table) -> None:
     peak = engines.density.value.max()
     axis.annotate("never hit", (0.97, 0.8 * peak), (0.05, 9.0), arrowprops={"arrowstyle": "-", "lw": 0.6})
     axis.set(yscale="log", ylim=(2e-3, 20.0), xlim=(0.0, edges[-1]))
-    style.labelled(axis, SPEED, "probability density", legend="upper right")
+    style.label_axes(axis, SPEED, "probability density", legend="upper right")
 
 
 def _compare(
@@ -81,7 +81,7 @@ def _compare(
         style.points(top, s, values, kind=kind, hollow=kind > 0, label=label)
         style.points(bottom, s, (values.value - curve(s)) / values.error, kind=kind, hollow=kind > 0)
     x = r"collisions per particle $s = 2N_\mathrm{coll}/N$"
-    style.labelled(bottom, x, SIGMA, ylim=(-4.5, 4.5), yticks=[-3, 0, 3])
+    style.label_axes(bottom, x, SIGMA, ylim=(-4.5, 4.5), yticks=[-3, 0, 3])
 
 
 def speed_distribution_spheres(dataset: xr.Dataset) -> Figure:
@@ -119,10 +119,10 @@ def _distribution(gases: Table) -> Figure:
     for axis in (residual, difference):
         axis.set(xlim=(0.0, end))
     top = (0.0, 1.5 * values.max())
-    style.labelled(density, y="probability density", legend="upper right", ylim=top)
-    style.labelled(residual, SPEED, SIGMA, ylim=(-4.5, 4.5), yticks=[-3, 0, 3])
+    style.label_axes(density, y="probability density", legend="upper right", ylim=top)
+    style.label_axes(residual, SPEED, SIGMA, ylim=(-4.5, 4.5), yticks=[-3, 0, 3])
     decades = (0.2 * values[values > 0.0].min(), 3.0 * values.max())
-    style.labelled(tail, y="probability density", yscale="log", ylim=decades)
-    style.labelled(difference, SPEED, r"$\sqrt{n}\times$ difference", ylim=(-2.0, 2.0), yticks=[-1, 0, 1])
+    style.label_axes(tail, y="probability density", yscale="log", ylim=decades)
+    style.label_axes(difference, SPEED, r"$\sqrt{n}\times$ difference", ylim=(-2.0, 2.0), yticks=[-1, 0, 1])
     style.letters(density, tail, difference)
     return figure

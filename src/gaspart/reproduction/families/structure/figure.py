@@ -35,10 +35,10 @@ def structure(ds: xr.Dataset) -> Figure:
         style.band(axis, 0.99, 1.01)
         style.level(axis, 1.0)
     density = r"packing fraction $\eta$"
-    style.labelled(g, r"distance $r/\sigma$", "$g(r)$", "best", xlim=(0.9, None))
-    style.labelled(s, r"wave number $k\sigma$", "$S(k)$", "best", xlim=(0.0, None))
-    style.labelled(zero, density, r"$S(0)$ over $kT\,\mathrm{d}\rho/\mathrm{d}P$", "best", xlim=(0.0, None))
-    style.labelled(contact, density, r"$g(\sigma)$ over that from $Z$", "best", xlim=(0.0, None))
+    style.label_axes(g, r"distance $r/\sigma$", "$g(r)$", "best", xlim=(0.9, None))
+    style.label_axes(s, r"wave number $k\sigma$", "$S(k)$", "best", xlim=(0.0, None))
+    style.label_axes(zero, density, r"$S(0)$ over $kT\,\mathrm{d}\rho/\mathrm{d}P$", "best", xlim=(0.0, None))
+    style.label_axes(contact, density, r"$g(\sigma)$ over that from $Z$", "best", xlim=(0.0, None))
     style.letters(*axes)
     return figure
 
@@ -93,11 +93,11 @@ def chemical_potential(ds: xr.Dataset) -> Figure:
             _chance(chance, fluids, kind)
             _partition(partition, fluids, kind)
     density = r"packing fraction $\eta$"
-    style.labelled(upper, y=r"$\mu_\mathrm{excess}/kT$", legend="best")
-    style.labelled(ratio, density, "insertion / integral", xlim=(0.0, None), ylim=(0.97, 1.03))
+    style.label_axes(upper, y=r"$\mu_\mathrm{excess}/kT$", legend="best")
+    style.label_axes(ratio, density, "insertion / integral", xlim=(0.0, None), ylim=(0.97, 1.03))
     chance.set(yscale="log", xlim=(0.0, None), ylim=(1e-16, 3.0))  # with room for the legend
-    style.labelled(chance, density, "chance of an insertion", "lower left")
-    style.labelled(partition, density, r"$-\ln Q/N$", "best", xlim=(0.0, None))
+    style.label_axes(chance, density, "chance of an insertion", "lower left")
+    style.label_axes(partition, density, r"$-\ln Q/N$", "best", xlim=(0.0, None))
     style.letters(*axes)
     return figure
 

@@ -93,7 +93,7 @@ def map_of(axis: Axes, ds: xr.Dataset) -> None:
     percent = [f"{100.0 * value:g}" for value in gas.accuracy]
     axis.set_yticks(np.arange(len(percent)) + 0.5, percent)
     axis.tick_params(length=0)
-    style.labelled(axis, r"packing fraction $\eta$", "accuracy (%)")
+    style.label_axes(axis, r"packing fraction $\eta$", "accuracy (%)")
 
 
 def _fraction(value: float) -> str:

@@ -46,7 +46,7 @@ def logarithmic_growth(ds: xr.Dataset) -> Figure:
             style.points(axis, time, gas[name][late], kind=kind, label=f"{gas.count} discs")
             axis.plot(time, gas[f"{name}_modes"][late], color=style.COLOURS[kind], lw=1.2)
         axis.plot([], [], color=style.GREY, lw=1.2, label="modes of the container")
-        style.labelled(axis, r"collisions per particle $\nu t$", f"{label}, discs", "lower right")
+        style.label_axes(axis, r"collisions per particle $\nu t$", f"{label}, discs", "lower right")
     style.letters(*axes)
     return figure
 
@@ -74,7 +74,7 @@ def _density(axis: Axes, gases: Table) -> None:
         style.points(axis, eta, gases.bulk, kind=2, label="bulk, Green-Kubo")
     axis.axhline(1.0, color=style.GREY, lw=0.8, label="Enskog")
     axis.set_xlim(0.0, 1.1 * eta.max())
-    style.labelled(axis, r"packing fraction $\phi$", legend="upper left")
+    style.label_axes(axis, r"packing fraction $\phi$", legend="upper left")
 
 
 def _running(axis: Axes, gases: Table) -> None:
@@ -83,4 +83,4 @@ def _running(axis: Axes, gases: Table) -> None:
         style.points(axis, gas.time, gas.running, kind=kind, label=rf"$\phi={gas.packing_fraction:.3g}$")
     axis.axhline(1.0, color=style.GREY, lw=0.8)
     axis.set_xlim(0.0)
-    style.labelled(axis, r"collisions per particle $\nu t$", legend="lower right", columns=2)
+    style.label_axes(axis, r"collisions per particle $\nu t$", legend="lower right", columns=2)

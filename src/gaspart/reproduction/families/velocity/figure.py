@@ -56,7 +56,7 @@ def _tails(axis: Axes, gases: Table) -> None:
     axis.plot([], [], color=style.DATA, label="mode coupling")
     axis.set(xscale="log", yscale="log", xlim=(0.8, 65.0), ylim=(1e-3, 1.0))
     _integer_ticks(axis)
-    style.labelled(axis, S, r"$C=\langle v(0)v(t)\rangle/\langle v^2\rangle$", "lower left")
+    style.label_axes(axis, S, r"$C=\langle v(0)v(t)\rangle/\langle v^2\rangle$", "lower left")
 
 
 def _starts(axis: Axes, gases: Table) -> None:
@@ -70,7 +70,7 @@ def _starts(axis: Axes, gases: Table) -> None:
     axis.set_yscale("log")
     axis.set_yticks((0.2, 0.5, 1.0), ("0.2", "0.5", "1"))
     axis.minorticks_off()
-    style.labelled(axis, S, "$C$", "upper right" if gases else "", xlim=(0.0, 2.0))
+    style.label_axes(axis, S, "$C$", "upper right" if gases else "", xlim=(0.0, 2.0))
 
 
 def _ratios(axis: Axes, gases: Table) -> None:
@@ -95,7 +95,7 @@ def _ratios(axis: Axes, gases: Table) -> None:
         axis.axvspan(*window, color=style.GREY, alpha=0.18, lw=0)
     axis.set(xscale="log", xlim=(5.0, 65.0), ylim=(0.4, 1.8))
     _integer_ticks(axis)
-    style.labelled(axis, S, "$C-1/N$ over modes")
+    style.label_axes(axis, S, "$C-1/N$ over modes")
 
 
 def _integer_ticks(axis: Axes) -> None:

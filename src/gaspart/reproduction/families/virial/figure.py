@@ -81,7 +81,7 @@ def _state(axis: Axes, gases: Table, grid: np.ndarray, lines: Lines, sums: dict,
             labelled = curve[-1]
             _name(axis, order, (grid[-1], curve[-1]), (2, 0), va="center", annotation_clip=True)
     style.points(axis, gases.packing_fraction, gases.Z.value, color=style.DATA, label="measured")
-    style.labelled(axis, y="compressibility factor $Z$", legend="upper left", ylim=(0.8, ceiling))
+    style.label_axes(axis, y="compressibility factor $Z$", legend="upper left", ylim=(0.8, ceiling))
 
 
 def _name(axis: Axes, order: int, position: tuple, apart: tuple[int, int], **options: object) -> None:
@@ -111,7 +111,7 @@ def _residuals(
     ratio = (gases.Z + Estimate(0.0, gases.reference.error)) / gases.reference.value
     style.points(axis, gases.packing_fraction, 100.0 * (ratio - 1.0), color=style.DATA)
     labels = "packing fraction $\\eta$", "$Z/Z_\\mathrm{ref}-1$  (%)"
-    style.labelled(axis, *labels, ylim=(-percent, percent))
+    style.label_axes(axis, *labels, ylim=(-percent, percent))
 
 
 def _coefficients(axis: Axes, fits: Table) -> None:
@@ -136,5 +136,5 @@ def _coefficients(axis: Axes, fits: Table) -> None:
     names = [f"$B_2$–$B_{fit.free}$\n$\\leq${fit.up_to:g}\n{'held' if fit.held else 'zero'}" for fit in fits]
     axis.set_xticks(positions, names)
     axis.tick_params(axis="x", length=0)
-    style.labelled(axis, "free coefficients, largest $\\eta$, higher coefficients", "deviation / required")
+    style.label_axes(axis, "free coefficients, largest $\\eta$, higher coefficients", "deviation / required")
     axis.legend(ncols=3, loc="upper center", columnspacing=1.0, handletextpad=0.1)

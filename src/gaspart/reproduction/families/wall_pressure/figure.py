@@ -41,7 +41,7 @@ def _temperatures(axis: Axes, table: Table) -> None:
         axis.plot(line, np.ones(2), color=style.GREY, linestyle=":", label="ideal gas")
         axis.set_xlim(0.0, line[1])
     axis.set_ylim(bottom=0.8)
-    style.labelled(axis, r"temperature $T$", Z, "lower right" if series else "")
+    style.label_axes(axis, r"temperature $T$", Z, "lower right" if series else "")
 
 
 def _densities(axis: Axes, table: Table) -> None:
@@ -59,7 +59,7 @@ def _densities(axis: Axes, table: Table) -> None:
         corrected = part.pressure / part.expected.value * part.bulk_pressure / part.density
         style.points(axis, eta, corrected, kind=kind, label=f"{name}, corrected")
     style.level(axis, 1.0)
-    style.labelled(axis, y=Z, legend="lower right")
+    style.label_axes(axis, y=Z, legend="lower right")
 
 
 def _residuals(axis: Axes, table: Table) -> None:
@@ -75,7 +75,7 @@ def _residuals(axis: Axes, table: Table) -> None:
     widest = 1.2 * float(np.max(np.abs(excess.value) + excess.error))
     axis.set(ylim=(-widest, 1.6 * widest), xlim=(0.0, 0.43))
     labels = r"packing fraction $\eta$ of the container", r"$P/P_\mathrm{theory}-1$  (%)"
-    style.labelled(axis, *labels, legend="upper left", columns=2)
+    style.label_axes(axis, *labels, legend="upper left", columns=2)
 
 
 def _excess(table: Table) -> Estimate:
